@@ -1,0 +1,1 @@
+#include "core/io/load_layer.h"

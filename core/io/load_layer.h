@@ -1,0 +1,59 @@
+// Reads the polygons of any vector source that GDAL understands into a layer, on all cores.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/layer.h"
+
+namespace trapeze {
+
+/// A feature that was repaired or left out, with the words to tell a user.
+struct FeatureNote {
+  std::int64_t id = 0;
+  std::string reason;
+};
+
+/// What was found in a source. Every feature is counted once in exactly one of `loaded`,
+/// `other_geometry`, `empty`, `skipped`.
+struct LoadReport {
+  std::string path;
+  std::string driver;
+  std::size_t features = 0;        // in the source
+  std::size_t loaded = 0;          // drawn
+  std::size_t other_geometry = 0;  // points, lines, no geometry: not drawn
+  std::size_t empty = 0;           // polygons that are smaller than the grid, or outside the world
+  std::size_t skipped = 0;         // could not be read, reprojected or repaired
+  std::size_t polygons = 0;        // parts of multipolygons
+  std::size_t rings = 0;
+  std::size_t source_vertices = 0;
+  std::size_t vertices = 0;          // in the finished graphs
+  std::size_t collapsed_rings = 0;
+  std::size_t repaired = 0;          // noded: crossings, touches, overlaps
+  std::vector<FeatureNote> notes;    // one for each skipped feature, the first hundred of repaired ones
+  double read_seconds = 0;           // wall time until the last feature was read
+  double total_seconds = 0;
+};
+
+struct LoadOptions {
+  unsigned threads = 0;  // 0: one a core
+  /// Called from the reading thread now and then with a share in [0, 1] (or < 0 if unknown).
+  std::function<void(double)> progress;
+};
+
+struct LoadedLayer {
+  std::unique_ptr<Layer> layer;
+  LoadReport report;
+};
+
+/// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its
+/// layers. Features are in the order of the source whatever the number of threads. Throws
+/// std::runtime_error, naming the path, if it cannot be opened or has no layer; bad features never
+/// throw, they are reported.
+LoadedLayer load_layer(const std::string& path, const LoadOptions& options = {});
+
+}  // namespace trapeze

@@ -1,0 +1,1 @@
+#include "core/layer_builder.h"

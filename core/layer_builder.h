@@ -1,0 +1,49 @@
+// From rings to a layer: every feature's polygon is trapezoidated and its graph stored for drawing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/feature_table.h"
+#include "core/layer.h"
+#include "core/rings.h"
+
+namespace trapeze {
+
+/// What happened to the rings of one feature on the way to its graph.
+struct BuildOutcome {
+  bool built = false;            // false: nothing left to draw (everything collapsed), or failed
+  bool noded = false;            // rings crossed or touched themselves or each other and were noded
+  std::size_t rings = 0;         // rings that came in
+  std::size_t collapsed_rings = 0;  // rings without area after snapping
+  std::size_t vertices = 0;      // vertices of the finished polygon
+  std::string failure;           // why it could not be built, empty otherwise
+};
+
+/// Builds the graphs of many features one after another and keeps the result. Use one builder a
+/// thread and join them at the end: the joined layer does not depend on which builder got which
+/// feature.
+class LayerBuilder {
+ public:
+  LayerBuilder();
+  ~LayerBuilder();
+  LayerBuilder(LayerBuilder&&) noexcept;
+  LayerBuilder& operator=(LayerBuilder&&) noexcept;
+
+  /// Builds the graph of feature `row` from its rings, whatever their state: duplicates, spikes and
+  /// collapsed rings are dropped, crossings and touches noded on the grid, inside is even-odd.
+  /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
+  BuildOutcome add(std::uint32_t row, Rings& rings);
+
+  /// Joins what the builders hold into one layer; the builders are empty afterwards.
+  static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace trapeze
