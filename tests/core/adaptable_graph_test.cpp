@@ -183,7 +183,7 @@ TEST(AdaptableGraph, EveryDroppedVertexIsWithinTheToleranceOfTheChordOverIt) {
         const Point b = graph->point(graph->corner(end).vertex);
         for (CornerId c = graph->corner(first).next; c != end; c = graph->corner(c).next) {
           EXPECT_LE(std::sqrt(squared_distance(graph->point(graph->corner(c).vertex), a, b)),
-                    epsilon * 1.5);
+                    epsilon * 1.0);
         }
       }
     }
