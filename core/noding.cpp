@@ -145,7 +145,8 @@ bool add_crossing(const Segment& s, const Segment& t, std::vector<Point>& points
   return !common_end && box_of(s).intersects(box_of(t));
 }
 
-/// The segment meets the closed cell around `centre`.
+/// The segment meets the cell around `centre`, which owns its upper and left side but not its lower
+/// and right one, so that the cells share no point: like the rounding of crossings.
 bool passes_cell(const Segment& s, Point centre) {
   // In half cells, so that the corners of the cell are integers; 33 bits need wide products.
   const std::int64_t x = 2 * std::int64_t{centre.x};
@@ -154,13 +155,16 @@ bool passes_cell(const Segment& s, Point centre) {
   const std::int64_t ay = 2 * std::int64_t{s.first.y};
   const std::int64_t bx = 2 * std::int64_t{s.second.x};
   const std::int64_t by = 2 * std::int64_t{s.second.y};
-  if (std::max(ax, bx) < x - 1 || std::min(ax, bx) > x + 1) return false;
-  if (std::max(ay, by) < y - 1 || std::min(ay, by) > y + 1) return false;
+  if (std::max(ax, bx) < x - 1 || std::min(ax, bx) >= x + 1) return false;
+  if (std::max(ay, by) < y - 1 || std::min(ay, by) >= y + 1) return false;
+  // The open sides are taken to lie a vanishing step further in: where a corner is on the line, the
+  // step decides on which side it is.
   bool left = false;
   bool right = false;
   for (const int dx : {-1, 1}) {
     for (const int dy : {-1, 1}) {
-      const Int128 side = static_cast<Int128>(bx - ax) * (y + dy - ay) - static_cast<Int128>(by - ay) * (x + dx - ax);
+      Int128 side = static_cast<Int128>(bx - ax) * (y + dy - ay) - static_cast<Int128>(by - ay) * (x + dx - ax);
+      if (side == 0) side = (dx > 0 ? by - ay : 0) - (dy > 0 ? bx - ax : 0);
       left = left || side <= 0;
       right = right || side >= 0;
     }
