@@ -84,6 +84,8 @@ TEST_F(OpenSourceTest, SaysThatAFileIsBroken) {
   const std::string path =
       folder_.write("broken.geojson", "{\"type\": \"FeatureCollection\", \"fea");
   EXPECT_THAT(refusal(path), AllOf(StartsWith(path), HasSubstr("broken (GeoJSON)")));
+  const std::string flat = folder_.write("broken.fgb", std::string("fgb\3fgb\0", 8) + "nothing");
+  EXPECT_THAT(refusal(flat), AllOf(StartsWith(flat), HasSubstr("broken (FlatGeobuf)")));
 }
 
 TEST_F(OpenSourceTest, RefusesVrtThatPointsElsewhere) {
