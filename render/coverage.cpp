@@ -61,4 +61,13 @@ bool Coverage::is_all(std::uint8_t level) const {
   return std::all_of(pixels_.begin(), pixels_.end(), [level](std::uint8_t p) { return p == level; });
 }
 
+// Written so that compilers turn it into vector instructions: it is run on every pixel.
+void to_levels(std::span<const float> sums, std::uint8_t* levels) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    float share = sums[i] > 0.0f ? sums[i] : 0.0f;
+    share = share < 1.0f ? share : 1.0f;
+    levels[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+  }
+}
+
 }  // namespace trapeze

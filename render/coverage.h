@@ -70,6 +70,9 @@ class Coverage {
   std::vector<std::uint8_t> pixels_;
 };
 
+/// The rounding at the end: sums of areas, 1 a whole pixel, to as many levels of coverage.
+void to_levels(std::span<const float> sums, std::uint8_t* levels);
+
 /// Some trapezoids of one mesh; looks at memory of the caller. The ranges lie within the mesh.
 struct MeshPart {
   MeshView mesh;

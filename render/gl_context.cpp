@@ -351,8 +351,8 @@ std::string_view name_of(ContextPath path) {
 
 std::string ContextCandidate::text() const {
   std::string text(name_of(path));
-  if (device_index >= 0) text += " " + std::to_string(device_index);
-  if (!device_name.empty()) text += " (" + device_name + ")";
+  if (device_index >= 0) text.append(" ").append(std::to_string(device_index));
+  if (!device_name.empty()) text.append(" (").append(device_name).append(")");
   return text;
 }
 

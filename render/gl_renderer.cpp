@@ -354,10 +354,7 @@ void GlRenderer::draw_batch(const MeshView& mesh, std::uint32_t chunk) {
 void GlRenderer::read_back(Coverage& out) {
   sums_.resize(out.pixels().size());
   gl_.ReadPixels(0, 0, out.width(), out.height(), GL_RED, GL_FLOAT, sums_.data());
-  std::uint8_t* pixels = out.row_begin(0);
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    pixels[i] = static_cast<std::uint8_t>(std::clamp(sums_[i], 0.0f, 1.0f) * 255.0f + 0.5f);
-  }
+  to_levels(sums_, out.row_begin(0));
 }
 
 }  // namespace trapeze

@@ -39,7 +39,8 @@ Renderers make_gl_renderers(std::unique_ptr<GlContext> first, int count) {
 std::string join(const std::vector<RendererFailure>& failures) {
   std::string text;
   for (const RendererFailure& failure : failures) {
-    text += (text.empty() ? "" : "; ") + failure.what + ": " + failure.reason;
+    if (!text.empty()) text += "; ";
+    text.append(failure.what).append(": ").append(failure.reason);
   }
   return text;
 }
