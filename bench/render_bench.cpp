@@ -4,7 +4,8 @@
 //   render_bench --benchmark_filter=Draw  the renderers only
 //
 // Pictures are 256 x 256. "scatter" is as many small separate trapezoids as named, like buildings;
-// "strips" fill half of the picture with as many slanted ones, some thin, some large, like land use.
+// "strips" fill half of the picture with as many slanted ones, some thin, some large, like land
+// use.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -39,10 +40,10 @@ class BenchMesh {
       const int half = field / 2;
       const int top = y + mesh.pick(half);
       const int bottom = y + half + 1 + mesh.pick(half - 1);
-      const std::uint32_t left = mesh.add_edge({x + mesh.pick(half), top},
-                                               {x + mesh.pick(half), bottom});
-      const std::uint32_t right = mesh.add_edge({x + half + mesh.pick(half), top},
-                                                {x + half + mesh.pick(half), bottom});
+      const std::uint32_t left =
+          mesh.add_edge({x + mesh.pick(half), top}, {x + mesh.pick(half), bottom});
+      const std::uint32_t right =
+          mesh.add_edge({x + half + mesh.pick(half), top}, {x + half + mesh.pick(half), bottom});
       mesh.add(left, right, top, bottom);
     }
     return mesh;
@@ -143,16 +144,22 @@ void draw_arguments(benchmark::internal::Benchmark* bench) {
   bench->Args({2'000, 200});
 }
 
-BENCHMARK_CAPTURE(draw, Draw/software/scatter, RendererKind::software, BenchMesh::scatter)
+BENCHMARK_CAPTURE(draw, Draw / software / scatter, RendererKind::software, BenchMesh::scatter)
     ->Apply(draw_arguments);
-BENCHMARK_CAPTURE(draw, Draw/software/strips, RendererKind::software, BenchMesh::strips)
+BENCHMARK_CAPTURE(draw, Draw / software / strips, RendererKind::software, BenchMesh::strips)
     ->Apply(draw_arguments);
-BENCHMARK_CAPTURE(draw, Draw/egl/scatter, RendererKind::egl, BenchMesh::scatter)
-    ->Apply(draw_arguments)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(draw, Draw/egl/strips, RendererKind::egl, BenchMesh::strips)
-    ->Apply(draw_arguments)->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK_CAPTURE(draw, Draw/osmesa/scatter, RendererKind::osmesa, BenchMesh::scatter)
-    ->Apply(draw_arguments)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK_CAPTURE(draw, Draw / egl / scatter, RendererKind::egl, BenchMesh::scatter)
+    ->Apply(draw_arguments)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(draw, Draw / egl / strips, RendererKind::egl, BenchMesh::strips)
+    ->Apply(draw_arguments)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(draw, Draw / osmesa / scatter, RendererKind::osmesa, BenchMesh::scatter)
+    ->Apply(draw_arguments)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 Coverage sample_coverage(int count) {
   const BenchMesh mesh = BenchMesh::strips(count);
@@ -175,8 +182,7 @@ BENCHMARK(compose_layers)->ArgName("layers")->Arg(1)->Arg(2)->Unit(benchmark::kM
 void encode(benchmark::State& state) {
   const Coverage coverage = sample_coverage(static_cast<int>(state.range(0)));
   const Coverage other = sample_coverage(33);
-  const std::vector<FilledLayer> all{{&coverage, {200, 30, 30, 255}},
-                                     {&other, {30, 30, 200, 128}}};
+  const std::vector<FilledLayer> all{{&coverage, {200, 30, 30, 255}}, {&other, {30, 30, 200, 128}}};
   const std::span<const FilledLayer> layers(all.data(), static_cast<std::size_t>(state.range(1)));
   const Picture picture = compose(layers, 256, 256);
   std::size_t bytes = 0;
@@ -187,8 +193,14 @@ void encode(benchmark::State& state) {
   }
   state.counters["bytes"] = static_cast<double>(bytes);
 }
-BENCHMARK(encode)->ArgNames({"count", "layers"})->Args({0, 1})->Args({100, 1})->Args({2'000, 1})
-    ->Args({20'000, 1})->Args({2'000, 2})->Unit(benchmark::kMicrosecond);
+BENCHMARK(encode)
+    ->ArgNames({"count", "layers"})
+    ->Args({0, 1})
+    ->Args({100, 1})
+    ->Args({2'000, 1})
+    ->Args({20'000, 1})
+    ->Args({2'000, 2})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace trapeze

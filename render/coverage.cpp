@@ -14,7 +14,9 @@ std::int32_t clamp_to_grid(double cells) {
       std::clamp(cells, static_cast<double>(kGridMin), static_cast<double>(kGridMax)));
 }
 
-bool is_off_grid(double from, double to) { return to < kGridMin || from > kGridMax; }
+bool is_off_grid(double from, double to) {
+  return to < kGridMin || from > kGridMax;
+}
 
 }  // namespace
 
@@ -58,7 +60,8 @@ void Coverage::resize(int width, int height) {
 }
 
 bool Coverage::is_all(std::uint8_t level) const {
-  return std::all_of(pixels_.begin(), pixels_.end(), [level](std::uint8_t p) { return p == level; });
+  return std::all_of(pixels_.begin(), pixels_.end(),
+                     [level](std::uint8_t p) { return p == level; });
 }
 
 // Written so that compilers turn it into vector instructions: it is run on every pixel.

@@ -17,7 +17,7 @@
 
 namespace trapeze {
 
-constexpr int kTilePixels = 256;  // side of a tile at scale 1
+constexpr int kTilePixels = 256;          // side of a tile at scale 1
 constexpr int kMaxPicturePixels = 16384;  // longest side of a picture
 
 /// What a picture shows. Pixel (column, row) is the square of cells that begins at

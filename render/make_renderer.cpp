@@ -63,13 +63,13 @@ MadeRenderers make_renderers(const RendererOptions& options, int count) {
     return made;
   }
 
-  ContextSearch search = use_first_context(
-      {.egl = options.kind != RendererKind::osmesa,
-       .osmesa = options.kind != RendererKind::egl,
-       .device = options.device},
-      [&](std::unique_ptr<GlContext> context) {
-        made.renderers = make_gl_renderers(std::move(context), count);
-      });
+  ContextSearch search = use_first_context({.egl = options.kind != RendererKind::osmesa,
+                                            .osmesa = options.kind != RendererKind::egl,
+                                            .device = options.device},
+                                           [&](std::unique_ptr<GlContext> context) {
+                                             made.renderers =
+                                                 make_gl_renderers(std::move(context), count);
+                                           });
   for (ContextFailure& failure : search.failures) {
     made.failures.push_back({std::move(failure.candidate), std::move(failure.reason)});
   }

@@ -37,7 +37,9 @@ namespace {
 constexpr int kRowsAtOnce = 4;
 
 // For 0 <= value, where it is cheaper than std::floor.
-int truncate(double value) { return static_cast<int>(value); }
+int truncate(double value) {
+  return static_cast<int>(value);
+}
 
 // Replaces differences by running sums in some rows, side by side: one sum alone would spend its
 // time waiting for the addition before.
@@ -58,11 +60,8 @@ void sum_rows(float* first_row, std::size_t stride, int first, int end) {
 void SoftwareRenderer::draw(std::span<const MeshPart> parts, const View& view, Coverage& out) {
   view.check();
   prepare(view);
-  const Frame frame{view.origin_x,
-                    view.origin_y,
-                    1.0 / view.cells_per_pixel,
-                    static_cast<double>(view.width),
-                    static_cast<double>(view.height)};
+  const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
+                    static_cast<double>(view.width), static_cast<double>(view.height)};
   for (const MeshPart& part : parts) add(part, frame);
   out.resize(view.width, view.height);
   resolve(out);
@@ -137,8 +136,7 @@ void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
                       std::clamp(piece.x_bottom, 0.0, width), piece.y_bottom};
   Piece inside = clamped;
   if (clamped.x_top != clamped.x_bottom) {
-    const double rows_per_column =
-        (piece.y_bottom - piece.y_top) / (piece.x_bottom - piece.x_top);
+    const double rows_per_column = (piece.y_bottom - piece.y_top) / (piece.x_bottom - piece.x_top);
     const auto y_where_x_is = [&](double x) {
       return std::clamp(piece.y_top + (x - piece.x_top) * rows_per_column, piece.y_top,
                         piece.y_bottom);

@@ -6,7 +6,9 @@
 
 namespace trapeze {
 
-void PrintTo(Rgba colour, std::ostream* out) { *out << to_hex(colour); }
+void PrintTo(Rgba colour, std::ostream* out) {
+  *out << to_hex(colour);
+}
 
 namespace {
 
@@ -42,12 +44,38 @@ TEST(ColourTest, BringsNumbersIntoRangeAsCssDoes) {
 }
 
 TEST(ColourTest, RefusesWhatIsNoColour) {
-  for (const char* text :
-       {"", " ", "#", "12", "12345", "1234567", "123456789", "ggg", "##fff", "rouge", "red ish",
-        "rgb", "rgb(", "rgb()", "rgb(1,2)", "rgb(1,2,3", "rgb(1,2,3,4,5)", "rgb(1,,3)",
-        "rgb(1 2,3)", "rgb(1,2 3)", "rgb(1,2%,3)", "rgb(1,2,3/0.5)", "rgb(1 2 3,0.5)",
-        "rgb(nan,0,0)", "rgb(inf,0,0)", "rgb(0x1,0,0)", "rgb(+-1,0,0)", "rgb(123)", "hsl(1,2%,3%)",
-        "rgb(1,2,3))", "r\xc3\xa9" "d"}) {
+  for (const char* text : {"",
+                           " ",
+                           "#",
+                           "12",
+                           "12345",
+                           "1234567",
+                           "123456789",
+                           "ggg",
+                           "##fff",
+                           "rouge",
+                           "red ish",
+                           "rgb",
+                           "rgb(",
+                           "rgb()",
+                           "rgb(1,2)",
+                           "rgb(1,2,3",
+                           "rgb(1,2,3,4,5)",
+                           "rgb(1,,3)",
+                           "rgb(1 2,3)",
+                           "rgb(1,2 3)",
+                           "rgb(1,2%,3)",
+                           "rgb(1,2,3/0.5)",
+                           "rgb(1 2 3,0.5)",
+                           "rgb(nan,0,0)",
+                           "rgb(inf,0,0)",
+                           "rgb(0x1,0,0)",
+                           "rgb(+-1,0,0)",
+                           "rgb(123)",
+                           "hsl(1,2%,3%)",
+                           "rgb(1,2,3))",
+                           "r\xc3\xa9"
+                           "d"}) {
     EXPECT_EQ(parse_colour(text), std::nullopt) << text;
   }
   EXPECT_EQ(parse_colour(std::string("red\0", 4)), std::nullopt);

@@ -6,7 +6,9 @@
 
 namespace trapeze::testing {
 
-bool Difference::is_within_bounds() const { return worst <= 2 && above_1 * 1000 <= pixels; }
+bool Difference::is_within_bounds() const {
+  return worst <= 2 && above_1 * 1000 <= pixels;
+}
 
 std::ostream& operator<<(std::ostream& out, const Difference& difference) {
   return out << difference.above_1 << " of " << difference.pixels

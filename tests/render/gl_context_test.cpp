@@ -92,8 +92,9 @@ TEST(GlContextTest, ADeviceThatIsNotThereIsReportedAndTheOthersAreTried) {
   if (open_all(failures).empty()) GTEST_SKIP() << "no OpenGL here:\n" << failures;
   for (const char* device : {"99", "no such card"}) {
     std::unique_ptr<GlContext> taken;
-    const ContextSearch search = use_first_context(
-        {.device = device}, [&](std::unique_ptr<GlContext> context) { taken = std::move(context); });
+    const ContextSearch search =
+        use_first_context({.device = device},
+                          [&](std::unique_ptr<GlContext> context) { taken = std::move(context); });
     EXPECT_TRUE(search.found);
     EXPECT_NE(taken, nullptr);
     ASSERT_FALSE(search.failures.empty());
@@ -118,11 +119,10 @@ TEST(GlContextTest, AContextThatIsOfNoUseFallsThroughToTheNext) {
   std::string failures;
   const std::size_t working = open_all(failures).size();
   std::size_t offered = 0;
-  const ContextSearch search =
-      use_first_context({}, [&](std::unique_ptr<GlContext>) {
-        ++offered;
-        throw std::runtime_error("too slow");
-      });
+  const ContextSearch search = use_first_context({}, [&](std::unique_ptr<GlContext>) {
+    ++offered;
+    throw std::runtime_error("too slow");
+  });
   EXPECT_FALSE(search.found);
   EXPECT_EQ(offered, working);
   EXPECT_EQ(search.failures.size(), list_context_candidates().size());

@@ -142,8 +142,8 @@ TEST_P(GlRendererTest, PlacesLongEdgesOfAllSlopesLikeTheReference) {
       const std::uint32_t east = mesh.add_edge({kGridMax, upper.y}, {kGridMax, lower.y});
       const std::uint32_t west = mesh.add_edge({kGridMin, upper.y}, {kGridMin, lower.y});
       mesh.add(i % 2 == 0 ? edge : west, i % 2 == 0 ? east : edge, upper.y, lower.y);
-      expect_like_reference(mesh, view, "reach " + std::to_string(reach) + ", angle " +
-                                            std::to_string(angle));
+      expect_like_reference(mesh, view,
+                            "reach " + std::to_string(reach) + ", angle " + std::to_string(angle));
     }
   }
 }

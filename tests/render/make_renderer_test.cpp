@@ -35,8 +35,8 @@ TEST(MakeRendererTest, SoftwareIsSoftware) {
 }
 
 TEST(MakeRendererTest, AnExplicitKindIsThatKindOrThrowsWithReasons) {
-  for (const auto& [kind, name] : {std::pair{RendererKind::egl, "egl"},
-                                   std::pair{RendererKind::osmesa, "osmesa"}}) {
+  for (const auto& [kind, name] :
+       {std::pair{RendererKind::egl, "egl"}, std::pair{RendererKind::osmesa, "osmesa"}}) {
     try {
       const MadeRenderer made = make_renderer({kind, ""});
       EXPECT_EQ(made.renderer->name(), name);

@@ -10,8 +10,12 @@ namespace trapeze {
 namespace {
 
 // As a viewer reads them from the header: bits a sample, and 3 palette, 2 RGB, 6 RGBA.
-int bits_of(const std::vector<std::uint8_t>& png) { return png.at(24); }
-int colour_type_of(const std::vector<std::uint8_t>& png) { return png.at(25); }
+int bits_of(const std::vector<std::uint8_t>& png) {
+  return png.at(24);
+}
+int colour_type_of(const std::vector<std::uint8_t>& png) {
+  return png.at(25);
+}
 
 void expect_equal(const Picture& expected, const Picture& actual) {
   ASSERT_EQ(actual.width, expected.width);
@@ -26,13 +30,13 @@ void expect_equal(const Picture& expected, const Picture& actual) {
 Picture indexed(int width, int height, std::size_t colours, std::mt19937& random) {
   Picture picture{width, height, {}, {}, {}};
   for (std::size_t i = 0; i < colours; ++i) {
-    picture.palette.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(random()),
-                               7, static_cast<std::uint8_t>(random() % 2 == 0 ? 255 : 1 + i % 254)});
+    picture.palette.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(random()), 7,
+                               static_cast<std::uint8_t>(random() % 2 == 0 ? 255 : 1 + i % 254)});
   }
   for (int i = 0; i < width * height; ++i) {
     const bool is_first_round = static_cast<std::size_t>(i) < colours;
-    picture.indices.push_back(
-        static_cast<std::uint8_t>(is_first_round ? static_cast<std::size_t>(i) : random() % colours));
+    picture.indices.push_back(static_cast<std::uint8_t>(is_first_round ? static_cast<std::size_t>(i)
+                                                                       : random() % colours));
   }
   return picture;
 }

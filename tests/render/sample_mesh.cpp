@@ -59,8 +59,10 @@ long double SampleMesh::area() const {
     const long double top = vertices_[t.top].y;
     const long double bottom = vertices_[t.bottom].y;
     if (top == bottom) continue;
-    sum += (bottom - top) * (x_at(mesh, t.right, top) - x_at(mesh, t.left, top) +
-                             x_at(mesh, t.right, bottom) - x_at(mesh, t.left, bottom)) / 2;
+    sum += (bottom - top) *
+           (x_at(mesh, t.right, top) - x_at(mesh, t.left, top) + x_at(mesh, t.right, bottom) -
+            x_at(mesh, t.left, bottom)) /
+           2;
   }
   return sum;
 }

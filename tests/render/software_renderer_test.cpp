@@ -34,7 +34,9 @@ View square_view(std::int64_t origin, double cells_per_pixel, int pixels) {
   return {origin, origin, cells_per_pixel, pixels, pixels};
 }
 
-int level(double area) { return static_cast<int>(std::floor(area * 255 + 0.5)); }
+int level(double area) {
+  return static_cast<int>(std::floor(area * 255 + 0.5));
+}
 
 // Coverage by another way: rows of 1/32 cell, in each of which every trapezoid is an interval of
 // x. Levels of vertices are whole cells, so no trapezoid begins or ends within such a row.
@@ -43,9 +45,9 @@ std::vector<double> coverage_by_rows(const MeshView& mesh, const View& view) {
   constexpr int kRowsPerCell = 32;
   for (const MeshTrapezoid& t : mesh.trapezoids) {
     const std::int64_t top = std::max<std::int64_t>(mesh.vertices[t.top].y, view.origin_y);
-    const std::int64_t bottom = std::min<std::int64_t>(
-        mesh.vertices[t.bottom].y,
-        view.origin_y + std::llround(view.height * view.cells_per_pixel));
+    const std::int64_t bottom =
+        std::min<std::int64_t>(mesh.vertices[t.bottom].y,
+                               view.origin_y + std::llround(view.height * view.cells_per_pixel));
     for (std::int64_t i = top * kRowsPerCell; i < bottom * kRowsPerCell; ++i) {
       const long double y = (static_cast<long double>(i) + 0.5L) / kRowsPerCell;
       const auto to_pixels = [&](long double cells, std::int64_t origin) {
