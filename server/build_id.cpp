@@ -23,7 +23,9 @@ std::string hash_of_executable() {
 
 }  // namespace
 
-std::string version() { return TRAPEZE_VERSION; }
+std::string version() {
+  return TRAPEZE_VERSION;
+}
 
 const std::string& build_id() {
   static const std::string id = hash_of_executable();

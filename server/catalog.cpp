@@ -23,7 +23,9 @@ std::string to_text(const Json& json) {
 }
 
 /// To about a centimetre, which is what the grid resolves: shorter to read.
-double round_degrees(double degrees) { return std::round(degrees * 1e7) / 1e7; }
+double round_degrees(double degrees) {
+  return std::round(degrees * 1e7) / 1e7;
+}
 
 /// West, south, east, north; the box is not empty.
 std::array<double, 4> bounds_in_degrees(const Box& box) {
@@ -35,9 +37,12 @@ std::array<double, 4> bounds_in_degrees(const Box& box) {
 
 std::string_view name_of(FieldType type) {
   switch (type) {
-    case FieldType::integer: return "integer";
-    case FieldType::real: return "number";
-    case FieldType::text: return "string";
+    case FieldType::integer:
+      return "integer";
+    case FieldType::real:
+      return "number";
+    case FieldType::text:
+      return "string";
   }
   return "string";
 }

@@ -19,10 +19,9 @@ namespace {
 template <typename T>
 T value_or_throw(OrProblem<T> result) {
   if (const auto* problem = std::get_if<Problem>(&result)) {
-    throw std::runtime_error(problem->value.empty()
-                                 ? problem->detail
-                                 : fmt::format("{} Given was \"{}\".", problem->detail,
-                                               problem->value));
+    throw std::runtime_error(problem->value.empty() ? problem->detail
+                                                    : fmt::format("{} Given was \"{}\".",
+                                                                  problem->detail, problem->value));
   }
   return std::move(std::get<T>(result));
 }
@@ -34,9 +33,8 @@ TileId tile_of_text(const std::string& text) {
     throw std::runtime_error(fmt::format("--tile takes Z/X/Y, given was \"{}\"", text));
   }
   const std::string_view view = text;
-  return value_or_throw(parse_tile_id(view.substr(0, first),
-                                      view.substr(first + 1, second - first - 1),
-                                      view.substr(second + 1)));
+  return value_or_throw(parse_tile_id(
+      view.substr(0, first), view.substr(first + 1, second - first - 1), view.substr(second + 1)));
 }
 
 TileRequest make_request(const RenderArguments& arguments, const std::vector<LayerConfig>& layers) {

@@ -45,8 +45,9 @@ Config configure(const ServeArguments& arguments) {
   if (server.workers == 0) server.workers = std::max(1u, std::thread::hardware_concurrency());
   if (!arguments.files.empty()) config.layers = layers_of_files(arguments.files);
   if (config.layers.empty()) {
-    throw std::runtime_error("there is nothing to serve: name files, or a configuration with "
-                             "[[layer]] by --config");
+    throw std::runtime_error(
+        "there is nothing to serve: name files, or a configuration with "
+        "[[layer]] by --config");
   }
   return config;
 }
@@ -57,8 +58,8 @@ void check_files_exist(const std::vector<LayerConfig>& layers) {
     const bool is_virtual = layer.file.starts_with("/vsi");  // GDAL's own, within archives
     std::error_code error;
     if (!is_virtual && !std::filesystem::exists(layer.file, error)) {
-      throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name,
-                                           layer.file));
+      throw std::runtime_error(
+          fmt::format("layer \"{}\": there is no file {}", layer.name, layer.file));
     }
   }
 }
@@ -94,9 +95,7 @@ class Loading {
     if (thread_.joinable()) thread_.join();
   }
 
-  bool is_done() {
-    return future_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  }
+  bool is_done() { return future_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
   /// Throws what ended the loading. Only when is_done().
   void rethrow_failure() const {
     if (failure_) std::rethrow_exception(failure_);

@@ -76,9 +76,9 @@ class TableReader {
   void refuse_unknown_keys() const {
     for (const auto& [key, node] : table_) {
       if (std::ranges::find(known_, key.str()) != known_.end()) continue;
-      throw std::runtime_error(fmt::format(
-          "{}: unknown key {}; allowed here are {}", position_text(path_, key.source().begin),
-          full_name(key.str()), fmt::join(known_, ", ")));
+      throw std::runtime_error(fmt::format("{}: unknown key {}; allowed here are {}",
+                                           position_text(path_, key.source().begin),
+                                           full_name(key.str()), fmt::join(known_, ", ")));
     }
   }
 
@@ -173,7 +173,8 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
   return layer;
 }
 
-void read_layers(const std::string& path, const toml::node& node, std::vector<LayerConfig>& layers) {
+void read_layers(const std::string& path, const toml::node& node,
+                 std::vector<LayerConfig>& layers) {
   const toml::array* array = node.as_array();
   std::unordered_map<std::string, toml::source_position> seen;
   for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
@@ -182,9 +183,9 @@ void read_layers(const std::string& path, const toml::node& node, std::vector<La
     layers.push_back(read_layer(path, *table));
     const auto [first, is_new] = seen.emplace(layers.back().name, table->source().begin);
     if (!is_new) {
-      throw std::runtime_error(fmt::format(
-          "{}: layer \"{}\" is defined twice, first in line {}",
-          position_text(path, table->source().begin), layers.back().name, first->second.line));
+      throw std::runtime_error(fmt::format("{}: layer \"{}\" is defined twice, first in line {}",
+                                           position_text(path, table->source().begin),
+                                           layers.back().name, first->second.line));
     }
   }
   if (array == nullptr || layers.size() != array->size()) {

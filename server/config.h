@@ -37,8 +37,8 @@ struct ServerConfig {
   std::size_t queue = 256;        // requests that may wait for a worker
   unsigned deadline_ms = 10'000;  // a request that waits longer is given up
   RendererOptions renderer;
-  std::string public_url;         // of the server as the world sees it, without a '/' at the end
-  std::string web_root;           // folder of the viewer, empty for none
+  std::string public_url;  // of the server as the world sees it, without a '/' at the end
+  std::string web_root;    // folder of the viewer, empty for none
 };
 
 struct Config {

@@ -64,8 +64,8 @@ tcp::endpoint endpoint_of(const HttpServerOptions& options) {
   ErrorCode error;
   const auto address = net::ip::make_address(options.address, error);
   if (error) {
-    throw std::runtime_error(fmt::format(
-        "cannot listen on \"{}\": an IPv4 or IPv6 address is needed", options.address));
+    throw std::runtime_error(
+        fmt::format("cannot listen on \"{}\": an IPv4 or IPv6 address is needed", options.address));
   }
   return {address, options.port};
 }
@@ -170,14 +170,14 @@ void HttpServer::Connection::start() {
 void HttpServer::Connection::refuse() {
   state_.enter(*this);
   net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
-    self->send(problem_response({503, "There are too many connections. Ask again.", {}, {}, {}}));
+    self->send(problem_response({503, "There are too many connections. Ask again."}));
   });
 }
 
 void HttpServer::Connection::drain() {
   net::post(stream_.get_executor(), [self = shared_from_this()] {
-    const bool is_idle = self->is_reading_ && self->buffer_.size() == 0 &&
-                         !self->parser_->got_some();
+    const bool is_idle =
+        self->is_reading_ && self->buffer_.size() == 0 && !self->parser_->got_some();
     if (is_idle) self->stream_.close();
   });
 }
@@ -208,20 +208,16 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   keep_alive_ = false;
   if (error == http::error::end_of_stream) return close_gently();
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
-  Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + ".", {}, {},
-                  {}};
+  Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
   if (error == http::error::body_limit) {
     problem = {413, fmt::format("A request needs no body; at most {} bytes are taken.",
-                                state_.options().body_limit),
-               {}, {}, {}};
+                                state_.options().body_limit)};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    problem = is_request_line_too_long(buffer_)
-                  ? Problem{414, fmt::format("A target is at most {} bytes long.",
-                                             kMaxTargetLength),
-                            {}, {}, {}}
-                  : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
-                                             state_.options().header_limit),
-                            {}, {}, {}};
+    problem =
+        is_request_line_too_long(buffer_)
+            ? Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}
+            : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
+                                       state_.options().header_limit)};
   }
   send(problem_response(problem));
 }
@@ -233,7 +229,7 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
-    return send(problem_response({400, "A request needs one Host header.", {}, {}, {}}));
+    return send(problem_response({400, "A request needs one Host header."}));
   }
   // The pair lets go of the connection before the state that the connection refers to.
   auto held = std::pair(state_.shared_from_this(), shared_from_this());
@@ -248,7 +244,7 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
     });
   } catch (const std::exception& error) {
     spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
-    send(problem_response({500, "The request could not be answered.", {}, {}, {}}));
+    send(problem_response({500, "The request could not be answered."}));
   }
 }
 
@@ -280,11 +276,10 @@ void HttpServer::Connection::write(http::response<Body> message,
                                    std::shared_ptr<const std::string> bytes) {
   stream_.expires_after(state_.options().write_timeout);
   auto kept = std::make_shared<http::response<Body>>(std::move(message));
-  http::async_write(stream_, *kept,
-                    [self = shared_from_this(), kept, bytes = std::move(bytes)](
-                        const ErrorCode& error, std::size_t) {
-                      self->on_written(error, kept->keep_alive());
-                    });
+  http::async_write(
+      stream_, *kept,
+      [self = shared_from_this(), kept, bytes = std::move(bytes)](
+          const ErrorCode& error, std::size_t) { self->on_written(error, kept->keep_alive()); });
 }
 
 void HttpServer::Connection::on_written(const ErrorCode& error, bool keep_alive) {
@@ -301,11 +296,12 @@ void HttpServer::Connection::close_gently() {
 }
 
 void HttpServer::Connection::discard_input() {
-  stream_.async_read_some(net::buffer(discarded_), [self = shared_from_this()](
-                                                       const ErrorCode& error, std::size_t bytes) {
-    self->discarded_bytes_ += bytes;
-    if (!error && self->discarded_bytes_ < kMaxLingerBytes) self->discard_input();
-  });
+  stream_.async_read_some(net::buffer(discarded_),
+                          [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
+                            self->discarded_bytes_ += bytes;
+                            if (!error && self->discarded_bytes_ < kMaxLingerBytes)
+                              self->discard_input();
+                          });
 }
 
 void HttpServer::Connection::log_access(const HttpResponse& response) const {
@@ -458,12 +454,20 @@ HttpServer::HttpServer(const HttpServerOptions& options, const Site& site)
 
 HttpServer::~HttpServer() = default;
 
-std::uint16_t HttpServer::port() const { return state_->port(); }
+std::uint16_t HttpServer::port() const {
+  return state_->port();
+}
 
-void HttpServer::run() { state_->run(); }
+void HttpServer::run() {
+  state_->run();
+}
 
-void HttpServer::stop() { state_->stop(); }
+void HttpServer::stop() {
+  state_->stop();
+}
 
-void HttpServer::stop_on_signals() { state_->stop_on_signals(); }
+void HttpServer::stop_on_signals() {
+  state_->stop_on_signals();
+}
 
 }  // namespace trapeze

@@ -18,10 +18,10 @@ struct HttpServerOptions {
   std::string address = "0.0.0.0";  // IPv4 or IPv6, no name
   std::uint16_t port = 8080;        // 0: any free port
   unsigned threads = 2;
-  std::size_t max_connections = 1024;  // more are turned away with 503
-  std::uint32_t header_limit = 8192;   // bytes of request line and header together
-  std::uint32_t body_limit = 1024;     // no request needs a body
-  std::chrono::milliseconds read_timeout{30'000};   // for a whole request, idle time before included
+  std::size_t max_connections = 1024;              // more are turned away with 503
+  std::uint32_t header_limit = 8192;               // bytes of request line and header together
+  std::uint32_t body_limit = 1024;                 // no request needs a body
+  std::chrono::milliseconds read_timeout{30'000};  // for a whole request, idle time before included
   std::chrono::milliseconds write_timeout{30'000};  // for a whole response
   std::chrono::milliseconds drain_timeout{10'000};  // for what runs when the server is stopped
 };

@@ -14,17 +14,20 @@ namespace {
 constexpr const char* kDescription =
     "Trapeze serves maps of polygons as PNG tiles, and simplifies while it draws.\n\n"
     "Examples:\n"
-    "  trapeze serve countries.fgb lakes.gpkg      tiles at http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
+    "  trapeze serve countries.fgb lakes.gpkg      tiles at "
+    "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
     "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
     "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
 
 constexpr const char* kServeFooter =
     "\nExamples:\n"
-    "  trapeze serve countries.fgb                 http://localhost:8080/tiles/countries/0/0/0.png\n"
+    "  trapeze serve countries.fgb                 "
+    "http://localhost:8080/tiles/countries/0/0/0.png\n"
     "  trapeze serve --port 9000 --address 127.0.0.1 buildings.fgb water.fgb\n"
     "  trapeze serve --config trapeze.toml --workers 4\n\n"
-    "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json (TileJSON),\n"
+    "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json "
+    "(TileJSON),\n"
     "/catalog, /health, /ready, and the viewer at /. SIGTERM and SIGINT end the server in order.";
 
 constexpr const char* kCheckFooter =
@@ -87,8 +90,9 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
       ->type_name("QUERY");
   render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
   render->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
-  render->add_option("--output", arguments.output, "The PNG to write")->required()->type_name(
-      "F.png");
+  render->add_option("--output", arguments.output, "The PNG to write")
+      ->required()
+      ->type_name("F.png");
 }
 
 int run(int argc, char** argv) {

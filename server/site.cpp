@@ -17,11 +17,14 @@ constexpr std::string_view kTileCaching = "public, max-age=3600";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
-Problem still_loading() { return {503, "The data is still being loaded.", {}, {}, {}}; }
+Problem still_loading() {
+  return {503, "The data is still being loaded."};
+}
 
 void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  response.headers.emplace_back("Access-Control-Expose-Headers", "ETag, Retry-After, Server-Timing");
+  response.headers.emplace_back("Access-Control-Expose-Headers",
+                                "ETag, Retry-After, Server-Timing");
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
@@ -36,9 +39,8 @@ HttpResponse answer_options() {
 }
 
 HttpResponse refuse_method(const std::string& method) {
-  auto response = problem_response(
-      {405, "Only GET, HEAD and OPTIONS are understood here.", "method", method,
-       std::string(kMethods)});
+  auto response = problem_response({405, "Only GET, HEAD and OPTIONS are understood here.",
+                                    "method", method, std::string(kMethods)});
   response.headers.emplace_back("Allow", std::string(kMethods));
   return response;
 }
@@ -65,9 +67,8 @@ HttpResponse json_document(const HttpRequest& request, std::string json) {
 }
 
 std::string server_timing(const PaintTimes& times) {
-  return fmt::format(
-      "select;dur={:.3f}, draw;dur={:.3f}, compose;dur={:.3f}, encode;dur={:.3f}", times.select_ms,
-      times.draw_ms, times.compose_ms, times.encode_ms);
+  return fmt::format("select;dur={:.3f}, draw;dur={:.3f}, compose;dur={:.3f}, encode;dur={:.3f}",
+                     times.select_ms, times.draw_ms, times.compose_ms, times.encode_ms);
 }
 
 HttpResponse tile_headers(int status, const std::string& entity_tag) {
@@ -79,14 +80,14 @@ HttpResponse tile_headers(int status, const std::string& entity_tag) {
 
 HttpResponse tile_response(const TileAnswer& answer, const std::string& entity_tag) {
   switch (answer.outcome) {
-    case TileOutcome::drawn: break;
+    case TileOutcome::drawn:
+      break;
     case TileOutcome::saturated:
-      return problem_response({503, "There is more to draw than can be drawn. Ask again.", {}, {},
-                               {}});
+      return problem_response({503, "There is more to draw than can be drawn. Ask again."});
     case TileOutcome::late:
-      return problem_response({504, "The tile was not drawn in time.", {}, {}, {}});
+      return problem_response({504, "The tile was not drawn in time."});
     case TileOutcome::failed:
-      return problem_response({500, "The tile could not be drawn.", {}, {}, {}});
+      return problem_response({500, "The tile could not be drawn."});
   }
   auto response = tile_headers(200, entity_tag);
   response.headers.emplace_back("Content-Type", "image/png");
@@ -112,7 +113,7 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
   }
   if (request.target.size() > kMaxTargetLength) {
     return respond_to_all(problem_response(
-        {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength), {}, {}, {}}));
+        {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
   }
   if (const auto target = split_target(request.target);
       target && target->path.starts_with("/tiles/")) {
@@ -150,8 +151,8 @@ HttpResponse Site::answer_catalog(const HttpRequest& request) const {
   if (dataset == nullptr) return problem_response(still_loading());
   const auto base = base_url(request);
   if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
-  return json_document(
-      request, catalog_json(*dataset, tiles_.renderer_name(), std::get<std::string>(base)));
+  return json_document(request,
+                       catalog_json(*dataset, tiles_.renderer_name(), std::get<std::string>(base)));
 }
 
 HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
@@ -168,14 +169,13 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
 HttpResponse Site::answer_file(const HttpRequest& request) const {
   const auto target = split_target(request.target);
   const auto path = target ? percent_decode(target->path, Plus::literal) : std::nullopt;
-  if (!path) return problem_response({400, "The target is not well formed.", {}, {}, {}});
+  if (!path) return problem_response({400, "The target is not well formed."});
   const StaticFile* file = files_.find(*path);
   if (file == nullptr) {
-    return problem_response({404,
-                             *path == "/" ? "There is no viewer here: web_root is not set, or has "
-                                            "no index.html. The layers are at /catalog."
-                                          : "There is nothing here. The layers are at /catalog.",
-                             {}, {}, {}});
+    return problem_response({404, *path == "/"
+                                      ? "There is no viewer here: web_root is not set, or has "
+                                        "no index.html. The layers are at /catalog."
+                                      : "There is nothing here. The layers are at /catalog."});
   }
   return document(request, file->content_type, file->entity_tag, file->bytes);
 }
@@ -213,8 +213,9 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
 OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
   if (!public_url_.empty()) return public_url_;
   if (!is_valid_host(request.host)) {
-    return Problem{400, "The request needs a Host header with a host name or address, and a port "
-                        "if it is not 80.",
+    return Problem{400,
+                   "The request needs a Host header with a host name or address, and a port "
+                   "if it is not 80.",
                    "Host", request.host, "a host name or address, with or without a port"};
   }
   return "http://" + request.host;

@@ -40,7 +40,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kContent
     {".woff2", "font/woff2"},
 }};
 
-bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+bool is_hidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
 
 std::string read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -90,8 +92,8 @@ StaticFiles::StaticFiles(const std::string& root) {
       files_.emplace("/" + path, load_file(entry->path()));
     }
   } catch (const fs::filesystem_error& error) {
-    throw std::runtime_error(fmt::format("cannot read the folder of the viewer {}: {}", root,
-                                         error.code().message()));
+    throw std::runtime_error(
+        fmt::format("cannot read the folder of the viewer {}: {}", root, error.code().message()));
   }
 }
 

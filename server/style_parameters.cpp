@@ -13,8 +13,8 @@ namespace {
 constexpr std::array kParameters = {
     StyleParameter{ParameterId::background, "background", ParameterType::colour, 0, 0,
                    "transparent", false, "colour of the tile below all layers"},
-    StyleParameter{ParameterId::fill, "fill", ParameterType::colour, 0, 0,
-                   "the layer's own colour", true, "colour of the polygons"},
+    StyleParameter{ParameterId::fill, "fill", ParameterType::colour, 0, 0, "the layer's own colour",
+                   true, "colour of the polygons"},
     StyleParameter{ParameterId::fill_opacity, "fill-opacity", ParameterType::number, 0, 1,
                    "the layer's own opacity", true,
                    "opacity of the polygons, multiplied with that of their colour"},
@@ -70,7 +70,9 @@ SettingName resolve_name(std::string_view name, std::span<const std::string> lay
 
 }  // namespace
 
-std::span<const StyleParameter> style_parameters() { return kParameters; }
+std::span<const StyleParameter> style_parameters() {
+  return kParameters;
+}
 
 const StyleParameter& style_parameter(ParameterId id) {
   return kParameters[static_cast<std::size_t>(id)];
@@ -84,8 +86,10 @@ const StyleParameter* find_style_parameter(std::string_view name) {
 std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
                                               std::string_view text) {
   switch (parameter.type) {
-    case ParameterType::colour: return parse_colour(text);
-    case ParameterType::number: return parse_number(text, parameter.min, parameter.max);
+    case ParameterType::colour:
+      return parse_colour(text);
+    case ParameterType::number:
+      return parse_number(text, parameter.min, parameter.max);
   }
   return std::nullopt;
 }

@@ -45,7 +45,8 @@ Level TilePlan::level() const {
 }
 
 std::string TilePlan::key() const {
-  std::string key = fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
+  std::string key =
+      fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
   for (const LayerPaint& paint : layers) {
     const ServedLayer& layer = dataset->layers()[paint.layer];
     key += fmt::format(" {}:{:016x}={}", layer.config.name, layer.revision, to_hex(paint.fill));

@@ -13,7 +13,9 @@ constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].
 constexpr std::string_view kPng = ".png";
 constexpr std::string_view kJson = ".json";
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 /// A decimal integer without leading zeros; a minus sign is allowed so that the tiles which maps
 /// ask for beyond the edge of the world are "outside" and not "malformed".
@@ -82,8 +84,8 @@ OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
   if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
   auto tile = parse_tile_id(path[2], path[3], std::get<FileName>(file).stem);
   if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
-  TileRequest request{std::move(std::get<0>(layers)), std::get<TileId>(tile),
-                      std::get<FileName>(file).scale, {}};
+  TileRequest request{
+      std::move(std::get<0>(layers)), std::get<TileId>(tile), std::get<FileName>(file).scale, {}};
   auto style = StyleQuery::parse(query, request.layers);
   if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
   request.style = std::move(std::get<StyleQuery>(style));
@@ -114,8 +116,8 @@ bool is_layer_name(std::string_view name) {
 OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
   for (const std::string_view number : {z, x, y}) {
     if (is_integer(number)) continue;
-    return Problem{400, fmt::format("Zoom, column and row of a tile are integers: {}.",
-                                    kTilePattern),
+    return Problem{400,
+                   fmt::format("Zoom, column and row of a tile are integers: {}.", kTilePattern),
                    "z/x/y", std::string(number), "an integer"};
   }
   const auto zoom = to_tile_number(z);
@@ -125,10 +127,9 @@ OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::str
     const TileId tile{static_cast<int>(*zoom), *column, *row};
     if (tile.is_valid()) return tile;
   }
-  return Problem{404,
-                 fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
-                             "2^zoom - 1.",
-                             kMaxZoom)};
+  return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
+                                  "2^zoom - 1.",
+                                  kMaxZoom)};
 }
 
 OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
@@ -139,8 +140,9 @@ OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
   const auto path = split ? decode_path(split->path) : std::nullopt;
   const auto query = split ? decode_query(split->query) : std::nullopt;
   if (!path || !query) {
-    return Problem{400, "The target is not well formed: '%' comes with two hex digits, and "
-                        "control characters are not allowed."};
+    return Problem{400,
+                   "The target is not well formed: '%' comes with two hex digits, and "
+                   "control characters are not allowed."};
   }
   if (path->size() == 5) return parse_tile(*path, *query);
   if (path->size() == 2 && path->back().ends_with(kJson)) {

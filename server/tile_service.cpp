@@ -11,9 +11,8 @@ TileService::TileService(const TileServiceOptions& options,
                          std::vector<std::unique_ptr<CoverageRenderer>> renderers)
     : options_(options), renderer_name_(renderers.front()->name()) {
   for (auto& renderer : renderers) {
-    threads_.emplace_back([this, painter = TilePainter(std::move(renderer))]() mutable {
-      work(painter);
-    });
+    threads_.emplace_back(
+        [this, painter = TilePainter(std::move(renderer))]() mutable { work(painter); });
   }
 }
 

@@ -22,7 +22,7 @@
 namespace trapeze {
 
 struct TileServiceOptions {
-  std::size_t queue = 256;  // distinct tiles that may wait for a worker
+  std::size_t queue = 256;                     // distinct tiles that may wait for a worker
   std::chrono::milliseconds deadline{10'000};  // from submission to the end of drawing
 };
 
