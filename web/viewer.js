@@ -75,6 +75,7 @@ function make_map() {
     maxBounds: [[-MAX_LATITUDE, -1e6], [MAX_LATITUDE, 1e6]],
     maxBoundsViscosity: 1,
     worldCopyJump: true,
+    wheelPxPerZoomLevel: 120, // one notch of a mouse wheel is one zoom
   });
   L.control.scale({ position: "bottomleft" }).addTo(map);
   return map;
