@@ -8,7 +8,7 @@ export class MapLayer {
   /**
    * @param map the Leaflet map
    * @param url address of the server's tiles folder, ending in '/'
-   * @param layer {name, min_zoom, max_zoom}
+   * @param layer of the catalog: {name, minzoom, maxzoom}; not shown at other zooms
    * @param z_index higher lies above
    * @param on_trouble called with whether tiles are missing for good
    */
@@ -48,9 +48,8 @@ export class MapLayer {
 
   add_tiles_() {
     const tiles = L.tileLayer(this.pattern_ + this.query_, {
-      minNativeZoom: this.layer_.min_zoom,
-      maxNativeZoom: this.layer_.max_zoom,
-      maxZoom: this.map_.getMaxZoom(),
+      minZoom: zoom_or(this.layer_.minzoom, this.map_.getMinZoom()),
+      maxZoom: zoom_or(this.layer_.maxzoom, this.map_.getMaxZoom()),
       zIndex: this.z_index_,
       className: `layer-${this.z_index_}`,
     });
@@ -78,4 +77,8 @@ export class MapLayer {
       if (tile.isConnected && this.map_.hasLayer(tiles) && tile.src === url) tile.src = url;
     }, wait);
   }
+}
+
+function zoom_or(zoom, otherwise) {
+  return Number.isInteger(zoom) ? zoom : otherwise;
 }

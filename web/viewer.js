@@ -71,6 +71,7 @@ function is_box(bounds) {
 function make_map() {
   const map = L.map("map", {
     attributionControl: false,
+    minZoom: 0,
     maxZoom: MAX_ZOOM,
     maxBounds: [[-MAX_LATITUDE, -1e6], [MAX_LATITUDE, 1e6]],
     maxBoundsViscosity: 1,
