@@ -13,6 +13,9 @@
 
 namespace trapeze {
 
+/// For sums and products that 64 bits cannot hold; g++ and clang both have it.
+__extension__ using Int128 = __int128;
+
 constexpr int kGridBits = 31;
 constexpr std::int64_t kGridSize = std::int64_t{1} << kGridBits;  // cells per side of the world
 constexpr std::int32_t kGridMin = -(1 << 30);

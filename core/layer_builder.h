@@ -8,20 +8,11 @@
 #include <vector>
 
 #include "core/feature_table.h"
+#include "core/graph_builder.h"
 #include "core/layer.h"
 #include "core/rings.h"
 
 namespace trapeze {
-
-/// What happened to the rings of one feature on the way to its graph.
-struct BuildOutcome {
-  bool built = false;            // false: nothing left to draw (everything collapsed), or failed
-  bool noded = false;            // rings crossed or touched themselves or each other and were noded
-  std::size_t rings = 0;         // rings that came in
-  std::size_t collapsed_rings = 0;  // rings without area after snapping
-  std::size_t vertices = 0;      // vertices of the finished polygon
-  std::string failure;           // why it could not be built, empty otherwise
-};
 
 /// Builds the graphs of many features one after another and keeps the result. Use one builder a
 /// thread and join them at the end: the joined layer does not depend on which builder got which

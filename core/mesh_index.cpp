@@ -1,0 +1,113 @@
+#include "core/mesh_index.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/hilbert.h"
+
+namespace trapeze {
+namespace {
+
+struct Interval {
+  double min;
+  double max;
+};
+
+/// Where the edge runs in x between two levels.
+Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, std::int32_t y1) {
+  const Point a = mesh.vertices[edge.upper];
+  const Point b = mesh.vertices[edge.lower];
+  if (a.y == b.y) return {static_cast<double>(std::min(a.x, b.x)), static_cast<double>(std::max(a.x, b.x))};
+  const double slope = (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y);
+  const double x0 = a.x + slope * (static_cast<double>(y0) - a.y);
+  const double x1 = a.x + slope * (static_cast<double>(y1) - a.y);
+  return {std::min(x0, x1), std::max(x0, x1)};
+}
+
+/// Four levels, an octave, to a class; the untouched and the undying are classes of their own.
+unsigned lifespan_class(Level level) { return (level + 3u) / 4u; }
+
+}  // namespace
+
+Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
+  const std::int32_t y0 = mesh.vertices[trapezoid.top].y;
+  const std::int32_t y1 = mesh.vertices[trapezoid.bottom].y;
+  const Interval left = x_range(mesh, mesh.edges[trapezoid.left], y0, y1);
+  const Interval right = x_range(mesh, mesh.edges[trapezoid.right], y0, y1);
+  const auto clamped = [](double x) {
+    return static_cast<std::int32_t>(std::clamp(x, double{kGridMin}, double{kGridMax}));
+  };
+  return {clamped(std::floor(std::min(left.min, right.min))), y0,
+          clamped(std::ceil(std::max(left.max, right.max))), y1};
+}
+
+std::uint64_t order_key(const Box& box, Lifespan lifespan) {
+  const std::int64_t extent = std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
+  // Two octaves of size to a class.
+  const auto size = static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(extent)) / 2);
+  const Point centre{static_cast<std::int32_t>((std::int64_t{box.min_x} + box.max_x) / 2),
+                     static_cast<std::int32_t>((std::int64_t{box.min_y} + box.max_y) / 2)};
+  return (std::uint64_t{lifespan_class(lifespan.born)} << 45) |
+         (std::uint64_t{lifespan_class(lifespan.dies)} << 38) | (size << 32) | hilbert(centre);
+}
+
+MeshIndex::MeshIndex(const MeshView& mesh, std::span<const Lifespan> lifespans)
+    : count_(mesh.trapezoids.size()) {
+  std::vector<Entry> entries((count_ + kFanout - 1) / kFanout);
+  for (std::size_t i = 0; i < count_; ++i) {
+    Entry& entry = entries[i / kFanout];
+    entry.box.include(box_of(mesh, mesh.trapezoids[i]));
+    entry.min_born = std::min(entry.min_born, lifespans[i].born);
+    entry.max_dies = std::max(entry.max_dies, lifespans[i].dies);
+  }
+  heights_.push_back(std::move(entries));
+  while (heights_.back().size() > 1) {
+    const std::vector<Entry>& below = heights_.back();
+    std::vector<Entry> above((below.size() + kFanout - 1) / kFanout);
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      Entry& entry = above[i / kFanout];
+      entry.box.include(below[i].box);
+      entry.min_born = std::min(entry.min_born, below[i].min_born);
+      entry.max_dies = std::max(entry.max_dies, below[i].max_dies);
+    }
+    heights_.push_back(std::move(above));
+  }
+}
+
+void MeshIndex::select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+                       std::vector<TrapezoidRange>& ranges) const {
+  ranges.clear();
+  if (count_ == 0) return;
+  descend(heights_.size() - 1, 0, Query{box, level, lifespans, ranges});
+}
+
+void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
+  const Entry& entry = heights_[height][index];
+  if (query.level < entry.min_born || query.level >= entry.max_dies) return;
+  if (!entry.box.intersects(query.box)) return;
+  const std::size_t begin = index * kFanout;
+  if (height > 0) {
+    const std::size_t end = std::min(begin + kFanout, heights_[height - 1].size());
+    for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, query);
+    return;
+  }
+  const std::size_t end = std::min(begin + kFanout, count_);
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!query.lifespans[i].contains(query.level)) continue;
+    const auto id = static_cast<std::uint32_t>(i);
+    if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {
+      ++query.ranges.back().count;
+    } else {
+      query.ranges.push_back({id, 1});
+    }
+  }
+}
+
+std::size_t MeshIndex::memory() const {
+  std::size_t entries = 0;
+  for (const auto& height : heights_) entries += height.capacity();
+  return entries * sizeof(Entry);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,56 @@
+// Where the trapezoids of a mesh are and when they live: a packed tree over the array of trapezoids,
+// which is ordered so that what is near in lifespan, size and place is near in the array.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/tolerance.h"
+#include "core/trapezoid_mesh.h"
+
+namespace trapeze {
+
+/// The smallest box around a trapezoid, rounded outwards to whole cells.
+Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid);
+
+/// Sorting by this key puts trapezoids that are drawn together next to each other: by classes of
+/// lifespan, then of size, then along a Hilbert curve.
+std::uint64_t order_key(const Box& box, Lifespan lifespan);
+
+/// Thread-safety: immutable, any number of threads may read.
+class MeshIndex {
+ public:
+  MeshIndex() = default;
+  /// Both spans are as long as the mesh has trapezoids.
+  MeshIndex(const MeshView& mesh, std::span<const Lifespan> lifespans);
+
+  /// Replaces `ranges` by the trapezoids that live at `level` and may meet `box`, as disjoint ranges in
+  /// ascending order.
+  void select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+              std::vector<TrapezoidRange>& ranges) const;
+
+  std::size_t memory() const;
+
+ private:
+  static constexpr std::size_t kFanout = 8;
+
+  struct Entry {
+    Box box;
+    Level min_born = kNeverDies;
+    Level max_dies = 0;
+  };
+  struct Query {
+    const Box& box;
+    Level level;
+    std::span<const Lifespan> lifespans;
+    std::vector<TrapezoidRange>& ranges;
+  };
+  void descend(std::size_t height, std::size_t index, const Query& query) const;
+
+  std::size_t count_ = 0;
+  std::vector<std::vector<Entry>> heights_;  // [0]: over trapezoids; each next over the one before
+};
+
+}  // namespace trapeze

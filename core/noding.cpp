@@ -1,0 +1,254 @@
+#include "core/noding.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/hilbert.h"
+
+namespace trapeze {
+namespace {
+
+Box box_of(const Segment& s) {
+  Box b;
+  b.include(s.first);
+  b.include(s.second);
+  return b;
+}
+
+/// A static tree of boxes: leaves hold kFanout successive segments each, in an order of place.
+class SegmentTree {
+ public:
+  explicit SegmentTree(const std::vector<Segment>& segments) : segments_(segments) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < segments.size(); i += kFanout) {
+      Box b;
+      for (std::size_t k = i; k < std::min(i + kFanout, segments.size()); ++k) b.include(box_of(segments[k]));
+      boxes.push_back(b);
+    }
+    levels_.push_back(std::move(boxes));
+    while (levels_.back().size() > 1) {
+      std::vector<Box> parents;
+      const std::vector<Box>& below = levels_.back();
+      for (std::size_t i = 0; i < below.size(); i += kFanout) {
+        Box b;
+        for (std::size_t k = i; k < std::min(i + kFanout, below.size()); ++k) b.include(below[k]);
+        parents.push_back(b);
+      }
+      levels_.push_back(std::move(parents));
+    }
+  }
+
+  /// Calls visit(index) for every segment whose box meets `box` and whose index is >= `from`.
+  template <class Visit>
+  void query(const Box& box, std::size_t from, const Visit& visit) const {
+    if (!segments_.empty()) descend(levels_.size() - 1, 0, box, from, visit);
+  }
+
+ private:
+  static constexpr std::size_t kFanout = 8;
+
+  template <class Visit>
+  void descend(std::size_t level, std::size_t index, const Box& box, std::size_t from,
+               const Visit& visit) const {
+    if (!levels_[level][index].intersects(box)) return;
+    const std::size_t begin = index * kFanout;
+    if (level == 0) {
+      const std::size_t end = std::min(begin + kFanout, segments_.size());
+      for (std::size_t i = std::max(begin, from); i < end; ++i) {
+        if (box_of(segments_[i]).intersects(box)) visit(i);
+      }
+      return;
+    }
+    // Subtrees that end before `from` hold nothing of interest.
+    std::size_t span = kFanout;
+    for (std::size_t l = 1; l < level; ++l) span *= kFanout;
+    const std::size_t end = std::min(begin + kFanout, levels_[level - 1].size());
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((i + 1) * span > from) descend(level - 1, i, box, from, visit);
+    }
+  }
+
+  const std::vector<Segment>& segments_;
+  std::vector<std::vector<Box>> levels_;
+};
+
+/// Segments of rings follow each other on the map, so the order of the rings is kept within short
+/// runs, and the runs are ordered by place.
+void order_by_place(std::vector<Segment>& segments) {
+  constexpr std::size_t kRun = 8;
+  struct Run {
+    std::uint32_t place;
+    std::uint32_t begin;
+  };
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < segments.size(); i += kRun) {
+    runs.push_back({hilbert(segments[i].first), static_cast<std::uint32_t>(i)});
+  }
+  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
+    return a.place != b.place ? a.place < b.place : a.begin < b.begin;
+  });
+  std::vector<Segment> ordered;
+  ordered.reserve(segments.size());
+  for (const Run& run : runs) {
+    const std::size_t end = std::min<std::size_t>(run.begin + kRun, segments.size());
+    ordered.insert(ordered.end(), segments.begin() + run.begin,
+                   segments.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  segments.swap(ordered);
+}
+
+/// floor(a / b + 1/2) for b > 0.
+Int128 round_half_up(Int128 a, Int128 b) {
+  const Int128 n = 2 * a + b;
+  const Int128 d = 2 * b;
+  Int128 q = n / d;
+  if (n % d < 0) --q;
+  return q;
+}
+
+int sign(std::int64_t v) { return (v > 0) - (v < 0); }
+
+/// Appends the rounded crossing of two segments that cross in their interiors. Touches need no
+/// point: there the hot cell is that of the touching vertex. Returns whether they meet other than at
+/// a common end.
+bool add_crossing(const Segment& s, const Segment& t, std::vector<Point>& points) {
+  const std::int64_t s1 = orientation(t.first, t.second, s.first);
+  const std::int64_t s2 = orientation(t.first, t.second, s.second);
+  const std::int64_t t1 = orientation(s.first, s.second, t.first);
+  const std::int64_t t2 = orientation(s.first, s.second, t.second);
+  if (sign(s1) * sign(s2) > 0 || sign(t1) * sign(t2) > 0) return false;
+  if (sign(s1) * sign(s2) < 0 && sign(t1) * sign(t2) < 0) {
+    // Along s the orientation to t goes linearly from s1 to s2: it is 0 at the share s1 / (s1 - s2).
+    Int128 num = s1;
+    Int128 den = static_cast<Int128>(s1) - s2;
+    if (den < 0) {
+      num = -num;
+      den = -den;
+    }
+    const auto at = [&](std::int32_t a, std::int32_t b) {
+      return static_cast<std::int32_t>(a + round_half_up((static_cast<Int128>(b) - a) * num, den));
+    };
+    points.push_back({at(s.first.x, s.second.x), at(s.first.y, s.second.y)});
+    return true;
+  }
+  const bool common_end = s.first == t.first || s.first == t.second || s.second == t.first ||
+                          s.second == t.second;
+  const bool collinear = s1 == 0 && s2 == 0;
+  if (collinear) {
+    // They overlap if their boxes share more than a point.
+    const Box a = box_of(s);
+    const Box b = box_of(t);
+    const std::int64_t width = std::int64_t{std::min(a.max_x, b.max_x)} - std::max(a.min_x, b.min_x);
+    const std::int64_t height = std::int64_t{std::min(a.max_y, b.max_y)} - std::max(a.min_y, b.min_y);
+    return width >= 0 && height >= 0 && (width > 0 || height > 0);
+  }
+  return !common_end && box_of(s).intersects(box_of(t));
+}
+
+/// The segment meets the cell around `centre`, which owns its upper and left side but not its lower
+/// and right one, so that the cells share no point: like the rounding of crossings.
+bool passes_cell(const Segment& s, Point centre) {
+  // In half cells, so that the corners of the cell are integers; 33 bits need wide products.
+  const std::int64_t x = 2 * std::int64_t{centre.x};
+  const std::int64_t y = 2 * std::int64_t{centre.y};
+  const std::int64_t ax = 2 * std::int64_t{s.first.x};
+  const std::int64_t ay = 2 * std::int64_t{s.first.y};
+  const std::int64_t bx = 2 * std::int64_t{s.second.x};
+  const std::int64_t by = 2 * std::int64_t{s.second.y};
+  if (std::max(ax, bx) < x - 1 || std::min(ax, bx) >= x + 1) return false;
+  if (std::max(ay, by) < y - 1 || std::min(ay, by) >= y + 1) return false;
+  // The open sides are taken to lie a vanishing step further in: where a corner is on the line, the
+  // step decides on which side it is.
+  bool left = false;
+  bool right = false;
+  for (const int dx : {-1, 1}) {
+    for (const int dy : {-1, 1}) {
+      Int128 side = static_cast<Int128>(bx - ax) * (y + dy - ay) - static_cast<Int128>(by - ay) * (x + dx - ax);
+      if (side == 0) side = (dx > 0 ? by - ay : 0) - (dy > 0 ? bx - ax : 0);
+      left = left || side <= 0;
+      right = right || side >= 0;
+    }
+  }
+  return left && right;
+}
+
+struct Pass {
+  std::uint32_t segment;
+  Point hot;
+};
+
+}  // namespace
+
+std::vector<Segment> segments_of(const Rings& rings) {
+  std::vector<Segment> segments;
+  segments.reserve(rings.points.size());
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const auto ring = rings[r];
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      segments.emplace_back(ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
+    }
+  }
+  return segments;
+}
+
+std::vector<Segment> node_segments(std::vector<Segment> segments, std::size_t* crossings) {
+  order_by_place(segments);
+  const SegmentTree tree(segments);
+
+  std::vector<Point> hot;
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    tree.query(box_of(segments[i]), i + 1, [&](std::size_t k) {
+      met += add_crossing(segments[i], segments[k], hot);
+    });
+    hot.push_back(segments[i].first);
+    hot.push_back(segments[i].second);
+  }
+  if (crossings != nullptr) *crossings = met;
+  std::sort(hot.begin(), hot.end(), is_above);
+  hot.erase(std::unique(hot.begin(), hot.end()), hot.end());
+
+  std::vector<Pass> passes;
+  for (const Point p : hot) {
+    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch it.
+    const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
+    tree.query(around, 0, [&](std::size_t i) {
+      if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+    });
+  }
+  // Along each segment: by the distance of the cell's centre along the direction of the segment.
+  const auto along = [&](const Pass& pass) {
+    const Segment& s = segments[pass.segment];
+    return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) * (std::int64_t{pass.hot.x} - s.first.x) +
+           static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) * (std::int64_t{pass.hot.y} - s.first.y);
+  };
+  std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
+    if (a.segment != b.segment) return a.segment < b.segment;
+    const Int128 da = along(a);
+    const Int128 db = along(b);
+    return da != db ? da < db : is_above(a.hot, b.hot);
+  });
+
+  std::vector<Segment> pieces;
+  pieces.reserve(passes.size());
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    if (passes[i].segment != passes[i - 1].segment) continue;
+    const Point a = passes[i - 1].hot;
+    const Point b = passes[i].hot;
+    pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
+  }
+  std::sort(pieces.begin(), pieces.end(), [](const Segment& a, const Segment& b) {
+    return a.first != b.first ? is_above(a.first, b.first) : is_above(a.second, b.second);
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pieces.size();) {
+    std::size_t k = i;
+    while (k < pieces.size() && pieces[k] == pieces[i]) ++k;
+    if ((k - i) % 2 == 1) pieces[kept++] = pieces[i];
+    i = k;
+  }
+  pieces.resize(kept);
+  return pieces;
+}
+
+}  // namespace trapeze
