@@ -78,7 +78,7 @@ function make_map() {
     worldCopyJump: true,
     wheelPxPerZoomLevel: 120, // one notch of a mouse wheel is one zoom
   });
-  L.control.scale({ position: "bottomleft" }).addTo(map);
+  L.control.scale({ position: "bottomleft", imperial: false }).addTo(map);
   return map;
 }
 
