@@ -31,11 +31,12 @@ struct LoadReport {
   std::size_t polygons = 0;        // parts of multipolygons
   std::size_t rings = 0;
   std::size_t source_vertices = 0;
-  std::size_t vertices = 0;          // in the finished graphs
+  std::size_t vertices = 0;  // in the finished graphs
   std::size_t collapsed_rings = 0;
-  std::size_t repaired = 0;          // noded: crossings, touches, overlaps
-  std::vector<FeatureNote> notes;    // one for each skipped feature, the first hundred of repaired ones
-  double read_seconds = 0;           // wall time until the last feature was read
+  std::size_t repaired = 0;  // noded: crossings, touches, overlaps
+  std::vector<FeatureNote>
+      notes;                // one for each skipped feature, the first hundred of repaired ones
+  double read_seconds = 0;  // wall time until the last feature was read
   double total_seconds = 0;
 };
 

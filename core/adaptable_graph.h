@@ -1,0 +1,112 @@
+// One polygon's trapezoidal graph, adapted in place to any tolerance, forward and back (paper,
+// section 3.2).
+//
+// All vertices wait in a priority stack, ordered by weight and then by vertex. Adapting to a tolerance
+// pops every vertex of smaller weight and removes it, unless the topological consistency test blocks
+// it; a blocked vertex is tried again as soon as its blocker or one of its neighbours in the ring has
+// gone, and counts as of the weight that was popped last. So there is one fixed sequence of removals,
+// and the graph at a tolerance is a prefix of it: its state depends on the tolerance only, never on
+// what was asked before.
+//
+// Thread-safety: none; different graphs may be used by different threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/edit_log.h"
+#include "core/generalization.h"
+#include "core/topology_test.h"
+#include "core/trapezoidal_graph.h"
+#include "core/vertex_weight.h"
+
+namespace trapeze {
+
+struct GeneralizationOptions {
+  WeightRule weights = WeightRule::douglas_peucker;
+  Topology topology = Topology::strict;
+};
+
+/// The corners of a graph in the order in which they are to go, with what blocks them.
+class PriorityStack {
+ public:
+  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use.
+  void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options);
+
+  /// Makes the next removal that the sequence holds, through `log`; returns the tolerance that it
+  /// belongs to (cells): the graph at a tolerance has seen all removals of smaller ones. None if no
+  /// vertex of finite weight can go any more.
+  std::optional<double> remove_next(const TrapezoidalGraph& graph, EditLog& log);
+
+  struct Counts {
+    std::uint64_t removals = 0;
+    std::uint64_t tests = 0;     // decisions made
+    std::uint64_t walked = 0;    // trapezoids looked at in them
+    std::uint64_t touched = 0;   // trapezoids changed by removals
+  };
+  const Counts& counts() const { return counts_; }
+
+  /// Whether some decision so far was that a vertex is blocked.
+  bool has_blocked() const { return has_blocked_; }
+
+  /// The corner that went last, and how it went.
+  CornerId last_corner() const { return last_corner_; }
+  Removal last_removal() const { return last_removal_; }
+  double weight(CornerId c) const { return weights_[c]; }
+
+ private:
+  bool goes_before(CornerId a, CornerId b) const;
+  std::optional<CornerId> next_candidate();
+  void wait_for(CornerId corner, VertexId blocker);
+  void retry_waiting(VertexId gone);
+  void retry_if_blocked(CornerId corner);
+
+  const TrapezoidalGraph* graph_ = nullptr;
+  GeneralizationOptions options_;
+  Table<CornerId, double> weights_;
+  std::vector<CornerId> order_;
+  std::size_t position_ = 0;
+  double epsilon_ = 0;  // greatest weight popped
+
+  // Corners to try again, smallest first (a heap), and those blocked by each vertex.
+  enum class State : std::uint8_t { ahead, blocked, queued };
+  struct Waiting {
+    CornerId corner;
+    std::uint32_t next;
+  };
+  std::vector<CornerId> retries_;
+  Table<CornerId, State> state_;
+  Table<VertexId, std::uint32_t> waiting_first_;
+  std::vector<Waiting> waiting_;
+  VertexWeights ring_weights_;
+  std::vector<Point> ring_;
+  std::vector<CornerId> ring_corners_;
+  bool has_blocked_ = false;
+  CornerId last_corner_;
+  Removal last_removal_ = Removal::blocked;
+  Counts counts_;
+};
+
+class AdaptableGraph {
+ public:
+  explicit AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options = {});
+  AdaptableGraph(const AdaptableGraph&) = delete;
+  AdaptableGraph& operator=(const AdaptableGraph&) = delete;
+
+  /// Makes the graph the one of tolerance `epsilon` (cells, >= 0), forward or back.
+  void adapt_to(double epsilon);
+
+  const TrapezoidalGraph& graph() const { return graph_; }
+  const PriorityStack& stack() const { return stack_; }
+  std::size_t memory() const { return graph_.memory() + log_.memory(); }
+
+ private:
+  TrapezoidalGraph graph_;
+  EditLog log_;
+  PriorityStack stack_;
+  std::vector<double> epsilon_of_edit_;
+  bool exhausted_ = false;
+};
+
+}  // namespace trapeze
