@@ -180,7 +180,9 @@ constexpr bool is_blank(char c) {
 }
 
 // Letters of ASCII only, whatever the locale.
-constexpr char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; }
+constexpr char to_lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+}
 
 std::string_view strip(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
@@ -285,7 +287,8 @@ std::optional<Rgba> parse_arguments(std::string_view text) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i == 1) has_commas = arguments.take_separator(',');
     if (i == 1 && !has_commas && !arguments.skip_blanks()) return {};
-    if (i == 2 && !(has_commas ? arguments.take_separator(',') : arguments.skip_blanks())) return {};
+    if (i == 2 && !(has_commas ? arguments.take_separator(',') : arguments.skip_blanks()))
+      return {};
     const auto number = arguments.take_number();
     if (!number || (i > 0 && number->is_percentage != numbers[0].is_percentage)) return {};
     numbers[i] = *number;

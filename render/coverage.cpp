@@ -14,7 +14,9 @@ std::int32_t clamp_to_grid(double cells) {
       std::clamp(cells, static_cast<double>(kGridMin), static_cast<double>(kGridMax)));
 }
 
-bool is_off_grid(double from, double to) { return to < kGridMin || from > kGridMax; }
+bool is_off_grid(double from, double to) {
+  return to < kGridMin || from > kGridMax;
+}
 
 }  // namespace
 
@@ -58,7 +60,17 @@ void Coverage::resize(int width, int height) {
 }
 
 bool Coverage::is_all(std::uint8_t level) const {
-  return std::all_of(pixels_.begin(), pixels_.end(), [level](std::uint8_t p) { return p == level; });
+  return std::all_of(pixels_.begin(), pixels_.end(),
+                     [level](std::uint8_t p) { return p == level; });
+}
+
+// Written so that compilers turn it into vector instructions: it is run on every pixel.
+void to_levels(std::span<const float> sums, std::uint8_t* levels) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    float share = sums[i] > 0.0f ? sums[i] : 0.0f;
+    share = share < 1.0f ? share : 1.0f;
+    levels[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+  }
 }
 
 }  // namespace trapeze

@@ -17,7 +17,7 @@
 
 namespace trapeze {
 
-constexpr int kTilePixels = 256;  // side of a tile at scale 1
+constexpr int kTilePixels = 256;          // side of a tile at scale 1
 constexpr int kMaxPicturePixels = 16384;  // longest side of a picture
 
 /// What a picture shows. Pixel (column, row) is the square of cells that begins at
@@ -69,6 +69,9 @@ class Coverage {
   int height_ = 0;
   std::vector<std::uint8_t> pixels_;
 };
+
+/// The rounding at the end: sums of areas, 1 a whole pixel, to as many levels of coverage.
+void to_levels(std::span<const float> sums, std::uint8_t* levels);
 
 /// Some trapezoids of one mesh; looks at memory of the caller. The ranges lie within the mesh.
 struct MeshPart {

@@ -50,18 +50,30 @@ std::string text_or_empty(const void* text) {
 
 std::string_view egl_error_name(EGLint error) {
   switch (error) {
-    case EGL_SUCCESS: return "no error given";
-    case EGL_NOT_INITIALIZED: return "not initialized (missing driver or permission)";
-    case EGL_BAD_ACCESS: return "access denied, or current on another thread";
-    case EGL_BAD_ALLOC: return "out of resources";
-    case EGL_BAD_ATTRIBUTE: return "bad attribute";
-    case EGL_BAD_CONFIG: return "bad configuration";
-    case EGL_BAD_CONTEXT: return "bad context";
-    case EGL_BAD_DISPLAY: return "bad display";
-    case EGL_BAD_MATCH: return "no such kind of context";
-    case EGL_BAD_PARAMETER: return "bad parameter";
-    case EGL_CONTEXT_LOST: return "context lost";
-    default: return "unknown error";
+    case EGL_SUCCESS:
+      return "no error given";
+    case EGL_NOT_INITIALIZED:
+      return "not initialized (missing driver or permission)";
+    case EGL_BAD_ACCESS:
+      return "access denied, or current on another thread";
+    case EGL_BAD_ALLOC:
+      return "out of resources";
+    case EGL_BAD_ATTRIBUTE:
+      return "bad attribute";
+    case EGL_BAD_CONFIG:
+      return "bad configuration";
+    case EGL_BAD_CONTEXT:
+      return "bad context";
+    case EGL_BAD_DISPLAY:
+      return "bad display";
+    case EGL_BAD_MATCH:
+      return "no such kind of context";
+    case EGL_BAD_PARAMETER:
+      return "bad parameter";
+    case EGL_CONTEXT_LOST:
+      return "context lost";
+    default:
+      return "unknown error";
   }
 }
 
@@ -341,18 +353,22 @@ void try_preferred(const std::vector<ContextCandidate>& candidates, const std::s
 
 std::string_view name_of(ContextPath path) {
   switch (path) {
-    case ContextPath::egl_device: return "EGL device";
-    case ContextPath::egl_software_device: return "EGL software device";
-    case ContextPath::egl_surfaceless: return "EGL surfaceless";
-    case ContextPath::osmesa: return "OSMesa";
+    case ContextPath::egl_device:
+      return "EGL device";
+    case ContextPath::egl_software_device:
+      return "EGL software device";
+    case ContextPath::egl_surfaceless:
+      return "EGL surfaceless";
+    case ContextPath::osmesa:
+      return "OSMesa";
   }
   return "unknown";
 }
 
 std::string ContextCandidate::text() const {
   std::string text(name_of(path));
-  if (device_index >= 0) text += " " + std::to_string(device_index);
-  if (!device_name.empty()) text += " (" + device_name + ")";
+  if (device_index >= 0) text.append(" ").append(std::to_string(device_index));
+  if (!device_name.empty()) text.append(" (").append(device_name).append(")");
   return text;
 }
 

@@ -153,11 +153,16 @@ GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
 
 std::string_view gl_error_name(GLenum error) {
   switch (error) {
-    case GL_OUT_OF_MEMORY: return "out of memory";
-    case GL_INVALID_OPERATION: return "invalid operation";
-    case GL_INVALID_FRAMEBUFFER_OPERATION: return "invalid framebuffer operation";
-    case GL_CONTEXT_LOST: return "context lost";
-    default: return "error";
+    case GL_OUT_OF_MEMORY:
+      return "out of memory";
+    case GL_INVALID_OPERATION:
+      return "invalid operation";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "invalid framebuffer operation";
+    case GL_CONTEXT_LOST:
+      return "context lost";
+    default:
+      return "error";
   }
 }
 
@@ -167,8 +172,8 @@ void throw_on_gl_error(const GlFunctions& gl, const char* what) {
   if (error == GL_NO_ERROR) return;
   for (int i = 0; i < 8 && gl.GetError() != GL_NO_ERROR; ++i) {
   }
-  throw std::runtime_error(std::string("OpenGL: ") + std::string(gl_error_name(error)) +
-                           " while " + what);
+  throw std::runtime_error(std::string("OpenGL: ") + std::string(gl_error_name(error)) + " while " +
+                           what);
 }
 
 }  // namespace
@@ -344,8 +349,7 @@ void GlRenderer::draw_batch(const MeshView& mesh, std::uint32_t chunk) {
   gl_.BindTexture(GL_TEXTURE_BUFFER, trapezoids->texture);
   index_offsets_.resize(std::max(index_offsets_.size(), index_counts_.size()), nullptr);
   gl_.MultiDrawElementsBaseVertex(GL_TRIANGLES, index_counts_.data(), GL_UNSIGNED_SHORT,
-                                  index_offsets_.data(),
-                                  static_cast<GLsizei>(index_counts_.size()),
+                                  index_offsets_.data(), static_cast<GLsizei>(index_counts_.size()),
                                   base_vertices_.data());
   index_counts_.clear();
   base_vertices_.clear();
@@ -354,10 +358,7 @@ void GlRenderer::draw_batch(const MeshView& mesh, std::uint32_t chunk) {
 void GlRenderer::read_back(Coverage& out) {
   sums_.resize(out.pixels().size());
   gl_.ReadPixels(0, 0, out.width(), out.height(), GL_RED, GL_FLOAT, sums_.data());
-  std::uint8_t* pixels = out.row_begin(0);
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    pixels[i] = static_cast<std::uint8_t>(std::clamp(sums_[i], 0.0f, 1.0f) * 255.0f + 0.5f);
-  }
+  to_levels(sums_, out.row_begin(0));
 }
 
 }  // namespace trapeze

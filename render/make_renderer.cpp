@@ -39,7 +39,8 @@ Renderers make_gl_renderers(std::unique_ptr<GlContext> first, int count) {
 std::string join(const std::vector<RendererFailure>& failures) {
   std::string text;
   for (const RendererFailure& failure : failures) {
-    text += (text.empty() ? "" : "; ") + failure.what + ": " + failure.reason;
+    if (!text.empty()) text += "; ";
+    text.append(failure.what).append(": ").append(failure.reason);
   }
   return text;
 }
@@ -62,13 +63,13 @@ MadeRenderers make_renderers(const RendererOptions& options, int count) {
     return made;
   }
 
-  ContextSearch search = use_first_context(
-      {.egl = options.kind != RendererKind::osmesa,
-       .osmesa = options.kind != RendererKind::egl,
-       .device = options.device},
-      [&](std::unique_ptr<GlContext> context) {
-        made.renderers = make_gl_renderers(std::move(context), count);
-      });
+  ContextSearch search = use_first_context({.egl = options.kind != RendererKind::osmesa,
+                                            .osmesa = options.kind != RendererKind::egl,
+                                            .device = options.device},
+                                           [&](std::unique_ptr<GlContext> context) {
+                                             made.renderers =
+                                                 make_gl_renderers(std::move(context), count);
+                                           });
   for (ContextFailure& failure : search.failures) {
     made.failures.push_back({std::move(failure.candidate), std::move(failure.reason)});
   }

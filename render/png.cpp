@@ -18,9 +18,9 @@ constexpr std::size_t kMaxColours = 256;
 // that tRNS ends with the last of them.
 struct StoredPalette {
   std::vector<png_color> colours;
-  std::vector<png_byte> opacities;              // of the first colours; the others are opaque
+  std::vector<png_byte> opacities;                   // of the first colours; the others are opaque
   std::array<std::uint8_t, kMaxColours> index_of{};  // stored index of each index of the picture
-  int bits = 8;                                 // a pixel
+  int bits = 8;                                      // a pixel
 };
 
 StoredPalette pack_palette(const Picture& picture) {
@@ -48,8 +48,7 @@ void pack_row(const std::uint8_t* indices, int width, const StoredPalette& palet
   for (int column = 0; column < width; column += per_byte) {
     unsigned byte = 0;
     for (int i = 0; i < per_byte; ++i) {
-      const unsigned index =
-          column + i < width ? palette.index_of[indices[column + i]] : 0u;
+      const unsigned index = column + i < width ? palette.index_of[indices[column + i]] : 0u;
       byte = (byte << palette.bits) | index;
     }
     *row++ = static_cast<std::uint8_t>(byte);
@@ -134,9 +133,9 @@ bool write(png_structp png, png_infop info, Job& job) {
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
   png_set_compression_level(png, 1);
   png_set_compression_strategy(png, Z_DEFAULT_STRATEGY);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(job.width),
-               static_cast<png_uint_32>(job.height), job.bits, job.colour_type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(job.width), static_cast<png_uint_32>(job.height),
+               job.bits, job.colour_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   if (job.colour_type == PNG_COLOR_TYPE_PALETTE) {
     png_set_PLTE(png, info, job.palette.colours.data(),
                  static_cast<int>(job.palette.colours.size()));

@@ -43,6 +43,8 @@ class SoftwareRenderer final : public CoverageRenderer {
   void add_piece(const Piece& piece, float sign);
   void add_row(int row, double x_from, double x_to, double height, float sign);
   void resolve(Coverage& out);
+  template <int kRows>
+  void resolve_rows(int row, Coverage& out);
 
   int width_ = 0;
   int height_ = 0;

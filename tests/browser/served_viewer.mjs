@@ -1,0 +1,170 @@
+// A running `trapeze serve` with two small layers, and pages of a headless Chromium that show it.
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const HERE = dirname(fileURLToPath(import.meta.url));
+const WEB = join(HERE, "..", "..", "web");
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const SKIPPED = 77;
+const START_TIMEOUT_MS = 60_000; // sanitizers on a busy machine
+
+function skip(reason) {
+  console.log(`skipped: ${reason}`);
+  process.exit(SKIPPED);
+}
+
+function load_playwright() {
+  const require = createRequire(join(WEB, "package.json"));
+  try {
+    return require("playwright-core");
+  } catch {
+    return skip("playwright-core is not installed; run script/bootstrap");
+  }
+}
+
+function free_port() {
+  return new Promise((resolve, reject) => {
+    const probe = createServer();
+    probe.on("error", reject);
+    probe.listen(0, "127.0.0.1", () => {
+      const { port } = probe.address();
+      probe.close(() => resolve(port));
+    });
+  });
+}
+
+const config = (web_root) => `
+[server]
+address = "127.0.0.1"
+web_root = "${web_root}"
+
+[[layer]]
+name = "land"
+file = "${join(HERE, "land.geojson")}"
+title = "Land"
+attribution = 'Drawn by <a href="https://example.org/">hand</a>'
+style = { fill = "#d8c99b" }
+
+[[layer]]
+name = "lake"
+file = "${join(HERE, "lake.geojson")}"
+title = "Lake"
+style = { fill = "#4f8fba" }
+`;
+
+async function wait_until_ready(base, server) {
+  const end = Date.now() + START_TIMEOUT_MS;
+  while (Date.now() < end) {
+    if (server.process.exitCode !== null) break;
+    try {
+      if ((await fetch(`${base}ready`)).status === 200) return;
+    } catch {
+      // Not listening yet.
+    }
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  throw new Error(`trapeze serve did not get ready; it said:\n${server.output}`);
+}
+
+/** Starts the server on a free port; the result is closed with `close`. */
+export async function start_server() {
+  const binary = process.env.TRAPEZE_BINARY;
+  if (!binary) throw new Error("TRAPEZE_BINARY must name the program to test");
+  const folder = mkdtempSync(join(tmpdir(), "trapeze-viewer-"));
+  const web_root = join(folder, "web");
+  // Not web/dist: that is as old as the last run of script/bootstrap.
+  execFileSync(process.execPath, [join(WEB, "assemble.mjs"), web_root]);
+  const config_file = join(folder, "trapeze.toml");
+  writeFileSync(config_file, config(web_root));
+
+  const port = await free_port();
+  const child = spawn(binary, ["serve", "--config", config_file, "--port", String(port)], {
+    stdio: ["ignore", "pipe", "pipe"],
+  });
+  const server = { process: child, output: "", base: `http://127.0.0.1:${port}/` };
+  for (const stream of [child.stdout, child.stderr]) {
+    stream.on("data", (text) => (server.output += text));
+  }
+  child.on("error", (error) => (server.output += error.message));
+  const exited = new Promise((resolve) => child.on("exit", (code, signal) => resolve({ code, signal })));
+  server.close = async () => {
+    child.kill("SIGTERM");
+    const end = await exited;
+    rmSync(folder, { recursive: true });
+    return end;
+  };
+  try {
+    await wait_until_ready(server.base, server);
+  } catch (error) {
+    child.kill("SIGKILL");
+    throw error;
+  }
+  return server;
+}
+
+export async function start_browser() {
+  const { chromium } = load_playwright();
+  if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed; run script/bootstrap`);
+  return chromium.launch({
+    executablePath: CHROMIUM,
+    args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+}
+
+export const DESKTOP = { viewport: { width: 1280, height: 800 } };
+export const PHONE = {
+  viewport: { width: 390, height: 844 },
+  deviceScaleFactor: 2,
+  isMobile: true,
+  hasTouch: true,
+};
+
+/** A page in a context of its own that keeps what it asked for and what went wrong. */
+export async function new_page(browser, options = DESKTOP) {
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  const seen = { requests: [], tiles: [], errors: [] };
+  page.on("request", (request) => seen.requests.push(request.url()));
+  page.on("response", (response) => {
+    if (response.url().includes("/tiles/")) {
+      seen.tiles.push({ url: response.url(), status: response.status() });
+    }
+  });
+  page.on("console", (message) => {
+    if (message.type() === "error") seen.errors.push(message.text());
+  });
+  page.on("pageerror", (error) => seen.errors.push(String(error)));
+  return { page, seen };
+}
+
+/** Until every tile that is wanted has been drawn and no old one is left. */
+export async function tiles_drawn(page) {
+  await page.waitForFunction(() => {
+    const tiles = [...document.querySelectorAll("img.leaflet-tile")];
+    return tiles.length > 0 && tiles.every((tile) =>
+      tile.classList.contains("leaflet-tile-loaded") && tile.naturalWidth > 0 &&
+      getComputedStyle(tile).opacity === "1");
+  }, null, { timeout: 30_000 });
+}
+
+/**
+ * The addresses of the tiles on the page, sorted. In one step: a list of elements that is sent over
+ * first ($$eval) may hold tiles that have been taken away since.
+ */
+export function shown_tiles(page) {
+  return page.evaluate(() =>
+    [...document.querySelectorAll("img.leaflet-tile")].map((tile) => tile.src).sort());
+}
+
+export async function save_screenshot(page, name) {
+  const folder = process.env.TRAPEZE_SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`) });
+}

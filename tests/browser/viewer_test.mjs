@@ -1,0 +1,241 @@
+// The viewer in a headless Chromium, against a running server.
+import assert from "node:assert/strict";
+import test, { after, before } from "node:test";
+
+import {
+  PHONE, new_page, save_screenshot, shown_tiles, start_browser, start_server, tiles_drawn,
+} from "./served_viewer.mjs";
+
+// Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
+const FAILED_RESOURCE = /^Failed to load resource/;
+
+const browser = await start_browser();
+let server;
+
+before(async () => {
+  server = await start_server();
+});
+
+after(async () => {
+  await browser.close();
+  assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
+});
+
+async function open(hash = "", options = undefined) {
+  const { page, seen } = await new_page(browser, options);
+  await page.goto(server.base + hash);
+  await tiles_drawn(page);
+  return { page, seen };
+}
+
+const zoom_of = (tile_url) => Number(/\/tiles\/[^/]+\/(\d+)\//.exec(tile_url)[1]);
+const hash_of = (page) => page.evaluate(() => location.hash);
+const of_layer = (tiles, name) => tiles.filter((url) => url.includes(`/tiles/${name}/`));
+
+/** What every undisturbed visit must satisfy. */
+function assert_nothing_went_wrong(seen) {
+  assert.deepEqual(seen.errors, []);
+  assert.deepEqual(seen.requests.filter((url) => !url.startsWith(server.base)), [],
+    "nothing is fetched from elsewhere");
+  assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200 && status !== 304), []);
+}
+
+/** How many pixels of the layer's tiles have this colour and are not transparent. */
+function pixels_of_colour(page, name, [r, g, b]) {
+  return page.evaluate(([name, r, g, b]) => {
+    let count = 0;
+    for (const tile of document.querySelectorAll(`img.leaflet-tile[src*="/tiles/${name}/"]`)) {
+      const canvas = new OffscreenCanvas(tile.naturalWidth, tile.naturalHeight);
+      const context = canvas.getContext("2d");
+      context.drawImage(tile, 0, 0);
+      const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 250 && data[i] === r && data[i + 1] === g && data[i + 2] === b) count++;
+      }
+    }
+    return count;
+  }, [name, r, g, b]);
+}
+
+/** The other tiles that are shown after `action`. */
+async function new_tiles_after(page, action) {
+  const before_it = new Set(await shown_tiles(page));
+  const hash = await hash_of(page);
+  await action();
+  await page.waitForFunction((old) => location.hash !== old, hash);
+  await tiles_drawn(page);
+  return (await shown_tiles(page)).filter((url) => !before_it.has(url));
+}
+
+test("shows every layer over the others, in its colour, with its attribution", async () => {
+  const { page, seen } = await open();
+  const tiles = await shown_tiles(page);
+  assert.ok(of_layer(tiles, "land").length > 0);
+  assert.ok(of_layer(tiles, "lake").length > 0);
+  assert.deepEqual(await page.locator("#layers .name").allInnerTexts(), ["Lake", "Land"]);
+  assert.ok((await pixels_of_colour(page, "land", [0xd8, 0xc9, 0x9b])) > 1000);
+  assert.ok((await pixels_of_colour(page, "lake", [0x4f, 0x8f, 0xba])) > 1000);
+  const attribution = page.locator(".leaflet-control-attribution");
+  assert.equal(await attribution.innerText(), "Leaflet | Drawn by hand");
+  assert.equal(await attribution.getByText("hand").getAttribute("href"), "https://example.org/");
+  await save_screenshot(page, "desktop");
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("a drag brings new tiles and another address", async () => {
+  const { page, seen } = await open("#7/46/10");
+  const tiles = await new_tiles_after(page, async () => {
+    await page.mouse.move(300, 600);
+    await page.mouse.down();
+    await page.mouse.move(800, 350, { steps: 8 });
+    await page.mouse.up();
+  });
+  assert.ok(tiles.length > 0);
+  assert.deepEqual([...new Set(tiles.map(zoom_of))], [7]);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("the zoom button, the wheel and the keyboard bring tiles of the next zoom", async () => {
+  const { page, seen } = await open("#5/46/10");
+  const zooms = async (action) => [...new Set((await new_tiles_after(page, action)).map(zoom_of))];
+  assert.deepEqual(await zooms(() => page.click(".leaflet-control-zoom-in")), [6]);
+  await page.mouse.move(640, 400);
+  assert.deepEqual(await zooms(() => page.mouse.wheel(0, -120)), [7]);
+  await page.focus("#map");
+  assert.deepEqual(await zooms(() => page.keyboard.press("+")), [8]);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("an address shows the same place again", async () => {
+  const { page, seen } = await open("#6/46.5/9.25");
+  await page.focus("#map");
+  await new_tiles_after(page, async () => {
+    for (let i = 0; i < 4; i++) await page.keyboard.press("ArrowRight");
+  });
+  const hash = await hash_of(page);
+  const tiles = await shown_tiles(page);
+  await page.reload();
+  await tiles_drawn(page);
+  assert.equal(await hash_of(page), hash);
+  assert.deepEqual(await shown_tiles(page), tiles);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("a layer can be switched off and coloured, and the address keeps it", async () => {
+  const { page, seen } = await open("#5/46/10");
+  await page.getByLabel("Colour of Land").fill("#ff0000");
+  await page.waitForFunction(() => location.hash.includes("style=land,ff0000,1"));
+  await page.waitForFunction(() => ![...document.images].some((i) => /land.*fill=d8c99b/.test(i.src)));
+  await tiles_drawn(page);
+  assert.ok((await pixels_of_colour(page, "land", [255, 0, 0])) > 1000);
+
+  await page.getByLabel("Lake", { exact: true }).uncheck();
+  assert.deepEqual(of_layer(await shown_tiles(page), "lake"), []);
+
+  await page.reload();
+  await tiles_drawn(page);
+  const tiles = await shown_tiles(page);
+  assert.deepEqual(of_layer(tiles, "lake"), []);
+  assert.ok(of_layer(tiles, "land").every((url) => url.includes("fill=ff0000")));
+  assert.equal(await page.getByLabel("Lake", { exact: true }).isChecked(), false);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("typing another address moves the map and switches layers", async () => {
+  const { page, seen } = await open("#5/46/10");
+  await page.evaluate(() => (location.hash = "#8/45/6&on=lake"));
+  await page.waitForSelector('img[src*="/tiles/lake/8/"]');
+  await tiles_drawn(page);
+  assert.deepEqual(of_layer(await shown_tiles(page), "land"), []);
+  assert.deepEqual([...new Set((await shown_tiles(page)).map(zoom_of))], [8]);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("a phone gets dense tiles, a folded panel and controls for fingers", async () => {
+  const { page, seen } = await open("#5/46/10", PHONE);
+  assert.ok((await shown_tiles(page)).every((url) => url.includes("@2x.png")));
+  assert.equal(await page.$eval("img.leaflet-tile", (tile) => tile.naturalWidth), 512);
+  assert.equal(await page.locator("#panel-body").isVisible(), false);
+  await save_screenshot(page, "phone");
+  await page.tap("#panel-toggle");
+  assert.equal(await page.locator("#panel-body").isVisible(), true);
+  for (const control of ["#panel-toggle", ".leaflet-control-zoom-in", "#layers .name",
+    "#layers input[type=color]"]) {
+    const { width, height } = await page.locator(control).first().boundingBox();
+    assert.ok(width >= 40 && height >= 40, `${control} is ${width} x ${height}`);
+  }
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await save_screenshot(page, "phone-layers");
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("nothing that a catalog says becomes markup", async () => {
+  const { page, seen } = await new_page(browser);
+  const evil = `<img src=x onerror="window.harmed=1"><script>window.harmed=1</script>`;
+  await page.route("**/catalog", (route) => route.fulfill({
+    json: {
+      layers: [{
+        name: "land", title: evil, description: evil, bounds: [0, 40, 20, 55], features: evil,
+        attribution: `${evil}<a href="javascript:window.harmed=1">one</a> ` +
+          `<a href="https://example.org/" onclick="window.harmed=1"><b>two</b></a>`,
+      }, { name: 7 }, null, { name: "lake", bounds: "none", style: { fill: "url(x)" } }],
+      renderer: evil,
+    },
+  }));
+  await page.goto(server.base);
+  await tiles_drawn(page);
+  assert.equal(await page.evaluate(() => window.harmed), undefined);
+  assert.equal(await page.locator("#panel img").count(), 1, "the icon of the page alone");
+  assert.equal(await page.locator("#layers li").count(), 2);
+  assert.equal((await page.locator("#layers .name").allInnerTexts())[1], evil);
+  const attribution = page.locator(".leaflet-control-attribution");
+  assert.equal(await attribution.innerText(), "Leaflet | one two");
+  assert.deepEqual(await attribution.locator("a").evaluateAll((links) => links.map((l) => l.href)),
+    ["https://leafletjs.com/", "https://example.org/"]);
+  assert.equal(await attribution.locator("[onclick], img, b").count(), 0);
+  assert_nothing_went_wrong(seen);
+  await page.context().close();
+});
+
+test("a server that is not ready or not there is waited for, in words", async () => {
+  const { page, seen } = await new_page(browser);
+  const answers = [
+    (route) => route.fulfill({ status: 503, headers: { "Retry-After": "1" } }),
+    (route) => route.abort(),
+    (route) => route.fulfill({ body: "no JSON" }),
+    (route) => route.continue(),
+  ];
+  await page.route("**/catalog", (route) => answers.shift()(route));
+  await page.goto(server.base);
+  const status = page.locator("#status");
+  await status.getByText("still reading its layers").waitFor();
+  await status.getByText("cannot be reached").waitFor();
+  await status.getByText("cannot be understood").waitFor({ timeout: 10_000 });
+  await tiles_drawn(page);
+  assert.equal(await status.isVisible(), false);
+  assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
+  await page.context().close();
+});
+
+test("a tile that fails is asked for again", async () => {
+  const { page, seen } = await new_page(browser);
+  let failures = 2;
+  await page.route("**/tiles/lake/**", (route) =>
+    failures-- > 0 ? route.fulfill({ status: 503 }) : route.continue());
+  await page.goto(server.base + "#5/46/10");
+  await tiles_drawn(page);
+  const failed = seen.tiles.filter(({ status }) => status === 503).map(({ url }) => url);
+  assert.equal(failed.length, 2);
+  for (const url of failed) {
+    assert.ok(seen.tiles.some((tile) => tile.url === url && tile.status === 200), url);
+  }
+  assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
+  await page.context().close();
+});
