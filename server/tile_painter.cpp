@@ -39,7 +39,7 @@ std::optional<PaintedTile> TilePainter::paint(const TilePlan& plan, Deadline dea
     const Layer& layer = *plan.dataset->layers()[paint.layer].layer;
     {
       const Stopwatch stopwatch(tile.times.select_ms);
-      layer.select(box, plan.level(), ranges_);
+      layer.select(box, plan.level(), SmallPolygons::dust, ranges_);
     }
     if (ranges_.empty()) continue;  // there is nothing of this layer here
     const Stopwatch stopwatch(tile.times.draw_ms);

@@ -41,7 +41,7 @@ Rgba fill_of_layer(const StyleQuery& query, const LayerConfig& config, std::size
 Level TilePlan::level() const {
   const double cells_per_pixel =
       static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
-  return level_of_epsilon(kTolerancePixels * cells_per_pixel);
+  return nearest_level(kTolerancePixels * cells_per_pixel);
 }
 
 std::string TilePlan::key() const {
