@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/edit_log.h"
@@ -50,9 +51,11 @@ class PriorityStack {
   /// Whether some decision so far was that a vertex is blocked.
   bool has_blocked() const { return has_blocked_; }
 
-  /// The corner that went last, and how it went.
+  /// The corner that went last, how it went, and, if its whole loop went, the longest side of the
+  /// triangle that was left of it.
   CornerId last_corner() const { return last_corner_; }
   Removal last_removal() const { return last_removal_; }
+  std::pair<VertexId, VertexId> last_side() const { return last_side_; }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:
@@ -85,6 +88,7 @@ class PriorityStack {
   bool has_blocked_ = false;
   CornerId last_corner_;
   Removal last_removal_ = Removal::blocked;
+  std::pair<VertexId, VertexId> last_side_;
   Counts counts_;
 };
 

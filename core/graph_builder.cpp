@@ -31,11 +31,12 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
 }
 
 bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome) {
-  // One pass of snap rounding leaves nothing to do but for ties on the borders of cells.
-  constexpr int kMaxPasses = 8;
+  // The quick way first; the second pass is certain to be enough, the others are for safety.
+  constexpr int kMaxPasses = 4;
   std::vector<Segment> segments = segments_of(rings);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
-    segments = node_segments(std::move(segments));
+    segments = node_segments(std::move(segments),
+                             pass == 0 ? HotCells::crossings : HotCells::crossings_and_vertices);
     if (segments.empty()) return false;  // everything cancelled: no area
     boundary_.assign(segments);
     if (trapezoidation_.build(boundary_, graph)) {

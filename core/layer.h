@@ -15,8 +15,17 @@
 
 namespace trapeze {
 
+/// What becomes of polygons, and of holes, that are too small for a tolerance.
+enum class SmallPolygons : std::uint8_t {
+  dust,  // their area is kept as coverage where they were
+  keep,  // the caller draws them large enough to be seen, see Layer::small_polygons
+  drop,  // they are left out
+};
+
 class Layer {
  public:
+  static constexpr std::uint32_t kNoFeature = 0xffffffff;
+
   struct Contents;  // the stored arrays; made by LayerBuilder
 
   explicit Layer(std::unique_ptr<const Contents> contents);
@@ -29,15 +38,30 @@ class Layer {
   const Box& bounds() const;
   const MeshView& mesh() const;
 
-  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, as disjoint
-  /// ranges in ascending order. Never leaves out a trapezoid whose interior meets the box; may name
-  /// a few that do not.
-  void select(const Box& box, Level level, std::vector<TrapezoidRange>& ranges) const;
+  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, with or without
+  /// those that stand for dust, as disjoint ranges in ascending order. Never leaves out a trapezoid
+  /// whose interior meets the box; may name a few that do not. In a trapezoid of dust that stands for
+  /// holes, left and right edge have changed places: its area is negative.
+  void select(const Box& box, Level level, SmallPolygons small, std::vector<TrapezoidRange>& ranges) const;
 
-  /// The row, in features(), of the polygon that a trapezoid is a part of.
+  /// Replaces `places` by boxes around what is left of the small polygons in and near `box` at
+  /// `level`, several in one pixel taken together.
+  void small_polygons(const Box& box, Level level, std::vector<Box>& places) const;
+
+  /// The row, in features(), of the polygon that a trapezoid is a part of; kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 
-  /// Heap memory held by geometry, index and attributes, in bytes.
+  /// Figures for reports: vertices at full detail, and versions of trapezoids and of edges, dust
+  /// counted apart.
+  struct Size {
+    std::size_t vertices = 0;
+    std::size_t trapezoids = 0;
+    std::size_t edges = 0;
+    std::size_t motes = 0;
+  };
+  Size size() const;
+
+  /// Heap memory held by geometry and index, in bytes; attributes are counted by features().memory().
   std::size_t memory() const;
 
  private:

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
+#include "core/dust.h"
+#include "core/history.h"
 #include "core/layer_contents.h"
 
 namespace trapeze {
@@ -11,36 +14,18 @@ namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffff;
 
-/// What one builder holds: the meshes of its features one after another, each with indices of its own.
+/// What one builder holds: the histories of its features one after another.
 struct Stock {
   struct Part {
     std::uint32_t row;
     std::size_t vertices;  // where its arrays begin
     std::size_t edges;
     std::size_t trapezoids;
+    std::size_t grains;
   };
   std::vector<Part> parts;
-  std::vector<Point> vertices;
-  std::vector<MeshEdge> edges;
-  std::vector<MeshTrapezoid> trapezoids;
-  std::vector<Lifespan> lifespans;
+  History history;
 };
-
-/// Appends the inside nodes of a graph, alive at all levels.
-void append_mesh(const TrapezoidalGraph& graph, std::uint32_t row, Stock& stock) {
-  stock.parts.push_back({row, stock.vertices.size(), stock.edges.size(), stock.trapezoids.size()});
-  for (std::size_t v = 1; v <= graph.vertex_count(); ++v) stock.vertices.push_back(graph.point(VertexId(v)));
-  for (std::size_t e = 0; e + 2 < graph.edges().size(); ++e) {
-    const Edge& edge = graph.edge(EdgeId(e));
-    stock.edges.push_back({edge.end[kUp].value - 1, edge.end[kDown].value - 1});
-  }
-  for (const NodeId n : graph.inside_nodes()) {
-    const Node& node = graph.node(n);
-    stock.trapezoids.push_back({node.end[kUp].value - 1, node.end[kDown].value - 1,
-                                node.edge[kLeft].value, node.edge[kRight].value});
-    stock.lifespans.push_back({});
-  }
-}
 
 /// The parts of all builders in the order of features.
 struct PartOf {
@@ -66,23 +51,30 @@ std::span<const T> part_of(const std::vector<T>& all, const Stock& stock, std::s
   return std::span<const T>(all).subspan(from, to - from);
 }
 
-void concatenate(const std::vector<PartOf>& parts, Layer::Contents& layer) {
+/// Lays the histories one after another; returns their grains.
+std::vector<Grain> concatenate(const std::vector<PartOf>& parts, Layer::Contents& layer) {
+  std::vector<Grain> all_grains;
   for (const auto& [stock, p] : parts) {
-    const auto vertex_base = static_cast<std::uint32_t>(layer.vertices.size());
-    const auto edge_base = static_cast<std::uint32_t>(layer.edges.size());
-    const auto vertices = part_of(stock->vertices, *stock, p, &Stock::Part::vertices);
+    const History& history = stock->history;
+    // From indices of the stock to indices of the layer; wraps around where that is negative.
+    const auto vertex_shift = static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
+    const auto edge_shift = static_cast<std::uint32_t>(layer.edges.size() - stock->parts[p].edges);
+    const auto vertices = part_of(history.vertices, *stock, p, &Stock::Part::vertices);
     layer.vertices.insert(layer.vertices.end(), vertices.begin(), vertices.end());
-    for (const MeshEdge e : part_of(stock->edges, *stock, p, &Stock::Part::edges)) {
-      layer.edges.push_back({e.upper + vertex_base, e.lower + vertex_base});
+    for (const MeshEdge e : part_of(history.edges, *stock, p, &Stock::Part::edges)) {
+      layer.edges.push_back({e.upper + vertex_shift, e.lower + vertex_shift});
     }
-    for (const MeshTrapezoid& t : part_of(stock->trapezoids, *stock, p, &Stock::Part::trapezoids)) {
-      layer.trapezoids.push_back(
-          {t.top + vertex_base, t.bottom + vertex_base, t.left + edge_base, t.right + edge_base});
+    for (const MeshTrapezoid& t : part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
+      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift, t.left + edge_shift,
+                                  t.right + edge_shift});
       layer.feature_of.push_back(stock->parts[p].row);
     }
-    const auto lifespans = part_of(stock->lifespans, *stock, p, &Stock::Part::trapezoids);
+    const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
+    const auto grains = part_of(history.grains, *stock, p, &Stock::Part::grains);
+    all_grains.insert(all_grains.end(), grains.begin(), grains.end());
   }
+  return all_grains;
 }
 
 template <class T>
@@ -93,14 +85,13 @@ void permute(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
   items.swap(moved);
 }
 
-/// Orders trapezoids for the index; leaves out those without height, which are never drawn.
+/// Orders trapezoids for the index.
 void order_trapezoids(Layer::Contents& layer) {
   const MeshView view{0, layer.vertices, layer.edges, layer.trapezoids};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   keys.reserve(layer.trapezoids.size());
   for (std::size_t i = 0; i < layer.trapezoids.size(); ++i) {
     const MeshTrapezoid& t = layer.trapezoids[i];
-    if (layer.vertices[t.top].y == layer.vertices[t.bottom].y) continue;
     keys.emplace_back(order_key(box_of(view, t), layer.lifespans[i]), static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
@@ -154,6 +145,41 @@ void order_edges_and_vertices(Layer::Contents& layer) {
   layer.vertices.swap(vertices);
 }
 
+/// The square of a mote as a trapezoid; one of negative area has its edges changed round.
+void append_mote(const Mote& mote, Layer::Contents& layer) {
+  const double area = std::abs(mote.area);
+  const double width = std::max(1.0, std::round(std::sqrt(area)));
+  const double height = std::max(1.0, std::round(area / width));
+  const auto cell = [](double v) {
+    return static_cast<std::int32_t>(std::clamp(std::round(v), double{kGridMin}, double{kGridMax}));
+  };
+  const std::int32_t x0 = cell(mote.x - width / 2);
+  const std::int32_t y0 = cell(mote.y - height / 2);
+  const std::int32_t x1 = cell(x0 + width);
+  const std::int32_t y1 = cell(y0 + height);
+  const auto v = static_cast<std::uint32_t>(layer.vertices.size());
+  const auto e = static_cast<std::uint32_t>(layer.edges.size());
+  layer.vertices.insert(layer.vertices.end(), {{x0, y0}, {x0, y1}, {x1, y0}, {x1, y1}});
+  layer.edges.insert(layer.edges.end(), {{v, v + 1}, {v + 2, v + 3}});
+  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1} : MeshTrapezoid{v, v + 3, e + 1, e});
+  layer.lifespans.push_back(mote.lifespan);
+}
+
+void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+  for (std::size_t i = 0; i < motes.size(); ++i) {
+    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)), static_cast<std::int32_t>(std::lround(motes[i].y))};
+    keys.emplace_back(order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan), static_cast<std::uint32_t>(i));
+  }
+  std::sort(keys.begin(), keys.end());
+  layer.vertices.reserve(layer.vertices.size() + 4 * motes.size());
+  layer.edges.reserve(layer.edges.size() + 2 * motes.size());
+  layer.trapezoids.reserve(layer.trapezoids.size() + motes.size());
+  layer.lifespans.reserve(layer.lifespans.size() + motes.size());
+  for (const auto& [key, i] : keys) append_mote(motes[i], layer);
+}
+
+/// Counted from 1 on, so that 0 is never the id of a mesh.
 std::uint64_t next_mesh_id() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
@@ -162,19 +188,27 @@ std::uint64_t next_mesh_id() {
 }  // namespace
 
 struct LayerBuilder::State {
+  GeneralizationOptions options;
   Stock stock;
   GraphBuilder graph_builder;
   TrapezoidalGraph graph;
+  HistoryRecorder recorder;
 };
 
-LayerBuilder::LayerBuilder() : state_(std::make_unique<State>()) {}
+LayerBuilder::LayerBuilder(const GeneralizationOptions& options) : state_(std::make_unique<State>()) {
+  state_->options = options;
+}
 LayerBuilder::~LayerBuilder() = default;
 LayerBuilder::LayerBuilder(LayerBuilder&&) noexcept = default;
 LayerBuilder& LayerBuilder::operator=(LayerBuilder&&) noexcept = default;
 
 BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   BuildOutcome outcome = state_->graph_builder.build(rings, state_->graph);
-  if (outcome.built) append_mesh(state_->graph, row, state_->stock);
+  if (!outcome.built) return outcome;
+  Stock& stock = state_->stock;
+  stock.parts.push_back({row, stock.history.vertices.size(), stock.history.edges.size(),
+                         stock.history.trapezoids.size(), stock.history.grains.size()});
+  state_->recorder.record(state_->graph, state_->options, stock.history);
   return outcome;
 }
 
@@ -182,15 +216,23 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, F
   auto layer = std::make_unique<Layer::Contents>();
   std::vector<const Stock*> stocks;
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
-  concatenate(in_order_of_rows(stocks), *layer);
-  for (LayerBuilder& builder : builders) builder.state_ = std::make_unique<State>();
+  const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), *layer);
+  for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);
 
   order_trapezoids(*layer);
   order_edges_and_vertices(*layer);
   for (const Point p : layer->vertices) layer->bounds.include(p);
+  const auto polygons = static_cast<std::uint32_t>(layer->trapezoids.size());
+  layer->size = {layer->vertices.size(), layer->trapezoids.size(), layer->edges.size(), 0};
+  append_dust(settle(grains), *layer);
+  layer->polygons = {0, polygons};
+  layer->dust = {polygons, static_cast<std::uint32_t>(layer->trapezoids.size()) - polygons};
+  layer->size.motes = layer->dust.count;
+
   layer->features = std::move(features);
   layer->view = MeshView{next_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
-  layer->index = MeshIndex(layer->view, layer->lifespans);
+  layer->polygon_index = MeshIndex(layer->view, layer->polygons, layer->lifespans);
+  layer->dust_index = MeshIndex(layer->view, layer->dust, layer->lifespans);
   return std::make_unique<Layer>(std::move(layer));
 }
 

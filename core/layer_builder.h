@@ -1,4 +1,5 @@
-// From rings to a layer: every feature's polygon is trapezoidated and its graph stored for drawing.
+// From rings to a layer: every feature's polygon is trapezoidated, generalized through all levels, and
+// the history of its graph stored for drawing.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/feature_table.h"
 #include "core/graph_builder.h"
 #include "core/layer.h"
@@ -19,7 +21,7 @@ namespace trapeze {
 /// feature.
 class LayerBuilder {
  public:
-  LayerBuilder();
+  explicit LayerBuilder(const GeneralizationOptions& options = {});
   ~LayerBuilder();
   LayerBuilder(LayerBuilder&&) noexcept;
   LayerBuilder& operator=(LayerBuilder&&) noexcept;

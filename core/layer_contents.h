@@ -13,10 +13,14 @@ struct Layer::Contents {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
   std::vector<MeshTrapezoid> trapezoids;
-  std::vector<Lifespan> lifespans;       // by trapezoid
-  std::vector<std::uint32_t> feature_of;  // by trapezoid
+  std::vector<Lifespan> lifespans;        // by trapezoid
+  std::vector<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // looks at the arrays above
-  MeshIndex index;
+  TrapezoidRange polygons;                // trapezoids of polygons, then
+  TrapezoidRange dust;                    // trapezoids of dust
+  MeshIndex polygon_index;
+  MeshIndex dust_index;
+  Size size;
   Box bounds;
   FeatureTable features;
 };

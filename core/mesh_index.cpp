@@ -25,8 +25,8 @@ Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, st
   return {std::min(x0, x1), std::max(x0, x1)};
 }
 
-/// Four levels, an octave, to a class; the untouched and the undying are classes of their own.
-unsigned lifespan_class(Level level) { return (level + 3u) / 4u; }
+/// An octave of levels to a class; the untouched and the undying are classes of their own.
+unsigned lifespan_class(Level level) { return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave; }
 
 }  // namespace
 
@@ -52,14 +52,15 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan) {
          (std::uint64_t{lifespan_class(lifespan.dies)} << 38) | (size << 32) | hilbert(centre);
 }
 
-MeshIndex::MeshIndex(const MeshView& mesh, std::span<const Lifespan> lifespans)
-    : count_(mesh.trapezoids.size()) {
-  std::vector<Entry> entries((count_ + kFanout - 1) / kFanout);
-  for (std::size_t i = 0; i < count_; ++i) {
+MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans)
+    : range_(range) {
+  std::vector<Entry> entries((range.count + kFanout - 1) / kFanout);
+  for (std::size_t i = 0; i < range.count; ++i) {
     Entry& entry = entries[i / kFanout];
-    entry.box.include(box_of(mesh, mesh.trapezoids[i]));
-    entry.min_born = std::min(entry.min_born, lifespans[i].born);
-    entry.max_dies = std::max(entry.max_dies, lifespans[i].dies);
+    const std::size_t t = range.first + i;
+    entry.box.include(box_of(mesh, mesh.trapezoids[t]));
+    entry.min_born = std::min(entry.min_born, lifespans[t].born);
+    entry.max_dies = std::max(entry.max_dies, lifespans[t].dies);
   }
   heights_.push_back(std::move(entries));
   while (heights_.back().size() > 1) {
@@ -77,8 +78,7 @@ MeshIndex::MeshIndex(const MeshView& mesh, std::span<const Lifespan> lifespans)
 
 void MeshIndex::select(const Box& box, Level level, std::span<const Lifespan> lifespans,
                        std::vector<TrapezoidRange>& ranges) const {
-  ranges.clear();
-  if (count_ == 0) return;
+  if (range_.count == 0) return;
   descend(heights_.size() - 1, 0, Query{box, level, lifespans, ranges});
 }
 
@@ -92,8 +92,8 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
     for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, query);
     return;
   }
-  const std::size_t end = std::min(begin + kFanout, count_);
-  for (std::size_t i = begin; i < end; ++i) {
+  const std::size_t end = std::min<std::size_t>(begin + kFanout, range_.count);
+  for (std::size_t i = range_.first + begin; i < range_.first + end; ++i) {
     if (!query.lifespans[i].contains(query.level)) continue;
     const auto id = static_cast<std::uint32_t>(i);
     if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {

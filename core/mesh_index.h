@@ -23,10 +23,10 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan);
 class MeshIndex {
  public:
   MeshIndex() = default;
-  /// Both spans are as long as the mesh has trapezoids.
-  MeshIndex(const MeshView& mesh, std::span<const Lifespan> lifespans);
+  /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh.
+  MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans);
 
-  /// Replaces `ranges` by the trapezoids that live at `level` and may meet `box`, as disjoint ranges in
+  /// Appends to `ranges` the trapezoids that live at `level` and may meet `box`, as disjoint ranges in
   /// ascending order.
   void select(const Box& box, Level level, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
@@ -49,7 +49,7 @@ class MeshIndex {
   };
   void descend(std::size_t height, std::size_t index, const Query& query) const;
 
-  std::size_t count_ = 0;
+  TrapezoidRange range_;
   std::vector<std::vector<Entry>> heights_;  // [0]: over trapezoids; each next over the one before
 };
 

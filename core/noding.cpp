@@ -108,15 +108,15 @@ Int128 round_half_up(Int128 a, Int128 b) {
 
 int sign(std::int64_t v) { return (v > 0) - (v < 0); }
 
-/// Appends the rounded crossing of two segments that cross in their interiors. Touches need no
-/// point: there the hot cell is that of the touching vertex. Returns whether they meet other than at
-/// a common end.
-bool add_crossing(const Segment& s, const Segment& t, std::vector<Point>& points) {
+/// Appends where two segments meet, other than at a common end: the rounded crossing of their
+/// interiors, or the ends of one that lie on the other.
+void add_meetings(const Segment& s, const Segment& t, std::vector<Point>& points) {
   const std::int64_t s1 = orientation(t.first, t.second, s.first);
   const std::int64_t s2 = orientation(t.first, t.second, s.second);
+  if (sign(s1) * sign(s2) > 0) return;
   const std::int64_t t1 = orientation(s.first, s.second, t.first);
   const std::int64_t t2 = orientation(s.first, s.second, t.second);
-  if (sign(s1) * sign(s2) > 0 || sign(t1) * sign(t2) > 0) return false;
+  if (sign(t1) * sign(t2) > 0) return;
   if (sign(s1) * sign(s2) < 0 && sign(t1) * sign(t2) < 0) {
     // Along s the orientation to t goes linearly from s1 to s2: it is 0 at the share s1 / (s1 - s2).
     Int128 num = s1;
@@ -129,20 +129,16 @@ bool add_crossing(const Segment& s, const Segment& t, std::vector<Point>& points
       return static_cast<std::int32_t>(a + round_half_up((static_cast<Int128>(b) - a) * num, den));
     };
     points.push_back({at(s.first.x, s.second.x), at(s.first.y, s.second.y)});
-    return true;
+    return;
   }
-  const bool common_end = s.first == t.first || s.first == t.second || s.second == t.first ||
-                          s.second == t.second;
-  const bool collinear = s1 == 0 && s2 == 0;
-  if (collinear) {
-    // They overlap if their boxes share more than a point.
-    const Box a = box_of(s);
-    const Box b = box_of(t);
-    const std::int64_t width = std::int64_t{std::min(a.max_x, b.max_x)} - std::max(a.min_x, b.min_x);
-    const std::int64_t height = std::int64_t{std::min(a.max_y, b.max_y)} - std::max(a.min_y, b.min_y);
-    return width >= 0 && height >= 0 && (width > 0 || height > 0);
-  }
-  return !common_end && box_of(s).intersects(box_of(t));
+  const auto add_end = [&points](Point p, std::int64_t side, const Segment& other) {
+    if (side != 0 || p == other.first || p == other.second) return;
+    if (box_of(other).intersects(Box{p.x, p.y, p.x, p.y})) points.push_back(p);
+  };
+  add_end(s.first, s1, t);
+  add_end(s.second, s2, t);
+  add_end(t.first, t1, s);
+  add_end(t.second, t2, s);
 }
 
 /// The segment meets the cell around `centre`, which owns its upper and left side but not its lower
@@ -172,10 +168,76 @@ bool passes_cell(const Segment& s, Point centre) {
   return left && right;
 }
 
+/// A hot cell on the way of a segment.
 struct Pass {
   std::uint32_t segment;
   Point hot;
 };
+
+std::vector<Point> hot_cells(const std::vector<Segment>& segments, const SegmentTree& tree, HotCells cells) {
+  std::vector<Point> hot;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    tree.query(box_of(segments[i]), i + 1, [&](std::size_t k) { add_meetings(segments[i], segments[k], hot); });
+    if (cells == HotCells::crossings_and_vertices) {
+      hot.push_back(segments[i].first);
+      hot.push_back(segments[i].second);
+    }
+  }
+  std::sort(hot.begin(), hot.end(), is_above);
+  hot.erase(std::unique(hot.begin(), hot.end()), hot.end());
+  return hot;
+}
+
+/// All passes, by segment.
+std::vector<Pass> find_passes(const std::vector<Segment>& segments, const SegmentTree& tree,
+                              const std::vector<Point>& hot) {
+  std::vector<Pass> passes;
+  for (const Point p : hot) {
+    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch it.
+    const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
+    tree.query(around, 0, [&](std::size_t i) {
+      if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+    });
+  }
+  std::stable_sort(passes.begin(), passes.end(),
+                   [](const Pass& a, const Pass& b) { return a.segment < b.segment; });
+  return passes;
+}
+
+void add_piece(Point a, Point b, std::vector<Segment>& pieces) {
+  if (a != b) pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
+}
+
+/// Appends the pieces of a segment that passes the cells of [begin, end), which are put in order along
+/// the segment: by the distance of the centre in its direction.
+void add_pieces(const Segment& s, std::vector<Pass>::iterator begin, std::vector<Pass>::iterator end,
+                std::vector<Segment>& pieces) {
+  const auto along = [&s](const Pass& pass) {
+    return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) * (std::int64_t{pass.hot.x} - s.first.x) +
+           static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) * (std::int64_t{pass.hot.y} - s.first.y);
+  };
+  std::sort(begin, end, [&](const Pass& a, const Pass& b) { return along(a) < along(b); });
+  Point last = s.first;
+  for (auto pass = begin; pass != end; ++pass) {
+    add_piece(last, pass->hot, pieces);
+    last = pass->hot;
+  }
+  add_piece(last, s.second, pieces);
+}
+
+void cancel_pairs(std::vector<Segment>& pieces) {
+  std::sort(pieces.begin(), pieces.end(), [](const Segment& a, const Segment& b) {
+    return a.first != b.first ? is_above(a.first, b.first) : is_above(a.second, b.second);
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pieces.size();) {
+    std::size_t k = i;
+    while (k < pieces.size() && pieces[k] == pieces[i]) ++k;
+    if ((k - i) % 2 == 1) pieces[kept++] = pieces[i];
+    i = k;
+  }
+  pieces.resize(kept);
+}
 
 }  // namespace
 
@@ -191,63 +253,19 @@ std::vector<Segment> segments_of(const Rings& rings) {
   return segments;
 }
 
-std::vector<Segment> node_segments(std::vector<Segment> segments, std::size_t* crossings) {
+std::vector<Segment> node_segments(std::vector<Segment> segments, HotCells cells) {
   order_by_place(segments);
   const SegmentTree tree(segments);
-
-  std::vector<Point> hot;
-  std::size_t met = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    tree.query(box_of(segments[i]), i + 1, [&](std::size_t k) {
-      met += add_crossing(segments[i], segments[k], hot);
-    });
-    hot.push_back(segments[i].first);
-    hot.push_back(segments[i].second);
-  }
-  if (crossings != nullptr) *crossings = met;
-  std::sort(hot.begin(), hot.end(), is_above);
-  hot.erase(std::unique(hot.begin(), hot.end()), hot.end());
-
-  std::vector<Pass> passes;
-  for (const Point p : hot) {
-    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch it.
-    const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
-    tree.query(around, 0, [&](std::size_t i) {
-      if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
-    });
-  }
-  // Along each segment: by the distance of the cell's centre along the direction of the segment.
-  const auto along = [&](const Pass& pass) {
-    const Segment& s = segments[pass.segment];
-    return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) * (std::int64_t{pass.hot.x} - s.first.x) +
-           static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) * (std::int64_t{pass.hot.y} - s.first.y);
-  };
-  std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
-    if (a.segment != b.segment) return a.segment < b.segment;
-    const Int128 da = along(a);
-    const Int128 db = along(b);
-    return da != db ? da < db : is_above(a.hot, b.hot);
-  });
-
+  std::vector<Pass> passes = find_passes(segments, tree, hot_cells(segments, tree, cells));
   std::vector<Segment> pieces;
-  pieces.reserve(passes.size());
-  for (std::size_t i = 1; i < passes.size(); ++i) {
-    if (passes[i].segment != passes[i - 1].segment) continue;
-    const Point a = passes[i - 1].hot;
-    const Point b = passes[i].hot;
-    pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
+  pieces.reserve(segments.size() + passes.size());
+  auto pass = passes.begin();
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto begin = pass;
+    while (pass != passes.end() && pass->segment == i) ++pass;
+    add_pieces(segments[i], begin, pass, pieces);
   }
-  std::sort(pieces.begin(), pieces.end(), [](const Segment& a, const Segment& b) {
-    return a.first != b.first ? is_above(a.first, b.first) : is_above(a.second, b.second);
-  });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < pieces.size();) {
-    std::size_t k = i;
-    while (k < pieces.size() && pieces[k] == pieces[i]) ++k;
-    if ((k - i) % 2 == 1) pieces[kept++] = pieces[i];
-    i = k;
-  }
-  pieces.resize(kept);
+  cancel_pairs(pieces);
   return pieces;
 }
 

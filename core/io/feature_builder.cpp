@@ -9,6 +9,10 @@ void BuildTally::skip(std::size_t order, std::int64_t id, std::string reason) {
   skips.push_back({order, {id, std::move(reason)}});
 }
 
+void BuildTally::remark(std::size_t order, std::int64_t id, std::string words) {
+  if (remarks.size() < kMaxRemarks) remarks.push_back({order, {id, std::move(words)}});
+}
+
 FeatureBuilder::FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options)
     : layers_(layers), options_(options), readers_(layers.size()) {}
 
@@ -51,9 +55,7 @@ void FeatureBuilder::count(const FeatureJob& job, const BuildOutcome& outcome) {
   tally_.vertices += outcome.vertices;
   if (!outcome.noded) return;
   ++tally_.repaired;
-  if (tally_.repairs.size() < BuildTally::kRepairNotes) {
-    tally_.repairs.push_back({job.order, {job.id, "repaired: its rings cross or touch"}});
-  }
+  tally_.remark(job.order, job.id, "repaired: its rings cross or touch");
 }
 
 }  // namespace trapeze

@@ -43,11 +43,12 @@ struct BuildTally {
   std::size_t collapsed_rings = 0;
   std::size_t repaired = 0;
   std::vector<OrderedNote> skips;
-  std::vector<OrderedNote> repairs;  // the first kRepairNotes of this builder
+  std::vector<OrderedNote> remarks;  // the first kMaxRemarks, on features that were not skipped
 
-  static constexpr std::size_t kRepairNotes = 100;
+  static constexpr std::size_t kMaxRemarks = 100;
 
   void skip(std::size_t order, std::int64_t id, std::string reason);
+  void remark(std::size_t order, std::int64_t id, std::string words);
 };
 
 /// Belongs to one thread. Gets its jobs in ascending order.

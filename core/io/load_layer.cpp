@@ -126,6 +126,7 @@ class Loader {
       ++other_geometry_;
     } else {
       const std::int64_t id = next.feature->GetFID();
+      if (!next.failure.empty()) tally_.remark(order, id, "read, but: " + next.failure);
       const std::uint32_t row =
           table_.append(id, attributes_.read(*next.feature, next.layer_index));
       batch_bytes_ += geometry->WkbSize();
@@ -165,21 +166,21 @@ void add_sums(const BuildTally& tally, LoadReport& report) {
 }
 
 void sort_by_order(std::vector<OrderedNote>& notes) {
-  std::sort(notes.begin(), notes.end(),
-            [](const OrderedNote& a, const OrderedNote& b) { return a.order < b.order; });
+  std::stable_sort(notes.begin(), notes.end(),
+                   [](const OrderedNote& a, const OrderedNote& b) { return a.order < b.order; });
 }
 
-// Every builder kept its first repairs, so the first ones of all are among them.
+// Every tally kept its first remarks, so the first ones of all are among them.
 std::vector<FeatureNote> join_notes(const std::vector<const BuildTally*>& tallies) {
-  std::vector<OrderedNote> repairs;
+  std::vector<OrderedNote> remarks;
   std::vector<OrderedNote> notes;
   for (const BuildTally* tally : tallies) {
-    repairs.insert(repairs.end(), tally->repairs.begin(), tally->repairs.end());
+    remarks.insert(remarks.end(), tally->remarks.begin(), tally->remarks.end());
     notes.insert(notes.end(), tally->skips.begin(), tally->skips.end());
   }
-  sort_by_order(repairs);
-  repairs.resize(std::min(repairs.size(), BuildTally::kRepairNotes));
-  notes.insert(notes.end(), repairs.begin(), repairs.end());
+  sort_by_order(remarks);
+  remarks.resize(std::min(remarks.size(), BuildTally::kMaxRemarks));
+  notes.insert(notes.end(), remarks.begin(), remarks.end());
   sort_by_order(notes);
   std::vector<FeatureNote> result;
   for (OrderedNote& note : notes) result.push_back(std::move(note.note));

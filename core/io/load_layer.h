@@ -35,7 +35,7 @@ struct LoadReport {
   std::size_t collapsed_rings = 0;
   std::size_t repaired = 0;  // noded: crossings, touches, overlaps
   std::vector<FeatureNote>
-      notes;                // one for each skipped feature, the first hundred of repaired ones
+      notes;                // one for each skipped feature, the first hundred of others (repaired)
   double read_seconds = 0;  // wall time until the last feature was read
   double total_seconds = 0;
 };

@@ -148,8 +148,9 @@ GDALDatasetUniquePtr open_source(const std::string& path) {
     fail(path, "cannot be opened: " + messages.text());
   }
   if (dataset == nullptr) explain_refusal(path, std::string(messages.text()));
-  if (dataset->GetLayerCount() == 0) fail(path, "has no layer of vector data");
-  return dataset;
+  if (dataset->GetLayerCount() > 0) return dataset;
+  if (!messages.has_failure()) fail(path, "has no layer of vector data");
+  fail(path, std::string("is broken (") + dataset->GetDriverName() + "): " + messages.text());
 }
 
 bool has_clockwise_shells(const std::string& driver) {
@@ -158,6 +159,7 @@ bool has_clockwise_shells(const std::string& driver) {
 
 ReadingSettings::ReadingSettings() {
   CPLSetThreadLocalConfigOption("OGR_ORGANIZE_POLYGONS", "SKIP");
+  CPLSetThreadLocalConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", "0");
   if (CPLGetConfigOption("CPL_TMPDIR", nullptr) == nullptr) {
     std::error_code error;
     const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
@@ -167,6 +169,7 @@ ReadingSettings::ReadingSettings() {
 
 ReadingSettings::~ReadingSettings() {
   CPLSetThreadLocalConfigOption("OGR_ORGANIZE_POLYGONS", nullptr);
+  CPLSetThreadLocalConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", nullptr);
   CPLSetThreadLocalConfigOption("CPL_TMPDIR", nullptr);
 }
 

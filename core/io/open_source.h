@@ -26,8 +26,8 @@ GDALDatasetUniquePtr open_source(const std::string& path);
 bool has_clockwise_shells(const std::string& driver);
 
 /// While it lives, GDAL drivers on this thread hand out rings as they are stored instead of working
-/// out which ring lies in which (quadratic in the rings; even-odd makes it pointless), and put
-/// temporary files where the system wants them.
+/// out which ring lies in which (quadratic in the rings; even-odd makes it pointless), take GeoJSON
+/// features of any size, and put temporary files where the system wants them.
 class ReadingSettings {
  public:
   ReadingSettings();

@@ -1,0 +1,172 @@
+#include "core/history.h"
+
+#include <cmath>
+#include <optional>
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint32_t kNoVersion = 0xffffffff;
+
+/// Equal but perhaps for another of two level vertices at the top or the bottom.
+bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
+  const auto y = [&history](std::uint32_t vertex) { return history.vertices[vertex].y; };
+  return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) && y(a.bottom) == y(b.bottom);
+}
+
+}  // namespace
+
+void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
+                             History& history) {
+  begin(graph, history);
+  stack_.assign(graph, options);
+  EditLog log(graph);
+  int level = 0;
+  for (;;) {
+    const std::optional<double> epsilon = stack_.remove_next(graph, log);
+    const int next = epsilon ? level_above(*epsilon) : kLastLevel + 1;
+    if (next != level) {
+      // What has been removed up to now was due by `level`; the edit at hand is only due at `next`.
+      if (epsilon) log.revert();
+      if (level > 0) end_level(graph, static_cast<Level>(level));
+      if (next > kLastLevel) return;
+      log.apply();
+      level = next;
+    }
+    note_touched(log);
+    if (stack_.last_removal() == Removal::loop) note_lost_loop(graph, static_cast<Level>(level));
+    log.forget();
+  }
+}
+
+void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
+  history_ = &history;
+  vertex_base_ = static_cast<std::uint32_t>(history.vertices.size());
+  for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
+    history.vertices.push_back(graph.point(VertexId(v)));
+  }
+  edge_version_.assign(graph.edges().size(), kNoVersion);
+  node_version_.assign(graph.nodes().size(), kNoVersion);
+  touched_edges_.clear();
+  touched_nodes_.clear();
+  edge_is_touched_.assign(graph.edges().size(), 0);
+  node_is_touched_.assign(graph.nodes().size(), 0);
+  for (std::size_t e = 0; e < graph.edges().size(); ++e) {
+    if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
+  }
+  for (std::size_t n = 0; n < graph.nodes().size(); ++n) renew_node(graph, NodeId(n), 0);
+  measure_loops(graph);
+}
+
+void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
+  loops_.clear();
+  loop_of_.assign(graph.corners().size(), kNoVersion);
+  for (std::size_t i = 0; i < graph.corners().size(); ++i) {
+    if (loop_of_[CornerId(i)] != kNoVersion) continue;
+    // Doubled area, positive if the loop runs clockwise on the map.
+    Int128 doubled = 0;
+    CornerId c(i);
+    do {
+      loop_of_[c] = static_cast<std::uint32_t>(loops_.size());
+      const Corner& corner = graph.corner(c);
+      const Point a = graph.point(corner.vertex);
+      const Point b = graph.point(graph.corner(corner.next).vertex);
+      doubled += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(b.x) * a.y;
+      c = corner.next;
+    } while (c != CornerId(i));
+    // Running clockwise, the loop's own side is left of what goes down and right of what goes up.
+    const Corner& first = graph.corner(CornerId(i));
+    const bool goes_down = first.vertex == graph.edge(first.edge).end[kUp];
+    const bool clockwise = doubled > 0;
+    const Side own = goes_down == clockwise ? kLeft : kRight;
+    loops_.push_back({std::abs(static_cast<double>(doubled)) / 2,
+                      graph.edge(first.edge).face[own] == kOutside});
+  }
+}
+
+void HistoryRecorder::touch(NodeId n) {
+  if (node_is_touched_[n] != 0) return;
+  node_is_touched_[n] = 1;
+  touched_nodes_.push_back(n);
+}
+
+void HistoryRecorder::note_touched(const EditLog& log) {
+  for (const auto& kept : log.touched_nodes()) touch(kept.id);
+  for (const auto& kept : log.touched_edges()) {
+    if (edge_is_touched_[kept.id] != 0) continue;
+    edge_is_touched_[kept.id] = 1;
+    touched_edges_.push_back(kept.id);
+  }
+}
+
+void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level) {
+  // The last triangle was no wider than the tolerance: its longest side stands for the loop.
+  const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
+  const auto [from, to] = stack_.last_side();
+  history_->grains.push_back({graph.point(from), graph.point(to), loop.is_hole ? -loop.area : loop.area, level});
+}
+
+void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
+  for (const EdgeId e : touched_edges_) {
+    edge_is_touched_[e] = 0;
+    renew_edge(graph, e);
+  }
+  touched_edges_.clear();
+  for (std::size_t i = 0; i < touched_nodes_.size(); ++i) {
+    node_is_touched_[touched_nodes_[i]] = 0;
+    renew_node(graph, touched_nodes_[i], level);
+  }
+  touched_nodes_.clear();
+}
+
+/// An edge whose ends have changed begins a new version, and so do the inside nodes along it.
+void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
+  if (graph.is_frame(e)) return;
+  const Edge& edge = graph.edge(e);
+  if (!edge.is_alive()) {
+    edge_version_[e] = kNoVersion;
+    return;
+  }
+  const MeshEdge& open = history_->edges[edge_version_[e]];
+  if (open.upper == vertex_base_ + edge.end[kUp].value - 1 &&
+      open.lower == vertex_base_ + edge.end[kDown].value - 1) {
+    return;
+  }
+  open_edge(graph, e);
+  for (const Side s : {kLeft, kRight}) {
+    if (edge.face[s] == kOutside) continue;
+    for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown]) touch(n);
+  }
+}
+
+void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
+  const Edge& edge = graph.edge(e);
+  edge_version_[e] = static_cast<std::uint32_t>(history_->edges.size());
+  history_->edges.push_back({vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
+}
+
+void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
+  const Node& node = graph.node(n);
+  std::uint32_t& version = node_version_[n];
+  if (!node.is_alive() || graph.face(node) == kOutside) {
+    if (version != kNoVersion) history_->lifespans[version].dies = level;
+    version = kNoVersion;
+    return;
+  }
+  const MeshTrapezoid now{vertex_base_ + node.end[kUp].value - 1, vertex_base_ + node.end[kDown].value - 1,
+                          edge_version_[node.edge[kLeft]], edge_version_[node.edge[kRight]]};
+  if (version != kNoVersion) {
+    if (covers_the_same(*history_, history_->trapezoids[version], now)) return;
+    history_->lifespans[version].dies = level;
+  }
+  // A trapezoid between level vertices has no area and is never drawn.
+  if (history_->vertices[now.top].y == history_->vertices[now.bottom].y) {
+    version = kNoVersion;
+    return;
+  }
+  version = static_cast<std::uint32_t>(history_->trapezoids.size());
+  history_->trapezoids.push_back(now);
+  history_->lifespans.push_back({level, kNeverDies});
+}
+
+}  // namespace trapeze

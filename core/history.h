@@ -1,0 +1,80 @@
+// The history of a graph: every version of its inside trapezoids between the untouched polygon and
+// the coarsest tolerance, each with its lifespan (see tolerance.h).
+//
+// The sequence of removals is played once from fine to coarse. At every level of the ladder the nodes
+// that changed since the level before end their version there and begin a new one. Versions that no
+// level sees are never stored, which bounds the memory; edges have versions of their own, which the
+// versions of trapezoids name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/adaptable_graph.h"
+#include "core/tolerance.h"
+#include "core/trapezoid_mesh.h"
+#include "core/trapezoidal_graph.h"
+
+namespace trapeze {
+
+/// A loop that became too small to keep: its area stays on the map as dust, spread along the segment
+/// that was left of it.
+struct Grain {
+  Point from;
+  Point to;
+  double area = 0;  // cells squared; negative if the loop was a hole
+  Level born = 0;   // the first level that does without the loop
+};
+
+/// Versions of many graphs, one after another; indices are relative to the beginning of the arrays.
+struct History {
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
+  std::vector<Lifespan> lifespans;  // by trapezoid
+  std::vector<Grain> grains;
+};
+
+/// Reusable memory for recording; one a thread.
+class HistoryRecorder {
+ public:
+  /// Appends the history of `graph` to `history`. Afterwards `graph` is adapted to the coarsest
+  /// tolerance.
+  void record(TrapezoidalGraph& graph, const GeneralizationOptions& options, History& history);
+
+  /// Of the last recording.
+  const PriorityStack& stack() const { return stack_; }
+
+ private:
+  void begin(const TrapezoidalGraph& graph, History& history);
+  void measure_loops(const TrapezoidalGraph& graph);
+  void note_touched(const EditLog& log);
+  void note_lost_loop(const TrapezoidalGraph& graph, Level level);
+  void end_level(const TrapezoidalGraph& graph, Level level);
+  void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
+  void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
+  void open_edge(const TrapezoidalGraph& graph, EdgeId e);
+  void touch(NodeId n);
+
+  History* history_ = nullptr;
+  std::uint32_t vertex_base_ = 0;
+  PriorityStack stack_;
+  // The version that is open at present, by edge and by node; kNoVersion if there is none.
+  Table<EdgeId, std::uint32_t> edge_version_;
+  Table<NodeId, std::uint32_t> node_version_;
+  // Touched since the last level.
+  std::vector<EdgeId> touched_edges_;
+  std::vector<NodeId> touched_nodes_;
+  Table<EdgeId, std::uint8_t> edge_is_touched_;
+  Table<NodeId, std::uint8_t> node_is_touched_;
+  // Loops as they were at first.
+  struct Loop {
+    double area = 0;  // cells squared
+    bool is_hole = false;
+  };
+  std::vector<Loop> loops_;
+  Table<CornerId, std::uint32_t> loop_of_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,110 @@
+// From trapezoids to coverage: how much of every pixel the polygons of a layer cover.
+//
+// The coverage of a pixel is min(1, sum of the exact areas of pixel and trapezoid in common, over
+// all trapezoids drawn), computed wide and rounded once, at the end, to 0..255. Trapezoids of one
+// polygon do not overlap, so neither seams nor ghost lines can show between them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/trapezoid_mesh.h"
+#include "core/web_mercator.h"
+
+namespace trapeze {
+
+constexpr int kTilePixels = 256;          // side of a tile at scale 1
+constexpr int kMaxPicturePixels = 16384;  // longest side of a picture
+
+/// What a picture shows. Pixel (column, row) is the square of cells that begins at
+/// origin + (column, row) * cells_per_pixel; row 0 is the northernmost.
+struct View {
+  std::int64_t origin_x = 0;  // north-west corner of the picture, in cells; may lie off the world
+  std::int64_t origin_y = 0;
+  double cells_per_pixel = 1;
+  int width = kTilePixels;  // pixels
+  int height = kTilePixels;
+
+  /// A tile of 256 * scale pixels a side. `tile` is valid, 1 <= scale <= 64.
+  static View of_tile(const TileId& tile, int scale = 1);
+
+  /// All grid points whose cells the picture may show; empty if it lies off the world.
+  Box box() const;
+
+  /// Throws std::invalid_argument unless 1 <= width, height <= kMaxPicturePixels, cells_per_pixel
+  /// is positive and finite, and the origin is within 2^40 cells of the grid's.
+  void check() const;
+};
+
+/// A raster of coverages: 0 outside, 255 wholly inside; row 0 is the northernmost.
+class Coverage {
+ public:
+  Coverage() = default;
+  Coverage(int width, int height) { resize(width, height); }
+
+  /// Afterwards the pixels have no particular values.
+  void resize(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::uint8_t at(int column, int row) const { return row_begin(row)[column]; }
+  std::span<const std::uint8_t> pixels() const { return pixels_; }
+  std::uint8_t* row_begin(int row) {
+    return pixels_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
+  }
+  const std::uint8_t* row_begin(int row) const {
+    return pixels_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
+  }
+  /// True if every pixel has the value `level`.
+  bool is_all(std::uint8_t level) const;
+
+  friend bool operator==(const Coverage&, const Coverage&) = default;
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<std::uint8_t> pixels_;
+};
+
+/// The rounding at the end: sums of areas, 1 a whole pixel, to as many levels of coverage.
+void to_levels(std::span<const float> sums, std::uint8_t* levels);
+
+/// Some trapezoids of one mesh; looks at memory of the caller. The ranges lie within the mesh.
+struct MeshPart {
+  MeshView mesh;
+  std::span<const TrapezoidRange> ranges;
+};
+
+/// Draws coverages. All implementations agree within 2/255 in every pixel.
+///
+/// Thread-safety: one thread at a time may call draw, not necessarily always the same one;
+/// different renderers may draw at the same time. forget may be called from any thread at any time.
+class CoverageRenderer {
+ public:
+  virtual ~CoverageRenderer() = default;
+
+  /// Draws all parts into one coverage, as if they were one mesh; `out` is resized to the view.
+  /// Throws std::invalid_argument for an impossible view and std::runtime_error if the device
+  /// fails (out of memory, context lost); `out` is then unspecified, the renderer stays usable.
+  virtual void draw(std::span<const MeshPart> parts, const View& view, Coverage& out) = 0;
+
+  void draw(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
+            Coverage& out) {
+    const MeshPart part{mesh, ranges};
+    draw(std::span<const MeshPart>(&part, 1), view, out);
+  }
+
+  /// Lets go of whatever is kept for the mesh of that id (uploads). Call it when a mesh goes away.
+  virtual void forget([[maybe_unused]] std::uint64_t mesh_id) {}
+
+  /// One word: "software", "egl" or "osmesa".
+  virtual std::string_view name() const = 0;
+  /// One line for logs: what draws, with versions.
+  virtual std::string description() const = 0;
+};
+
+}  // namespace trapeze

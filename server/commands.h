@@ -1,0 +1,42 @@
+// The commands of the program, one function each. They return the exit status and throw
+// std::exception for what main reports: a file, a port, a renderer that does not work.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trapeze {
+
+/// What the command line says; unset means: as configured.
+struct ServeArguments {
+  std::string config;
+  std::optional<std::uint16_t> port;
+  std::optional<std::string> address;
+  std::optional<unsigned> threads;
+  std::optional<unsigned> workers;
+  std::optional<std::string> renderer;
+  std::optional<std::string> device;
+  std::optional<std::string> web_root;
+  std::vector<std::string> files;  // instead of the layers of the configuration
+};
+int run_serve(const ServeArguments& arguments);
+
+struct CheckArguments {
+  std::vector<std::string> files;
+};
+int run_check(const CheckArguments& arguments);
+
+struct RenderArguments {
+  std::vector<std::string> files;  // bottom first
+  std::string tile;                // Z/X/Y
+  int scale = 1;
+  std::string style;  // a query string
+  std::string renderer = "auto";
+  std::string device;
+  std::string output;
+};
+int run_render(const RenderArguments& arguments);
+
+}  // namespace trapeze

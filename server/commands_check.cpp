@@ -1,0 +1,71 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+
+#include "server/commands.h"
+#include "server/dataset.h"
+#include "server/load_progress.h"
+
+namespace trapeze {
+namespace {
+
+void print_memory(const Layer& layer, const LoadReport& report) {
+  const std::size_t attributes = layer.features().memory();
+  const std::size_t graphs = layer.memory() - attributes;
+  const double per_vertex =
+      report.vertices == 0 ? 0 : static_cast<double>(graphs) / static_cast<double>(report.vertices);
+  fmt::print("  memory of graphs      {} bytes, {:.1f} per vertex\n", graphs, per_vertex);
+  fmt::print("  memory of attributes  {} bytes\n", attributes);
+}
+
+void print_notes(const LoadReport& report) {
+  for (const FeatureNote& note : report.notes) {
+    fmt::print("  feature {}: {}\n", note.id, note.reason);
+  }
+}
+
+void print_report(const LoadReport& report, const Layer& layer) {
+  fmt::print("{} ({})\n", report.path, report.driver);
+  fmt::print("  features              {}\n", report.features);
+  fmt::print("    loaded              {}\n", report.loaded);
+  fmt::print("      of these repaired {}\n", report.repaired);
+  fmt::print("    not polygons        {}\n", report.other_geometry);
+  fmt::print("    empty               {}\n", report.empty);
+  fmt::print("    skipped             {}\n", report.skipped);
+  fmt::print("  polygons              {}\n", report.polygons);
+  fmt::print("  rings                 {} ({} collapsed)\n", report.rings, report.collapsed_rings);
+  fmt::print("  vertices              {} ({} in the source)\n", report.vertices,
+             report.source_vertices);
+  fmt::print("  trapezoids            {}\n", layer.mesh().trapezoids.size());
+  print_memory(layer, report);
+  fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
+             report.read_seconds);
+  print_notes(report);
+}
+
+/// False if the file cannot be read.
+bool check_file(const std::string& file) {
+  LoadedLayer loaded;
+  try {
+    LoadProgress progress(file);
+    LoadOptions options;
+    options.progress = [&progress](double share) { progress.show(share); };
+    loaded = load_layer(file, options);
+  } catch (const std::exception& error) {
+    // Reported here and not by main, so that the files after this one are checked too.
+    fmt::print(stderr, "trapeze: {}\n", error.what());
+    return false;
+  }
+  print_report(loaded.report, *loaded.layer);
+  return true;
+}
+
+}  // namespace
+
+int run_check(const CheckArguments& arguments) {
+  bool is_all_read = true;
+  for (const std::string& file : arguments.files) is_all_read &= check_file(file);
+  return is_all_read ? 0 : 1;
+}
+
+}  // namespace trapeze

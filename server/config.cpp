@@ -1,0 +1,255 @@
+#include "server/config.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "server/style_parameters.h"
+#include "server/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kLayerNameRule = "1 to 64 letters, digits, '_' or '-'";
+
+std::string position_text(const std::string& path, const toml::source_position& position) {
+  return fmt::format("{}:{}:{}", path, position.line, position.column);
+}
+
+/// Reads the keys of one table one by one; whatever has not been asked for at the end is unknown.
+class TableReader {
+ public:
+  /// `name` is how messages call the table: "server" for [server].
+  TableReader(const std::string& path, const toml::table& table, std::string name)
+      : path_(path), table_(table), name_(std::move(name)) {}
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
+    throw std::runtime_error(
+        fmt::format("{}: {}", position_text(path_, node.source().begin), message));
+  }
+  [[noreturn]] void fail(const std::string& message) const { fail(table_, message); }
+
+  const toml::node* find(std::string_view key) {
+    known_.emplace_back(key);
+    return table_.get(key);
+  }
+
+  std::string full_name(std::string_view key) const {
+    return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
+  }
+
+  void read(std::string_view key, std::string& target) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    if (!node->is_string()) fail(*node, fmt::format("{} takes a string", full_name(key)));
+    target = node->as_string()->get();
+  }
+
+  template <typename Integer>
+  void read(std::string_view key, Integer& target, std::int64_t min, std::int64_t max) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+    if (!value || *value < min || *value > max) {
+      fail(*node, fmt::format("{} takes an integer from {} to {}", full_name(key), min, max));
+    }
+    target = static_cast<Integer>(*value);
+  }
+
+  void read_share(std::string_view key, double& target) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
+    if (!value || !(*value >= 0 && *value <= 1)) {
+      fail(*node, fmt::format("{} takes a number from 0 to 1", full_name(key)));
+    }
+    target = *value;
+  }
+
+  /// Call last: throws if the table holds a key that was never asked for.
+  void refuse_unknown_keys() const {
+    for (const auto& [key, node] : table_) {
+      if (std::ranges::find(known_, key.str()) != known_.end()) continue;
+      throw std::runtime_error(fmt::format("{}: unknown key {}; allowed here are {}",
+                                           position_text(path_, key.source().begin),
+                                           full_name(key.str()), fmt::join(known_, ", ")));
+    }
+  }
+
+ private:
+  const std::string& path_;
+  const toml::table& table_;
+  std::string name_;
+  std::vector<std::string> known_;
+};
+
+std::string relative_to_config(const std::string& config_path, const std::string& path) {
+  if (path.empty()) return path;
+  return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
+}
+
+ServerConfig read_server(const std::string& path, const toml::table& table) {
+  ServerConfig server;
+  TableReader reader(path, table, "server");
+  reader.read("address", server.address);
+  reader.read("port", server.port, 0, 65535);
+  reader.read("threads", server.threads, 1, 256);
+  reader.read("workers", server.workers, 0, 256);
+  reader.read("queue", server.queue, 1, 1'000'000);
+  reader.read("deadline_ms", server.deadline_ms, 1, 600'000);
+  std::string renderer = "auto";
+  reader.read("renderer", renderer);
+  if (const auto kind = renderer_kind_from(renderer)) {
+    server.renderer.kind = *kind;
+  } else {
+    reader.fail(*table.get("renderer"),
+                "server.renderer takes \"auto\", \"egl\", \"osmesa\" or \"software\"");
+  }
+  reader.read("device", server.renderer.device);
+  reader.read("public_url", server.public_url);
+  while (server.public_url.ends_with('/')) server.public_url.pop_back();
+  if (!server.public_url.empty() && !server.public_url.starts_with("http://") &&
+      !server.public_url.starts_with("https://")) {
+    reader.fail(*table.get("public_url"),
+                "server.public_url takes a URL that begins with http:// or https://");
+  }
+  reader.read("web_root", server.web_root);
+  server.web_root = relative_to_config(path, server.web_root);
+  reader.refuse_unknown_keys();
+  return server;
+}
+
+LayerStyle read_style(const std::string& path, const toml::table& table) {
+  LayerStyle style;
+  TableReader reader(path, table, "layer.style");
+  std::string fill;
+  reader.read("fill", fill);
+  if (const toml::node* node = table.get("fill")) {
+    style.fill = parse_colour(fill);
+    if (!style.fill) {
+      reader.fail(*node, fmt::format("layer.style.fill takes {}",
+                                     describe_values(style_parameter(ParameterId::fill))));
+    }
+  }
+  reader.read_share("fill_opacity", style.fill_opacity);
+  reader.refuse_unknown_keys();
+  return style;
+}
+
+LayerConfig read_layer(const std::string& path, const toml::table& table) {
+  LayerConfig layer;
+  TableReader reader(path, table, "layer");
+  reader.read("name", layer.name);
+  if (!is_layer_name(layer.name)) {
+    const toml::node* node = table.get("name");
+    reader.fail(node == nullptr ? static_cast<const toml::node&>(table) : *node,
+                fmt::format("every [[layer]] needs a name of {}", kLayerNameRule));
+  }
+  reader.read("file", layer.file);
+  if (layer.file.empty()) {
+    reader.fail(fmt::format("layer \"{}\" needs a file", layer.name));
+  }
+  layer.file = relative_to_config(path, layer.file);
+  layer.title = layer.name;
+  reader.read("title", layer.title);
+  reader.read("attribution", layer.attribution);
+  reader.read("description", layer.description);
+  reader.read("min_zoom", layer.min_zoom, 0, kMaxZoom);
+  reader.read("max_zoom", layer.max_zoom, 0, kMaxZoom);
+  if (layer.min_zoom > layer.max_zoom) {
+    reader.fail(fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
+  }
+  if (const toml::node* style = reader.find("style")) {
+    if (!style->is_table()) reader.fail(*style, "layer.style takes a table");
+    layer.style = read_style(path, *style->as_table());
+  }
+  reader.refuse_unknown_keys();
+  return layer;
+}
+
+void read_layers(const std::string& path, const toml::node& node,
+                 std::vector<LayerConfig>& layers) {
+  const toml::array* array = node.as_array();
+  std::unordered_map<std::string, toml::source_position> seen;
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const toml::table* table = array->get_as<toml::table>(i);
+    if (table == nullptr) break;
+    layers.push_back(read_layer(path, *table));
+    const auto [first, is_new] = seen.emplace(layers.back().name, table->source().begin);
+    if (!is_new) {
+      throw std::runtime_error(fmt::format("{}: layer \"{}\" is defined twice, first in line {}",
+                                           position_text(path, table->source().begin),
+                                           layers.back().name, first->second.line));
+    }
+  }
+  if (array == nullptr || layers.size() != array->size()) {
+    throw std::runtime_error(fmt::format("{}: layers are tables, each begun by [[layer]]",
+                                         position_text(path, node.source().begin)));
+  }
+}
+
+toml::table parse_toml(const std::string& path) {
+  try {
+    return toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    // Position 0:0 means that the file could not be opened, not that its text is wrong.
+    if (error.source().begin.line == 0) {
+      throw std::runtime_error(
+          fmt::format("cannot read the configuration {}: {}", path, error.description()));
+    }
+    throw std::runtime_error(
+        fmt::format("{}: {}", position_text(path, error.source().begin), error.description()));
+  }
+}
+
+std::string layer_name_of_file(const std::string& file) {
+  std::filesystem::path path(file);
+  if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
+  std::string name = path.stem().string().substr(0, kMaxLayerNameLength);
+  for (char& c : name) {
+    if (!is_layer_name(std::string_view(&c, 1))) c = '_';
+  }
+  return name.empty() ? "layer" : name;
+}
+
+}  // namespace
+
+Config read_config(const std::string& path) {
+  const toml::table root = parse_toml(path);
+  Config config;
+  TableReader reader(path, root, "");
+  if (const toml::node* server = reader.find("server")) {
+    if (!server->is_table()) reader.fail(*server, "server takes a table, begun by [server]");
+    config.server = read_server(path, *server->as_table());
+  }
+  if (const toml::node* layers = reader.find("layer")) read_layers(path, *layers, config.layers);
+  reader.refuse_unknown_keys();
+  return config;
+}
+
+std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files) {
+  std::vector<LayerConfig> layers;
+  for (const std::string& file : files) {
+    LayerConfig layer;
+    layer.name = layer_name_of_file(file);
+    layer.title = layer.name;
+    layer.file = file;
+    const auto same = std::ranges::find(layers, layer.name, &LayerConfig::name);
+    if (same != layers.end()) {
+      throw std::runtime_error(
+          fmt::format("{} and {} would both be the layer \"{}\"; rename one, or name them in a "
+                      "configuration",
+                      same->file, file, layer.name));
+    }
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,57 @@
+// What to serve and how, from a TOML file and the command line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/web_mercator.h"
+#include "render/colour.h"
+#include "render/make_renderer.h"
+
+namespace trapeze {
+
+struct LayerStyle {
+  std::optional<Rgba> fill;  // unset: a colour of the palette, by the layer's position
+  double fill_opacity = 1;   // 0 to 1
+};
+
+struct LayerConfig {
+  std::string name;  // is_layer_name() holds
+  std::string file;
+  std::string title;  // the name if not set
+  std::string attribution;
+  std::string description;
+  LayerStyle style;
+  int min_zoom = 0;  // the layer is drawn at zooms min_zoom to max_zoom
+  int max_zoom = kMaxZoom;
+};
+
+struct ServerConfig {
+  std::string address = "0.0.0.0";
+  std::uint16_t port = 8080;      // 0: any free port
+  unsigned threads = 2;           // for sockets
+  unsigned workers = 0;           // for drawing; 0: one a core
+  std::size_t queue = 256;        // requests that may wait for a worker
+  unsigned deadline_ms = 10'000;  // a request that waits longer is given up
+  RendererOptions renderer;
+  std::string public_url;  // of the server as the world sees it, without a '/' at the end
+  std::string web_root;    // folder of the viewer, empty for none
+};
+
+struct Config {
+  ServerConfig server;
+  std::vector<LayerConfig> layers;  // names are unique
+};
+
+/// Reads a TOML file; relative paths in it are meant from its own folder. Throws std::runtime_error
+/// that says file:line:column, what is wrong and what is allowed.
+Config read_config(const std::string& path);
+
+/// Makes a layer of each file, named after it; characters that a layer name cannot hold become '_'.
+/// Throws std::runtime_error if two files would get one name.
+std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files);
+
+}  // namespace trapeze

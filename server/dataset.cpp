@@ -1,0 +1,116 @@
+#include "server/dataset.h"
+
+#include <spdlog/spdlog.h>
+
+#include <bit>
+
+#include "server/content_hash.h"
+#include "server/load_progress.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kMaxLoggedNotes = 10;
+
+void add_value(ContentHash& hash, const Value& value) {
+  hash.add(value.index());
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    hash.add(static_cast<std::uint64_t>(*integer));
+  } else if (const auto* real = std::get_if<double>(&value)) {
+    hash.add(std::bit_cast<std::uint64_t>(*real));
+  } else if (const auto* text = std::get_if<std::string_view>(&value)) {
+    hash.add(*text);
+  }
+}
+
+std::uint64_t hash_contents(const Layer& layer) {
+  ContentHash hash;
+  const MeshView& mesh = layer.mesh();
+  hash.add(mesh.vertices);
+  hash.add(mesh.edges);
+  hash.add(mesh.trapezoids);
+  const FeatureTable& features = layer.features();
+  for (const Field& field : features.fields()) hash.add(field.name);
+  for (std::uint32_t row = 0; row < features.size(); ++row) {
+    hash.add(static_cast<std::uint64_t>(features.id(row)));
+    for (int field = 0; field < static_cast<int>(features.fields().size()); ++field) {
+      add_value(hash, features.value(row, field));
+    }
+  }
+  return hash.value();
+}
+
+void log_notes(const LoadReport& report) {
+  for (std::size_t i = 0; i < report.notes.size() && i < kMaxLoggedNotes; ++i) {
+    spdlog::warn("{}: feature {}: {}", report.path, report.notes[i].id, report.notes[i].reason);
+  }
+  if (report.notes.size() > kMaxLoggedNotes) {
+    spdlog::warn("{}: {} more notes; `trapeze check` shows them all", report.path,
+                 report.notes.size() - kMaxLoggedNotes);
+  }
+}
+
+void log_report(const LoadReport& report, const Layer& layer) {
+  spdlog::info(
+      "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
+      "{:.2f} s ({})",
+      report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
+      layer.mesh().trapezoids.size(), static_cast<double>(layer.memory()) / 1e6,
+      report.total_seconds, report.driver);
+  if (report.other_geometry > 0) {
+    spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
+                 report.other_geometry);
+  }
+  if (report.empty > 0) {
+    spdlog::info("{}: {} polygons are smaller than the grid, or outside of the world", report.path,
+                 report.empty);
+  }
+  if (report.repaired > 0 || report.skipped > 0) {
+    spdlog::warn("{}: {} features repaired, {} skipped", report.path, report.repaired,
+                 report.skipped);
+    log_notes(report);
+  }
+  if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
+}
+
+}  // namespace
+
+LoadedLayer load_with_progress(const std::string& file) {
+  LoadedLayer loaded;
+  {
+    LoadProgress progress(file);
+    LoadOptions options;
+    options.progress = [&progress](double share) { progress.show(share); };
+    loaded = load_layer(file, options);
+  }
+  log_report(loaded.report, *loaded.layer);
+  return loaded;
+}
+
+std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers) {
+  std::vector<ServedLayer> served;
+  for (const LayerConfig& config : layers) {
+    LoadedLayer loaded = load_with_progress(config.file);
+    const std::uint64_t revision = hash_contents(*loaded.layer);
+    served.push_back({config, std::move(loaded.layer), std::move(loaded.report), revision});
+  }
+  return std::make_shared<const Dataset>(std::move(served));
+}
+
+Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
+  ContentHash hash;
+  for (const ServedLayer& layer : layers_) {
+    hash.add(layer.config.name);
+    hash.add(layer.revision);
+  }
+  generation_ = fmt::format("{:016x}", hash.value());
+}
+
+std::optional<std::size_t> Dataset::find(std::string_view name) const {
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    if (layers_[i].config.name == name) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace trapeze

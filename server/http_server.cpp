@@ -1,0 +1,473 @@
+#include "server/http_server.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <atomic>
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <csignal>
+#include <ctime>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "server/build_id.h"
+#include "server/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace net = boost::asio;
+using tcp = net::ip::tcp;
+using ErrorCode = beast::error_code;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
+// A connection that is closed while the client still sends would be reset, and the response lost:
+// so what it sends is read and thrown away for a little while.
+constexpr auto kLingerTime = std::chrono::seconds(2);
+constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
+// Connections above the limit that are told so; those beyond are dropped without a word.
+constexpr std::size_t kMaxRefusals = 64;
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+std::string http_date(std::time_t time) {
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  std::array<char, 40> text{};
+  const std::size_t length =
+      std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
+  return {text.data(), length};
+}
+
+/// Whether it is the request line, and not the fields after it, that broke the limit.
+bool is_request_line_too_long(const beast::flat_buffer& buffer) {
+  const auto bytes = buffer.data();
+  const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
+  return text.substr(0, kMaxTargetLength + 32).find('\n') == std::string_view::npos;
+}
+
+bool is_http_error(const ErrorCode& error) {
+  return error.category() == http::make_error_code(http::error::bad_version).category();
+}
+
+tcp::endpoint endpoint_of(const HttpServerOptions& options) {
+  ErrorCode error;
+  const auto address = net::ip::make_address(options.address, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on \"{}\": an IPv4 or IPv6 address is needed", options.address));
+  }
+  return {address, options.port};
+}
+
+}  // namespace
+
+/// Everything that connections share. It outlives them: those that wait for a worker hold it.
+class HttpServer::State : public std::enable_shared_from_this<State> {
+ public:
+  State(const HttpServerOptions& options, const Site& site);
+
+  void run();
+  void stop();
+  void stop_on_signals();
+
+  std::uint16_t port() const { return port_; }
+  const HttpServerOptions& options() const { return options_; }
+  const Site& site() const { return site_; }
+  bool is_stopping() const { return is_stopping_; }
+
+  void enter(Connection& connection);
+  void leave(Connection& connection);
+
+ private:
+  void open();
+  void accept();
+  void on_accepted(const ErrorCode& error, tcp::socket socket);
+  void admit(tcp::socket socket);
+  void wait_for_signal();
+  void begin_draining();
+  void finish();
+
+  const HttpServerOptions options_;
+  const Site& site_;
+  std::uint16_t port_ = 0;
+  std::atomic<bool> is_stopping_ = false;
+
+  std::mutex mutex_;  // guards the two below
+  std::unordered_set<Connection*> connections_;
+  bool has_run_ = false;
+
+  // Last, so that what still is in its queues when it goes finds the rest alive.
+  net::io_context io_;
+  net::strand<net::io_context::executor_type> control_;  // for everything below
+  net::executor_work_guard<net::io_context::executor_type> work_;
+  tcp::acceptor acceptor_;
+  net::steady_timer accept_timer_;
+  net::steady_timer drain_timer_;
+  net::signal_set signals_;
+};
+
+/// One client. Reads a request, answers it, and only then reads the next: so pipelined requests
+/// are answered in order. Everything happens on the strand of its stream.
+class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(State& state, tcp::socket socket) : state_(state), stream_(std::move(socket)) {}
+  ~Connection() { state_.leave(*this); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// From any thread, once.
+  void start();
+  void refuse();
+  /// Closes the connection if it waits for a request; else it is closed after the response.
+  /// From any thread.
+  void drain();
+
+ private:
+  void read();
+  void on_read(const ErrorCode& error);
+  void answer_unreadable(const ErrorCode& error);
+  void handle(const http::request<http::string_body>& message);
+  void send(HttpResponse response);
+  template <typename Body>
+  void write(http::response<Body> message, std::shared_ptr<const std::string> bytes);
+  void on_written(const ErrorCode& error, bool keep_alive);
+  void close_gently();
+  void discard_input();
+  void log_access(const HttpResponse& response) const;
+
+  State& state_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kMaxBuffer};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  bool is_reading_ = false;
+
+  // The request being answered.
+  HttpRequest request_;
+  Clock::time_point begin_;
+  unsigned version_ = 11;
+  bool keep_alive_ = false;
+
+  std::array<char, 4096> discarded_{};
+  std::size_t discarded_bytes_ = 0;
+};
+
+void HttpServer::Connection::start() {
+  state_.enter(*this);
+  net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->read(); });
+}
+
+void HttpServer::Connection::refuse() {
+  state_.enter(*this);
+  net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+    self->send(problem_response({503, "There are too many connections. Ask again."}));
+  });
+}
+
+void HttpServer::Connection::drain() {
+  net::post(stream_.get_executor(), [self = shared_from_this()] {
+    const bool is_idle =
+        self->is_reading_ && self->buffer_.size() == 0 && !self->parser_->got_some();
+    if (is_idle) self->stream_.close();
+  });
+}
+
+void HttpServer::Connection::read() {
+  if (state_.is_stopping() && buffer_.size() == 0) return close_gently();
+  parser_.emplace();
+  parser_->header_limit(state_.options().header_limit);
+  parser_->body_limit(state_.options().body_limit);
+  stream_.expires_after(state_.options().read_timeout);
+  is_reading_ = true;
+  http::async_read(stream_, buffer_, *parser_,
+                   [self = shared_from_this()](const ErrorCode& error, std::size_t) {
+                     self->is_reading_ = false;
+                     self->on_read(error);
+                   });
+}
+
+void HttpServer::Connection::on_read(const ErrorCode& error) {
+  begin_ = Clock::now();
+  stream_.expires_never();
+  if (error) return answer_unreadable(error);
+  handle(parser_->get());
+}
+
+void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
+  request_ = {};
+  keep_alive_ = false;
+  if (error == http::error::end_of_stream) return close_gently();
+  if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
+  Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
+  if (error == http::error::body_limit) {
+    problem = {413, fmt::format("A request needs no body; at most {} bytes are taken.",
+                                state_.options().body_limit)};
+  } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    problem =
+        is_request_line_too_long(buffer_)
+            ? Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}
+            : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
+                                       state_.options().header_limit)};
+  }
+  send(problem_response(problem));
+}
+
+void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
+  const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
+  request_ = {text(message.method_string()), text(message.target()),
+              text(message[http::field::host]), text(message[http::field::if_none_match])};
+  version_ = message.version();
+  keep_alive_ = message.keep_alive();
+  if (version_ >= 11 && message.count(http::field::host) != 1) {
+    return send(problem_response({400, "A request needs one Host header."}));
+  }
+  // The pair lets go of the connection before the state that the connection refers to.
+  auto held = std::pair(state_.shared_from_this(), shared_from_this());
+  // This is the boundary of a request: nothing that goes wrong in one may end the server.
+  try {
+    state_.site().handle(request_, [held = std::move(held)](HttpResponse response) {
+      Connection& connection = *held.second;
+      net::post(connection.stream_.get_executor(),
+                [self = held.second, response = std::move(response)]() mutable {
+                  self->send(std::move(response));
+                });
+    });
+  } catch (const std::exception& error) {
+    spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
+    send(problem_response({500, "The request could not be answered."}));
+  }
+}
+
+void HttpServer::Connection::send(HttpResponse response) {
+  log_access(response);
+  http::response_header<> header;
+  header.version(version_);
+  header.result(static_cast<unsigned>(response.status));
+  header.set(http::field::date, http_date(std::time(nullptr)));
+  header.set(http::field::server, "trapeze/" + version());
+  for (const auto& [name, value] : response.headers) header.insert(name, value);
+  const bool keep_alive = keep_alive_ && !state_.is_stopping();
+  const auto bytes = std::move(response.body);
+  if (bytes == nullptr || request_.method == "HEAD") {
+    http::response<http::empty_body> message(std::move(header));
+    if (bytes != nullptr) message.content_length(bytes->size());
+    message.keep_alive(keep_alive);
+    return write(std::move(message), nullptr);
+  }
+  http::response<http::span_body<const char>> message(std::move(header));
+  message.body() = {bytes->data(), bytes->size()};
+  message.content_length(bytes->size());
+  message.keep_alive(keep_alive);
+  write(std::move(message), bytes);
+}
+
+template <typename Body>
+void HttpServer::Connection::write(http::response<Body> message,
+                                   std::shared_ptr<const std::string> bytes) {
+  stream_.expires_after(state_.options().write_timeout);
+  auto kept = std::make_shared<http::response<Body>>(std::move(message));
+  http::async_write(
+      stream_, *kept,
+      [self = shared_from_this(), kept, bytes = std::move(bytes)](
+          const ErrorCode& error, std::size_t) { self->on_written(error, kept->keep_alive()); });
+}
+
+void HttpServer::Connection::on_written(const ErrorCode& error, bool keep_alive) {
+  if (error) return;  // the client has gone
+  if (keep_alive) return read();
+  close_gently();
+}
+
+void HttpServer::Connection::close_gently() {
+  ErrorCode ignored;  // it may have gone already
+  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  stream_.expires_after(kLingerTime);
+  discard_input();
+}
+
+void HttpServer::Connection::discard_input() {
+  stream_.async_read_some(net::buffer(discarded_),
+                          [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
+                            self->discarded_bytes_ += bytes;
+                            if (!error && self->discarded_bytes_ < kMaxLingerBytes)
+                              self->discard_input();
+                          });
+}
+
+void HttpServer::Connection::log_access(const HttpResponse& response) const {
+  if (!spdlog::should_log(spdlog::level::debug)) return;
+  const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
+  spdlog::debug("{} {} {} {} bytes {:.2f} ms", request_.method, request_.target, response.status,
+                response.body == nullptr ? 0 : response.body->size(), ms);
+}
+
+HttpServer::State::State(const HttpServerOptions& options, const Site& site)
+    : options_(options),
+      site_(site),
+      io_(static_cast<int>(options.threads)),
+      control_(net::make_strand(io_)),
+      work_(net::make_work_guard(io_)),
+      acceptor_(control_),
+      accept_timer_(control_),
+      drain_timer_(control_),
+      signals_(control_) {
+  open();
+}
+
+void HttpServer::State::open() {
+  const tcp::endpoint endpoint = endpoint_of(options_);
+  try {
+    acceptor_.open(endpoint.protocol());
+    acceptor_.set_option(net::socket_base::reuse_address(true));
+    acceptor_.bind(endpoint);
+    acceptor_.listen();
+    port_ = acceptor_.local_endpoint().port();
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("cannot listen on {} port {}: {}", options_.address,
+                                         options_.port, error.code().message()));
+  }
+}
+
+void HttpServer::State::run() {
+  net::post(control_, [this] { accept(); });
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < options_.threads; ++i) threads.emplace_back([this] { io_.run(); });
+  io_.run();
+  for (std::thread& thread : threads) thread.join();
+  const std::lock_guard lock(mutex_);
+  has_run_ = true;
+}
+
+void HttpServer::State::accept() {
+  if (is_stopping_) return;
+  acceptor_.async_accept(net::make_strand(io_), [this](const ErrorCode& error, tcp::socket socket) {
+    on_accepted(error, std::move(socket));
+  });
+}
+
+void HttpServer::State::on_accepted(const ErrorCode& error, tcp::socket socket) {
+  if (is_stopping_) return;
+  if (!error) {
+    admit(std::move(socket));
+    return accept();
+  }
+  // Most likely there are no more file descriptors: trying again at once would only burn time.
+  spdlog::warn("cannot accept a connection: {}", error.message());
+  accept_timer_.expires_after(kAcceptPause);
+  accept_timer_.async_wait([this](const ErrorCode& cancelled) {
+    if (!cancelled) accept();
+  });
+}
+
+void HttpServer::State::admit(tcp::socket socket) {
+  const std::size_t count = [this] {
+    const std::lock_guard lock(mutex_);
+    return connections_.size();
+  }();
+  if (count >= options_.max_connections + kMaxRefusals) return;
+  ErrorCode ignored;  // only a matter of speed
+  socket.set_option(tcp::no_delay(true), ignored);
+  auto connection = std::make_shared<Connection>(*this, std::move(socket));
+  if (count < options_.max_connections) {
+    connection->start();
+  } else {
+    connection->refuse();
+  }
+}
+
+void HttpServer::State::enter(Connection& connection) {
+  const std::lock_guard lock(mutex_);
+  connections_.insert(&connection);
+}
+
+void HttpServer::State::leave(Connection& connection) {
+  const std::lock_guard lock(mutex_);
+  connections_.erase(&connection);
+  if (is_stopping_ && connections_.empty() && !has_run_) {
+    net::post(control_, [this] { finish(); });
+  }
+}
+
+void HttpServer::State::stop() {
+  net::post(control_, [this] {
+    if (is_stopping_) return io_.stop();
+    begin_draining();
+  });
+}
+
+void HttpServer::State::begin_draining() {
+  std::vector<std::shared_ptr<Connection>> connections;
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+    for (Connection* connection : connections_) {
+      if (auto alive = connection->weak_from_this().lock()) connections.push_back(std::move(alive));
+    }
+    if (connections_.empty()) net::post(control_, [this] { finish(); });
+  }
+  ErrorCode ignored;  // closing cannot fail in a way that matters now
+  acceptor_.close(ignored);
+  accept_timer_.cancel();
+  for (const auto& connection : connections) connection->drain();
+  drain_timer_.expires_after(options_.drain_timeout);
+  drain_timer_.async_wait([this](const ErrorCode& cancelled) {
+    if (cancelled) return;
+    spdlog::warn("some requests did not end in time and are given up");
+    io_.stop();
+  });
+}
+
+void HttpServer::State::finish() {
+  drain_timer_.cancel();
+  signals_.cancel();
+  work_.reset();
+}
+
+void HttpServer::State::stop_on_signals() {
+  signals_.add(SIGINT);
+  signals_.add(SIGTERM);
+  wait_for_signal();
+}
+
+void HttpServer::State::wait_for_signal() {
+  signals_.async_wait([this](const ErrorCode& error, int signal) {
+    if (error) return;
+    spdlog::info("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
+                 is_stopping_ ? "stopping at once" : "finishing what is under way");
+    stop();
+    wait_for_signal();
+  });
+}
+
+HttpServer::HttpServer(const HttpServerOptions& options, const Site& site)
+    : state_(std::make_shared<State>(options, site)) {}
+
+HttpServer::~HttpServer() = default;
+
+std::uint16_t HttpServer::port() const {
+  return state_->port();
+}
+
+void HttpServer::run() {
+  state_->run();
+}
+
+void HttpServer::stop() {
+  state_->stop();
+}
+
+void HttpServer::stop_on_signals() {
+  state_->stop_on_signals();
+}
+
+}  // namespace trapeze

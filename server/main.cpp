@@ -1,0 +1,133 @@
+// The command line: reads it, calls the command, reports what went wrong.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <string>
+
+#include "server/build_id.h"
+#include "server/commands.h"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Trapeze serves maps of polygons as PNG tiles, and simplifies while it draws.\n\n"
+    "Examples:\n"
+    "  trapeze serve countries.fgb lakes.gpkg      tiles at "
+    "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
+    "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
+    "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
+    "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
+
+constexpr const char* kServeFooter =
+    "\nExamples:\n"
+    "  trapeze serve countries.fgb                 "
+    "http://localhost:8080/tiles/countries/0/0/0.png\n"
+    "  trapeze serve --port 9000 --address 127.0.0.1 buildings.fgb water.fgb\n"
+    "  trapeze serve --config trapeze.toml --workers 4\n\n"
+    "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json "
+    "(TileJSON),\n"
+    "/catalog, /health, /ready, and the viewer at /. SIGTERM and SIGINT end the server in order.";
+
+constexpr const char* kCheckFooter =
+    "\nExample:\n"
+    "  trapeze check countries.fgb buildings.shp\n\n"
+    "The exit status is 1 if a file cannot be read; repaired and skipped features are only listed.";
+
+constexpr const char* kRenderFooter =
+    "\nExamples:\n"
+    "  trapeze render countries.fgb --tile 3/4/2 --output tile.png\n"
+    "  trapeze render land.fgb lakes.fgb --tile 0/0/0 --scale 2 \\\n"
+    "      --style 'lakes.fill=6fa8c9&background=white' --output world.png";
+
+constexpr const char* kRendererHelp =
+    "What draws: auto, egl, osmesa or software (auto tries them in this order)";
+constexpr const char* kDeviceHelp = "The EGL device to prefer: its index, or a part of its name";
+
+void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
+  CLI::App* serve = app.add_subcommand("serve", "Serve tiles over HTTP");
+  serve->footer(kServeFooter);
+  serve->add_option("FILE", arguments.files,
+                    "Files of polygons, in any format GDAL reads; each becomes a layer named "
+                    "after it. Instead of the layers of the configuration.");
+  serve->add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
+      ->type_name("FILE");
+  serve->add_option("--port", arguments.port, "Port, 8080 if not set; 0 takes any free one")
+      ->type_name("N");
+  serve->add_option("--address", arguments.address, "Address to listen on, 0.0.0.0 if not set")
+      ->type_name("IP");
+  serve->add_option("--threads", arguments.threads, "Threads for connections, 2 if not set")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  serve->add_option("--workers", arguments.workers, "Threads that draw, one a core if not set")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  serve->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
+  serve->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
+  serve->add_option("--web-root", arguments.web_root, "Folder of the viewer, served at /")
+      ->type_name("DIR");
+}
+
+void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
+  CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
+  check->footer(kCheckFooter);
+  check->add_option("FILE", arguments.files, "Files of polygons")->required();
+}
+
+void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
+  CLI::App* render = app.add_subcommand("render", "Draw one tile into a file");
+  render->footer(kRenderFooter);
+  render->add_option("FILE", arguments.files, "Files of polygons, each a layer, the lowest first")
+      ->required();
+  render->add_option("--tile", arguments.tile, "Zoom, column and row of the tile")
+      ->required()
+      ->type_name("Z/X/Y");
+  render->add_option("--scale", arguments.scale, "Pixels in 256ths of a tile's side, 1 to 4")
+      ->check(CLI::Range(1, 4))
+      ->type_name("N");
+  render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
+      ->type_name("QUERY");
+  render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
+  render->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
+  render->add_option("--output", arguments.output, "The PNG to write")
+      ->required()
+      ->type_name("F.png");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(kDescription, "trapeze");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "trapeze " + trapeze::version());
+  bool is_verbose = false;
+  app.add_flag("--verbose", is_verbose, "Log every request");
+  app.fallthrough();
+  trapeze::ServeArguments serve;
+  trapeze::CheckArguments check;
+  trapeze::RenderArguments render;
+  add_serve(app, serve);
+  add_check(app, check);
+  add_render(app, render);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  if (is_verbose) spdlog::set_level(spdlog::level::debug);
+  if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
+  if (app.got_subcommand("check")) return trapeze::run_check(check);
+  return trapeze::run_render(render);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,46 @@
+// What every URL answers: requests in, responses out, without a socket.
+//
+// Thread-safety: handle() may be called from any thread.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "server/dataset.h"
+#include "server/http_message.h"
+#include "server/static_files.h"
+#include "server/tile_service.h"
+
+namespace trapeze {
+
+class Site {
+ public:
+  /// `public_url` is what documents call this server, without a '/' at the end; empty: by the Host
+  /// of each request. `data` and `tiles` outlive the site.
+  Site(std::string public_url, StaticFiles files, const CurrentDataset& data, TileService& tiles);
+
+  /// Calls `respond` exactly once: within this call, or later from a worker of the tile service.
+  void handle(const HttpRequest& request, Respond respond) const;
+
+ private:
+  HttpResponse route(const HttpRequest& request) const;
+  HttpResponse answer_health() const;
+  HttpResponse answer_ready() const;
+  HttpResponse answer_catalog(const HttpRequest& request) const;
+  HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
+  HttpResponse answer_file(const HttpRequest& request) const;
+  void handle_tiles(const HttpRequest& request, const Respond& respond) const;
+  void handle_tile(const TileRequest& tile, const HttpRequest& request,
+                   const Respond& respond) const;
+  /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
+  /// says nonsense.
+  OrProblem<std::string> base_url(const HttpRequest& request) const;
+
+  const std::string public_url_;
+  const StaticFiles files_;
+  const CurrentDataset& data_;
+  TileService& tiles_;
+};
+
+}  // namespace trapeze

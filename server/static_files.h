@@ -1,0 +1,41 @@
+// The files of the viewer, read once at the start. Only what the scan found can be served, so no
+// path in a URL can lead anywhere else.
+//
+// Thread-safety: immutable, any number of threads may read.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+namespace trapeze {
+
+struct StaticFile {
+  std::string content_type;
+  std::string entity_tag;  // strong, in its quotes
+  std::shared_ptr<const std::string> bytes;
+};
+
+class StaticFiles {
+ public:
+  /// No files at all.
+  StaticFiles() = default;
+  /// Reads all regular files below `root`, but not those whose name begins with '.', nor those of
+  /// more than 32 MB (they are logged). Throws std::runtime_error if `root` is not a folder that
+  /// can be read.
+  explicit StaticFiles(const std::string& root);
+
+  /// `path` is decoded and begins with '/'; one that ends with '/' means its index.html. Null if
+  /// there is no such file.
+  const StaticFile* find(const std::string& path) const;
+  std::size_t size() const { return files_.size(); }
+
+ private:
+  std::unordered_map<std::string, StaticFile> files_;  // by path, "/index.html"
+};
+
+/// By the ending of the name; application/octet-stream if it is unknown.
+std::string content_type_of(const std::string& file_name);
+
+}  // namespace trapeze

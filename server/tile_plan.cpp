@@ -1,0 +1,91 @@
+#include "server/tile_plan.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+#include "render/coverage.h"
+#include "server/build_id.h"
+#include "server/content_hash.h"
+
+namespace trapeze {
+namespace {
+
+// Default tolerance, in output pixels: too small to be seen.
+constexpr double kTolerancePixels = 0.25;
+
+// Colours of layers that were given none: muted, told apart, readable over each other.
+constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
+                                           {0x6f, 0xa8, 0xc9, 255},
+                                           {0xd9, 0x9b, 0x6c, 255},
+                                           {0x9d, 0x87, 0xb8, 255},
+                                           {0xd7, 0xb9, 0x5b, 255},
+                                           {0xc6, 0x7b, 0x82, 255},
+                                           {0x62, 0xa6, 0xa0, 255},
+                                           {0x94, 0x8b, 0x80, 255}}};
+
+Rgba fill_of_layer(const StyleQuery& query, const LayerConfig& config, std::size_t layer) {
+  Rgba fill = config.style.fill.value_or(kPalette[layer % kPalette.size()]);
+  if (const auto value = query.value_for(config.name, ParameterId::fill)) {
+    fill = std::get<Rgba>(*value);
+  }
+  double opacity = config.style.fill_opacity;
+  if (const auto value = query.value_for(config.name, ParameterId::fill_opacity)) {
+    opacity = std::get<double>(*value);
+  }
+  return with_opacity(fill, opacity);
+}
+
+}  // namespace
+
+Level TilePlan::level() const {
+  const double cells_per_pixel =
+      static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
+  return nearest_level(kTolerancePixels * cells_per_pixel);
+}
+
+std::string TilePlan::key() const {
+  std::string key =
+      fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
+  for (const LayerPaint& paint : layers) {
+    const ServedLayer& layer = dataset->layers()[paint.layer];
+    key += fmt::format(" {}:{:016x}={}", layer.config.name, layer.revision, to_hex(paint.fill));
+  }
+  return key;
+}
+
+std::string TilePlan::entity_tag() const {
+  ContentHash hash;
+  hash.add(build_id());
+  hash.add(key());
+  return fmt::format("\"{:016x}\"", hash.value());
+}
+
+OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
+  TilePlan plan{dataset, request.tile, request.scale, kTransparent, {}};
+  if (const auto background = request.style.value_for({}, ParameterId::background)) {
+    const Rgba colour = std::get<Rgba>(*background);
+    if (colour.a > 0) plan.background = colour;
+  }
+  for (const std::string& name : request.layers) {
+    const auto layer = dataset->find(name);
+    if (!layer) return unknown_layer(name, *dataset);
+    const LayerConfig& config = dataset->layers()[*layer].config;
+    if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
+    const Rgba fill = fill_of_layer(request.style, config, *layer);
+    if (fill.a > 0) plan.layers.push_back({*layer, fill});
+  }
+  return plan;
+}
+
+Problem unknown_layer(const std::string& name, const Dataset& dataset) {
+  constexpr std::size_t kMaxNames = 20;
+  std::string names;
+  for (std::size_t i = 0; i < dataset.layers().size() && i < kMaxNames; ++i) {
+    names += (i == 0 ? "" : ", ") + dataset.layers()[i].config.name;
+  }
+  if (dataset.layers().size() > kMaxNames) names += ", ... (all are in /catalog)";
+  return {404, fmt::format("There is no layer \"{}\".", name), "layers", name, "one of " + names};
+}
+
+}  // namespace trapeze

@@ -1,0 +1,49 @@
+// What exactly is to be drawn for one tile: names resolved, defaults filled in, nothing left open.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/tolerance.h"
+#include "core/web_mercator.h"
+#include "render/colour.h"
+#include "server/dataset.h"
+#include "server/problem.h"
+#include "server/tile_request.h"
+
+namespace trapeze {
+
+struct LayerPaint {
+  std::size_t layer = 0;  // position in the dataset
+  Rgba fill;
+
+  friend bool operator==(const LayerPaint&, const LayerPaint&) = default;
+};
+
+/// Layers that cannot be seen, being transparent or outside of their zooms, are left out.
+struct TilePlan {
+  std::shared_ptr<const Dataset> dataset;
+  TileId tile;
+  int scale = 1;
+  Rgba background;
+  std::vector<LayerPaint> layers;  // bottom first
+
+  /// The level at which the mesh is drawn: a quarter of an output pixel.
+  Level level() const;
+  /// Equal for plans that give the same picture with the same program, however the requests were
+  /// written. Holds the revisions of the layers.
+  std::string key() const;
+  /// The strong entity tag of the picture, in its quotes: from the key and the build, so that it is
+  /// known before anything is drawn.
+  std::string entity_tag() const;
+};
+
+/// The problem is 404 for a layer that is not in the dataset.
+OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+
+/// The problem to answer with for a layer name that is not in the dataset.
+Problem unknown_layer(const std::string& name, const Dataset& dataset);
+
+}  // namespace trapeze

@@ -1,0 +1,156 @@
+#include "server/tile_request.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].png";
+constexpr std::string_view kPng = ".png";
+constexpr std::string_view kJson = ".json";
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A decimal integer without leading zeros; a minus sign is allowed so that the tiles which maps
+/// ask for beyond the edge of the world are "outside" and not "malformed".
+bool is_integer(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  if (text.empty() || (text.size() > 1 && text.front() == '0')) return false;
+  return std::ranges::all_of(text, is_digit);
+}
+
+/// Nothing if the integer does not fit, which also is outside of every matrix.
+std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
+  std::uint32_t number = 0;
+  const auto [end, error] =
+      std::from_chars(integer.data(), integer.data() + integer.size(), number);
+  if (error != std::errc() || end != integer.data() + integer.size()) return std::nullopt;
+  return number;
+}
+
+OrProblem<std::vector<std::string>> parse_layers(std::string_view list) {
+  std::vector<std::string> layers;
+  while (true) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    const std::string_view name = list.substr(0, comma);
+    if (!is_layer_name(name)) {
+      return Problem{400,
+                     "The path names layers by 1 to 64 letters, digits, '_' or '-' each, "
+                     "separated by commas.",
+                     "layers", std::string(name), "layer names"};
+    }
+    if (std::ranges::find(layers, name) == layers.end()) layers.emplace_back(name);
+    if (layers.size() > kMaxLayersPerTile) {
+      return Problem{400, fmt::format("A tile shows at most {} layers.", kMaxLayersPerTile)};
+    }
+    if (comma == list.size()) return layers;
+    list.remove_prefix(comma + 1);
+  }
+}
+
+struct FileName {
+  std::string_view stem;  // "7" of "7@2x.png"
+  int scale = 1;
+};
+
+OrProblem<FileName> parse_file_name(std::string_view name) {
+  if (!name.ends_with(kPng)) {
+    return Problem{400, fmt::format("Tiles are PNG pictures: {}.", kTilePattern)};
+  }
+  name.remove_suffix(kPng.size());
+  const std::size_t at = name.find('@');
+  if (at == std::string_view::npos) return FileName{name, 1};
+  const std::string_view suffix = name.substr(at + 1);
+  const bool is_scale =
+      suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
+  if (!is_scale) {
+    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
+                   std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
+  }
+  return FileName{name.substr(0, at), suffix[0] - '0'};
+}
+
+OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
+                                   std::span<const QueryPair> query) {
+  auto layers = parse_layers(path[1]);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  auto file = parse_file_name(path[4]);
+  if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
+  auto tile = parse_tile_id(path[2], path[3], std::get<FileName>(file).stem);
+  if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
+  TileRequest request{
+      std::move(std::get<0>(layers)), std::get<TileId>(tile), std::get<FileName>(file).scale, {}};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
+  file.remove_suffix(kJson.size());
+  auto layers = parse_layers(file);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  TileJsonRequest request{std::move(std::get<0>(layers)), {}};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+}  // namespace
+
+bool is_layer_name(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxLayerNameLength &&
+         std::ranges::all_of(name, [](char c) {
+           return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+                  c == '-';
+         });
+}
+
+OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
+  for (const std::string_view number : {z, x, y}) {
+    if (is_integer(number)) continue;
+    return Problem{400,
+                   fmt::format("Zoom, column and row of a tile are integers: {}.", kTilePattern),
+                   "z/x/y", std::string(number), "an integer"};
+  }
+  const auto zoom = to_tile_number(z);
+  const auto column = to_tile_number(x);
+  const auto row = to_tile_number(y);
+  if (zoom && *zoom <= kMaxZoom && column && row) {
+    const TileId tile{static_cast<int>(*zoom), *column, *row};
+    if (tile.is_valid()) return tile;
+  }
+  return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
+                                  "2^zoom - 1.",
+                                  kMaxZoom)};
+}
+
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
+  if (target.size() > kMaxTargetLength) {
+    return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
+  }
+  const auto split = split_target(target);
+  const auto path = split ? decode_path(split->path) : std::nullopt;
+  const auto query = split ? decode_query(split->query) : std::nullopt;
+  if (!path || !query) {
+    return Problem{400,
+                   "The target is not well formed: '%' comes with two hex digits, and "
+                   "control characters are not allowed."};
+  }
+  if (path->size() == 5) return parse_tile(*path, *query);
+  if (path->size() == 2 && path->back().ends_with(kJson)) {
+    return parse_tile_json(path->back(), *query);
+  }
+  return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
+                                  "/tiles/{{layers}}.json.",
+                                  kTilePattern)};
+}
+
+}  // namespace trapeze

@@ -1,0 +1,45 @@
+// What a URL below /tiles/ asks for, as types. Everything here is hostile until parsed.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/web_mercator.h"
+#include "server/problem.h"
+#include "server/style_parameters.h"
+
+namespace trapeze {
+
+constexpr std::size_t kMaxTargetLength = 4096;  // bytes of path and query together
+constexpr std::size_t kMaxLayersPerTile = 16;
+constexpr std::size_t kMaxLayerNameLength = 64;
+constexpr int kMaxScale = 4;
+
+/// Whether `name` can name a layer: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
+bool is_layer_name(std::string_view name);
+
+/// One tile: /tiles/{layers}/{z}/{x}/{y}[@{1-4}x].png
+struct TileRequest {
+  std::vector<std::string> layers;  // valid names, each once, bottom first
+  TileId tile;                      // valid
+  int scale = 1;
+  StyleQuery style;
+};
+
+/// A description of tiles: /tiles/{layers}.json
+struct TileJsonRequest {
+  std::vector<std::string> layers;
+  StyleQuery style;
+};
+
+using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
+
+/// Parses a target, path and query, that begins with /tiles/. The problem is 400 for what is
+/// malformed, 404 for a tile outside of the matrix, and 414 for a target that is too long.
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target);
+
+/// Parses the z, x, y of a tile written as "Z/X/Y".
+OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);
+
+}  // namespace trapeze

@@ -1,0 +1,43 @@
+// The parts of a request target, decoded strictly: what is not well formed is refused, not guessed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace trapeze {
+
+/// Looks at the memory of the target it was split from.
+struct Target {
+  std::string_view path;   // still encoded; begins with '/'
+  std::string_view query;  // still encoded, without '?'
+};
+
+/// Splits "/path?query", or the absolute form "http://host/path?query". Nothing if it is neither.
+std::optional<Target> split_target(std::string_view target);
+
+enum class Plus { literal, space };
+
+/// Nothing if a '%' is not followed by two hex digits, or if the result holds a control character.
+std::optional<std::string> percent_decode(std::string_view text, Plus plus);
+
+/// Everything but letters, digits and -._~ is encoded, so the result can stand anywhere in a URL.
+std::string percent_encode(std::string_view text);
+
+/// The decoded segments between the slashes of a path ("/a/b" has two, "/" has one, empty).
+/// A decoded segment may hold anything printable, slashes too. Nothing if one is malformed.
+std::optional<std::vector<std::string>> decode_path(std::string_view path);
+
+using QueryPair = std::pair<std::string, std::string>;
+
+/// The decoded name=value pairs in order; a name without '=' has an empty value, empty pairs are
+/// left out. Nothing if one is malformed.
+std::optional<std::vector<QueryPair>> decode_query(std::string_view query);
+
+/// Whether `host` can be the Host of an absolute URL: a name, an IPv4 or a bracketed IPv6 address,
+/// with or without a port.
+bool is_valid_host(std::string_view host);
+
+}  // namespace trapeze

@@ -1,0 +1,48 @@
+#include "tests/render/compare_renderers.h"
+
+#include <cstdlib>
+#include <ostream>
+#include <stdexcept>
+
+namespace trapeze::testing {
+
+bool Difference::is_within_bounds() const {
+  return worst <= 2 && above_1 * 1000 <= pixels;
+}
+
+std::ostream& operator<<(std::ostream& out, const Difference& difference) {
+  return out << difference.above_1 << " of " << difference.pixels
+             << " pixels differ by more than 1, at most by " << difference.worst << " in column "
+             << difference.worst_column << ", row " << difference.worst_row;
+}
+
+Difference compare_coverages(const Coverage& expected, const Coverage& actual) {
+  if (expected.width() != actual.width() || expected.height() != actual.height()) {
+    throw std::invalid_argument("the coverages are of different sizes");
+  }
+  Difference difference;
+  difference.pixels = expected.pixels().size();
+  for (int row = 0; row < expected.height(); ++row) {
+    for (int column = 0; column < expected.width(); ++column) {
+      const int apart = std::abs(expected.at(column, row) - actual.at(column, row));
+      difference.above_1 += apart > 1 ? 1 : 0;
+      if (apart <= difference.worst) continue;
+      difference.worst = apart;
+      difference.worst_column = column;
+      difference.worst_row = row;
+    }
+  }
+  return difference;
+}
+
+Difference compare_renderers(CoverageRenderer& expected, CoverageRenderer& actual,
+                             const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                             const View& view) {
+  Coverage from_expected;
+  Coverage from_actual;
+  expected.draw(mesh, ranges, view, from_expected);
+  actual.draw(mesh, ranges, view, from_actual);
+  return compare_coverages(from_expected, from_actual);
+}
+
+}  // namespace trapeze::testing

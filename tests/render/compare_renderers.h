@@ -1,0 +1,32 @@
+// How far two renderers, or two pictures, are apart.
+#pragma once
+
+#include <cstddef>
+#include <iosfwd>
+#include <span>
+
+#include "render/coverage.h"
+
+namespace trapeze::testing {
+
+/// Pixels by the difference of their coverages.
+struct Difference {
+  std::size_t pixels = 0;
+  std::size_t above_1 = 0;  // pixels that differ by more than 1/255
+  int worst = 0;            // in 255ths
+  int worst_column = -1;
+  int worst_row = -1;
+
+  /// Within 2/255 everywhere and within 1/255 in 99.9 % of the pixels.
+  bool is_within_bounds() const;
+};
+std::ostream& operator<<(std::ostream& out, const Difference& difference);
+
+/// The two are of one size.
+Difference compare_coverages(const Coverage& expected, const Coverage& actual);
+
+Difference compare_renderers(CoverageRenderer& expected, CoverageRenderer& actual,
+                             const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                             const View& view);
+
+}  // namespace trapeze::testing

@@ -1,0 +1,47 @@
+// Meshes for tests of renderers, made by hand or by chance, with what is known about them.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/trapezoid_mesh.h"
+
+namespace trapeze::testing {
+
+/// A mesh that owns its arrays. Every one has an id of its own.
+class SampleMesh {
+ public:
+  SampleMesh();
+
+  std::uint32_t add_vertex(std::int32_t x, std::int32_t y);
+  std::uint32_t add_edge(Point upper, Point lower);
+  /// The region between two edges from one level to another.
+  void add(std::uint32_t left, std::uint32_t right, std::int32_t top, std::int32_t bottom);
+  /// A rectangle of cells.
+  void add_box(std::int32_t min_x, std::int32_t min_y, std::int32_t max_x, std::int32_t max_y);
+
+  MeshView view() const { return {id_, vertices_, edges_, trapezoids_}; }
+  TrapezoidRange all() const { return {0, static_cast<std::uint32_t>(trapezoids_.size())}; }
+  std::size_t size() const { return trapezoids_.size(); }
+  /// The sum of the areas of all trapezoids, in cells squared.
+  long double area() const;
+
+ private:
+  std::uint64_t id_;
+  std::vector<Point> vertices_;
+  std::vector<MeshEdge> edges_;
+  std::vector<MeshTrapezoid> trapezoids_;
+};
+
+/// x of an edge at a height, computed in the widest floating type there is.
+long double x_at(const MeshView& mesh, std::uint32_t edge, long double y);
+
+/// About `count` disjoint trapezoids that fill about half of the box: between edges from its top to
+/// its bottom that do not cross, cut at random levels. Many are slivers, some have no area.
+SampleMesh random_strips(std::mt19937& random, const Box& box, int count);
+
+/// `count` disjoint trapezoids, each alone in a field of a chessboard that covers the box.
+SampleMesh random_scatter(std::mt19937& random, const Box& box, int count);
+
+}  // namespace trapeze::testing

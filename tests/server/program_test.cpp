@@ -1,0 +1,249 @@
+// The program as its users meet it: started, asked, and ended from outside.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/png.h"
+#include "tests/server/raw_client.h"
+#include "tests/server/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::AllOf;
+using testing::fixture;
+using ::testing::HasSubstr;
+using testing::RawClient;
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string scratch_path(const std::string& name) {
+  return ::testing::TempDir() + "/" +
+         ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
+}
+
+/// A run of the program; what it prints goes to a file. Killed if it outlives the test.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments) : output_(scratch_path("output.txt")) {
+    arguments.insert(arguments.begin(), TRAPEZE_PROGRAM);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const int output = open(output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(output, STDOUT_FILENO);
+      dup2(output, STDERR_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+    close(output);
+  }
+
+  ~Program() {
+    if (!status_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    std::filesystem::remove(output_);
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  std::string output() const { return read_file(output_); }
+
+  void send_signal(int signal) const { kill(pid_, signal); }
+
+  /// The exit status; nothing if it did not exit by itself within 20 seconds.
+  std::optional<int> wait() {
+    for (int i = 0; i < 2000 && !status_; ++i) {
+      int status = 0;
+      if (waitpid(pid_, &status, WNOHANG) == pid_) {
+        status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      } else {
+        std::this_thread::sleep_for(10ms);
+      }
+    }
+    return status_;
+  }
+
+  /// The port, once it listens.
+  std::uint16_t port() const {
+    const std::regex listening("listening on [0-9.]+ port ([0-9]+)");
+    for (int i = 0; i < 2000; ++i) {
+      const std::string text = output();
+      std::smatch match;
+      if (std::regex_search(text, match, listening)) {
+        return static_cast<std::uint16_t>(std::stoi(match[1]));
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    throw std::runtime_error("it does not listen: " + output());
+  }
+
+ private:
+  const std::string output_;
+  pid_t pid_ = 0;
+  std::optional<int> status_;
+};
+
+std::vector<std::string> serve_arguments(const std::vector<std::string>& files) {
+  std::vector<std::string> arguments = {"serve",     "--port",     "0",       "--address",
+                                        "127.0.0.1", "--renderer", "software"};
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  return arguments;
+}
+
+void wait_until_ready(std::uint16_t port) {
+  for (int i = 0; i < 1000; ++i) {
+    if (RawClient(port).get("/ready").status == 200) return;
+    std::this_thread::sleep_for(10ms);
+  }
+  FAIL() << "never ready";
+}
+
+TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
+  Program program(serve_arguments({fixture("rings.geojson"), fixture("west.geojson")}));
+  const std::uint16_t port = program.port();
+  wait_until_ready(port);
+  RawClient client(port);
+  EXPECT_EQ(client.get("/tiles/rings,west/0/0/0.png").status, 200);
+  RawClient half(port);
+  half.send("GET /tiles/rings/1/0/0@4x.png HTTP/1.1\r\n");
+  std::this_thread::sleep_for(100ms);
+  program.send_signal(SIGTERM);
+  EXPECT_TRUE(client.is_closed_within(5s));
+  half.send("Host: a\r\n\r\n");
+  EXPECT_EQ(half.receive().status, 200) << "what was asked before the signal is answered";
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("drawing by software"), HasSubstr("rings.geojson: 1 of 1 features"),
+                    HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
+}
+
+TEST(ProgramTest, EndsInOrderOnSigint) {
+  Program program(serve_arguments({fixture("rings.geojson")}));
+  program.port();
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
+}
+
+TEST(ProgramTest, ServesAConfiguration) {
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[server]\nport = 1\naddress = \"127.0.0.1\"\nrenderer = \"software\"\n"
+                      << "[[layer]]\nname = \"shapes\"\nfile = \"" << fixture("rings.geojson")
+                      << "\"\nstyle = { fill = \"teal\" }\n";
+  Program program({"serve", "--config", path, "--port", "0"});
+  const std::uint16_t port = program.port();
+  wait_until_ready(port);
+  EXPECT_EQ(RawClient(port).get("/tiles/shapes/0/0/0.png").status, 200);
+  EXPECT_EQ(RawClient(port).get("/tiles/rings/0/0/0.png").status, 404);
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, AFileThatIsMissingOrNoMapIsAnErrorThatNamesIt) {
+  Program missing(serve_arguments({fixture("rings.geojson"), fixture("nosuch.fgb")}));
+  EXPECT_EQ(missing.wait(), 1);
+  EXPECT_THAT(missing.output(), HasSubstr("nosuch.fgb"));
+  const std::string path = scratch_path("broken.fgb");
+  std::ofstream(path) << "this is not FlatGeobuf";
+  Program broken(serve_arguments({path}));
+  EXPECT_EQ(broken.wait(), 1);
+  EXPECT_THAT(broken.output(), HasSubstr("broken.fgb"));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, APortInUseIsAnErrorThatNamesIt) {
+  Program first(serve_arguments({fixture("rings.geojson")}));
+  const std::string port = std::to_string(first.port());
+  Program second({"serve", "--port", port, "--address", "127.0.0.1", "--renderer", "software",
+                  fixture("west.geojson")});
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_THAT(second.output(), AllOf(HasSubstr(port), HasSubstr("in use")));
+}
+
+TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{"serve"}, "nothing to serve"},
+      {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
+      {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "auto, egl, osmesa"},
+      {{"serve", "--port", "70000", fixture("rings.geojson")}, "port"},
+      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
+       "no such tile"},
+      {{"render", fixture("rings.geojson"), "--tile", "0", "--output", "x.png"}, "Z/X/Y"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--style", "fill=no", "--output",
+        "x.png"},
+       "fill takes a colour"},
+      {{"check"}, "FILE"},
+      {{}, "subcommand"},
+      {{"sevre"}, "sevre"}};
+  for (const auto& [arguments, says] : wrong) {
+    Program program(arguments);
+    const auto status = program.wait();
+    EXPECT_TRUE(status && *status != 0 && *status < 128) << says;
+    EXPECT_THAT(program.output(), HasSubstr(says));
+  }
+}
+
+TEST(ProgramTest, RendersOneTileIntoAFile) {
+  const std::string path = scratch_path("tile.png");
+  Program program({"render", fixture("west.geojson"), fixture("rings.geojson"), "--tile", "0/0/0",
+                   "--scale", "2", "--style", "west.fill=blue&rings.fill=red", "--renderer",
+                   "software", "--output", path});
+  ASSERT_EQ(program.wait(), 0) << program.output();
+  const std::string bytes = read_file(path);
+  std::filesystem::remove(path);
+  const Picture picture =
+      decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  ASSERT_EQ(picture.width, 512);
+  EXPECT_EQ(picture.at(10, 10), (Rgba{0, 0, 255, 255}));
+  EXPECT_EQ(picture.at(140, 140), (Rgba{255, 0, 0, 255}));
+  EXPECT_EQ(picture.at(500, 10).a, 0);
+}
+
+TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
+  Program program({"check", fixture("nosuch.fgb"), fixture("rings.geojson")});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("nosuch.fgb"), HasSubstr("rings.geojson (GeoJSON)"),
+                    ::testing::ContainsRegex("polygons +2"), ::testing::ContainsRegex("rings +3"),
+                    ::testing::ContainsRegex("vertices +12"), HasSubstr("per vertex")));
+  Program good({"check", fixture("rings.geojson")});
+  EXPECT_EQ(good.wait(), 0);
+}
+
+TEST(ProgramTest, HelpShowsExamples) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"serve", "--help"},
+                                                    {"check", "--help"},
+                                                    {"render", "--help"}}) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_THAT(program.output(), HasSubstr("Example"));
+  }
+  Program version({"--version"});
+  EXPECT_EQ(version.wait(), 0);
+  EXPECT_THAT(version.output(), ::testing::StartsWith("trapeze 0."));
+}
+
+}  // namespace
+}  // namespace trapeze

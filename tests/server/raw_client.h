@@ -1,0 +1,44 @@
+// A blocking HTTP client that sends exactly the bytes it is told to, and gives up after ten
+// seconds.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace trapeze::testing {
+
+struct RawResponse {
+  int status = 0;
+  std::map<std::string, std::string> headers;  // names in lower case
+  std::string body;
+};
+
+class RawClient {
+ public:
+  /// Throws std::runtime_error if nothing listens there.
+  explicit RawClient(std::uint16_t port);
+  ~RawClient();
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  void send(std::string_view bytes) const;
+  /// Reads one response; `is_head`: it has no body whatever its length says. Throws
+  /// std::runtime_error if the connection ends before the response does.
+  RawResponse receive(bool is_head = false);
+  /// GET over this connection.
+  RawResponse get(const std::string& target, const std::string& more_headers = {});
+  /// Whether the server has closed the connection, or does so within `patience`.
+  bool is_closed_within(std::chrono::milliseconds patience);
+
+ private:
+  /// False at the end of the stream.
+  bool read_more();
+
+  int socket_ = -1;
+  std::string received_;
+};
+
+}  // namespace trapeze::testing

@@ -1,0 +1,267 @@
+#include "server/site.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "render/png.h"
+#include "tests/server/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr Rgba kRed{255, 0, 0, 255};
+constexpr Rgba kBlueHalf{0, 0, 255, 128};
+
+Picture picture_of(const HttpResponse& response) {
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(response.body->data());
+  return decode_png({bytes, response.body->size()});
+}
+
+class SiteTest : public ::testing::Test {
+ protected:
+  HttpResponse get(const std::string& target, const std::string& if_none_match = {}) {
+    return sample_.get(target, if_none_match);
+  }
+  int status(const std::string& target) { return get(target).status; }
+  nlohmann::json json(const std::string& target) {
+    return nlohmann::json::parse(*get(target).body);
+  }
+
+  testing::SampleSite sample_;
+};
+
+TEST_F(SiteTest, ATileShowsInsideAndOutsideWhereTheyAre) {
+  const auto response = get("/tiles/rings/0/0/0.png");
+  ASSERT_EQ(response.status, 200);
+  EXPECT_EQ(response.header("Content-Type"), "image/png");
+  const Picture picture = picture_of(response);
+  ASSERT_EQ(picture.width, 256);
+  ASSERT_EQ(picture.height, 256);
+  const auto ring_of = [](int i) { return i >= 64 && i < 192; };
+  const auto hole_of = [](int i) { return i >= 96 && i < 160; };
+  const auto island_of = [](int i) { return i >= 112 && i < 144; };
+  int wrong = 0;
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      const bool is_inside = (ring_of(x) && ring_of(y) && !(hole_of(x) && hole_of(y))) ||
+                             (island_of(x) && island_of(y));
+      const Rgba pixel = picture.at(x, y);
+      wrong += is_inside ? pixel != kRed : pixel.a != 0;
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SiteTest, ScaleMultipliesThePixels) {
+  const Picture picture = picture_of(get("/tiles/rings/0/0/0@3x.png"));
+  ASSERT_EQ(picture.width, 768);
+  EXPECT_EQ(picture.at(3 * 64, 3 * 64), kRed);
+  EXPECT_EQ(picture.at(3 * 64 - 1, 3 * 64).a, 0);
+  EXPECT_EQ(picture.at(3 * 96, 3 * 96).a, 0);
+}
+
+TEST_F(SiteTest, TilesOfHigherZoomsShowTheirPart) {
+  // The hole's north-west corner lies in the middle of this tile.
+  const Picture picture = picture_of(get("/tiles/rings/2/1/1.png"));
+  EXPECT_EQ(picture.at(127, 127), kRed);
+  EXPECT_EQ(picture.at(128, 128).a, 0);
+  EXPECT_EQ(picture.at(127, 128), kRed);
+  EXPECT_EQ(picture.at(191, 191).a, 0);
+  EXPECT_EQ(picture.at(192, 192), kRed) << "the island";
+}
+
+TEST_F(SiteTest, TheFirstLayerIsTheLowest) {
+  const Picture blue_over_red = picture_of(get("/tiles/rings,west/0/0/0.png"));
+  EXPECT_EQ(blue_over_red.at(10, 10), kBlueHalf);
+  EXPECT_EQ(blue_over_red.at(70, 100), (Rgba{127, 0, 128, 255}));
+  EXPECT_EQ(blue_over_red.at(180, 100), kRed);
+  const Picture red_over_blue = picture_of(get("/tiles/west,rings/0/0/0.png"));
+  EXPECT_EQ(red_over_blue.at(70, 100), kRed);
+}
+
+TEST_F(SiteTest, StylesOfTheRequestAreDrawn) {
+  const Picture picture =
+      picture_of(get("/tiles/rings,west/0/0/0.png?rings.fill=lime&west.fill-opacity=0&"
+                     "background=rgb(1,2,3)"));
+  EXPECT_EQ(picture.at(70, 100), (Rgba{0, 255, 0, 255}));
+  EXPECT_EQ(picture.at(10, 10), (Rgba{1, 2, 3, 255}));
+}
+
+TEST_F(SiteTest, WhereThereIsNoDataTheTileIsTransparent) {
+  for (const char* target : {"/tiles/rings/5/0/0.png", "/tiles/west/6/0/0.png"}) {
+    const auto response = get(target);
+    ASSERT_EQ(response.status, 200);
+    const Picture picture = picture_of(response);
+    EXPECT_EQ(picture.width, 256);
+    EXPECT_EQ(picture.at(128, 128).a, 0);
+  }
+}
+
+TEST_F(SiteTest, TilesMayBeCachedAndTimed) {
+  const auto response = get("/tiles/rings/0/0/0.png");
+  EXPECT_EQ(response.header("Cache-Control"), "public, max-age=3600");
+  EXPECT_EQ(response.header("Access-Control-Allow-Origin"), "*");
+  EXPECT_THAT(std::string(response.header("Server-Timing")),
+              ::testing::MatchesRegex("select;dur=[0-9.]+, draw;dur=[0-9.]+, "
+                                      "compose;dur=[0-9.]+, encode;dur=[0-9.]+"));
+}
+
+TEST_F(SiteTest, ATagThatTheClientHasIsNotModified) {
+  const std::string tag(get("/tiles/rings/0/0/0.png").header("ETag"));
+  ASSERT_THAT(tag, ::testing::MatchesRegex("\"[0-9a-f]+\""));
+  const auto response = get("/tiles/rings/0/0/0.png?fill=red&unknown=1", tag);
+  EXPECT_EQ(response.status, 304);
+  EXPECT_EQ(response.body, nullptr);
+  EXPECT_EQ(response.header("ETag"), tag);
+  EXPECT_EQ(get("/tiles/rings/0/0/0.png?fill=blue", tag).status, 200);
+}
+
+TEST_F(SiteTest, StatusCodesSayWhatIsWrong) {
+  EXPECT_EQ(status("/tiles/nosuch/0/0/0.png"), 404);
+  EXPECT_EQ(status("/tiles/rings,nosuch/0/0/0.png"), 404);
+  EXPECT_EQ(status("/tiles/nosuch.json"), 404);
+  EXPECT_EQ(status("/tiles/rings/0/1/0.png"), 404);
+  EXPECT_EQ(status("/tiles/rings/0/0/x.png"), 400);
+  EXPECT_EQ(status("/tiles/rings/0/0/0.png?fill-opacity=2"), 400);
+  EXPECT_EQ(status("/tiles/rings/0/0/0.png?fill=red&fill=red"), 400);
+  EXPECT_EQ(status("/tiles/rings/0/0/0.png?%zz"), 400);
+  EXPECT_EQ(status("/nosuch"), 404);
+  EXPECT_EQ(status("/"), 404);
+  EXPECT_EQ(status("/%00"), 400);
+  EXPECT_EQ(status("/../../etc/passwd"), 404);
+  EXPECT_EQ(status("nonsense"), 400);
+  EXPECT_EQ(status("/" + std::string(5000, 'a')), 414);
+  EXPECT_EQ(status("/tiles/" + std::string(5000, 'a')), 414);
+}
+
+TEST_F(SiteTest, ErrorsAreProblemsThatNameTheParameter) {
+  const auto response = get("/tiles/rings/0/0/0.png?rings.fill=reddish");
+  EXPECT_EQ(response.header("Content-Type"), "application/problem+json");
+  EXPECT_EQ(response.header("Cache-Control"), "no-store");
+  EXPECT_EQ(response.header("Access-Control-Allow-Origin"), "*");
+  const auto json = nlohmann::json::parse(*response.body);
+  EXPECT_EQ(json["status"], 400);
+  EXPECT_EQ(json["parameter"], "rings.fill");
+  EXPECT_EQ(json["value"], "reddish");
+  EXPECT_THAT(json["takes"].get<std::string>(), HasSubstr("a colour"));
+}
+
+TEST_F(SiteTest, OtherMethodsAreRefusedAndOptionsAnswered) {
+  for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "TRACE", "FOO"}) {
+    const auto response = sample_.handle({method, "/tiles/rings/0/0/0.png", "h", ""});
+    EXPECT_EQ(response.status, 405) << method;
+    EXPECT_EQ(response.header("Allow"), "GET, HEAD, OPTIONS");
+  }
+  const auto options = sample_.handle({"OPTIONS", "/tiles/rings/0/0/0.png", "h", ""});
+  EXPECT_EQ(options.status, 204);
+  EXPECT_EQ(options.body, nullptr);
+  EXPECT_EQ(options.header("Access-Control-Allow-Methods"), "GET, HEAD, OPTIONS");
+  EXPECT_EQ(options.header("Access-Control-Allow-Origin"), "*");
+}
+
+TEST_F(SiteTest, TileJsonDescribesTheLayersTogether) {
+  const auto json = this->json("/tiles/rings,west.json?west.fill=teal&fill-opacity=.5&x=1");
+  EXPECT_EQ(json["tilejson"], "3.0.0");
+  EXPECT_EQ(json["name"], "Rings, west");
+  EXPECT_EQ(json["attribution"], "drawn by hand");
+  EXPECT_EQ(json["tiles"],
+            nlohmann::json::array({"http://maps.example:8080/tiles/rings,west/{z}/{x}/{y}.png"
+                                   "?fill-opacity=0.5&west.fill=008080ff"}));
+  EXPECT_EQ(json["minzoom"], 0);
+  EXPECT_EQ(json["maxzoom"], kMaxZoom);
+  const auto bounds = json["bounds"].get<std::vector<double>>();
+  ASSERT_EQ(bounds.size(), 4u);
+  EXPECT_NEAR(bounds[0], -180, 1e-6);
+  EXPECT_NEAR(bounds[1], -85.0511288, 1e-6);
+  EXPECT_NEAR(bounds[2], 90, 1e-6);
+  EXPECT_NEAR(bounds[3], 85.0511288, 1e-6);
+  EXPECT_NEAR(json["center"][0], -45, 1e-6);
+  EXPECT_NEAR(json["center"][1], 0, 1e-6);
+  EXPECT_GE(json["center"][2], json["minzoom"]);
+}
+
+TEST_F(SiteTest, TileJsonOfOneLayerHasItsZooms) {
+  const auto json = this->json("/tiles/west.json");
+  EXPECT_EQ(json["maxzoom"], 5);
+  EXPECT_EQ(json["tiles"][0], "http://maps.example:8080/tiles/west/{z}/{x}/{y}.png");
+}
+
+TEST_F(SiteTest, AHostThatIsNoneIsNotEchoed) {
+  for (const char* host : {"", "evil/\"path", "a b", "<script>"}) {
+    EXPECT_EQ(sample_.handle({"GET", "/tiles/rings.json", host, ""}).status, 400) << host;
+  }
+}
+
+TEST(SitePublicUrlTest, GoesBeforeTheHost) {
+  testing::SampleSite sample(true, {}, "https://cdn.example/maps");
+  const auto json = nlohmann::json::parse(*sample.get("/tiles/rings.json").body);
+  EXPECT_EQ(json["tiles"][0], "https://cdn.example/maps/tiles/rings/{z}/{x}/{y}.png");
+}
+
+TEST_F(SiteTest, TheCatalogListsLayersAndParameters) {
+  const auto json = this->json("/catalog");
+  ASSERT_EQ(json["layers"].size(), 2u);
+  const auto& rings = json["layers"][0];
+  EXPECT_EQ(rings["name"], "rings");
+  EXPECT_EQ(rings["title"], "Rings");
+  EXPECT_EQ(rings["attribution"], "drawn by hand");
+  EXPECT_EQ(rings["features"], 1);
+  EXPECT_EQ(rings["polygons"], 2);
+  EXPECT_EQ(rings["rings"], 3);
+  EXPECT_EQ(rings["vertices"], 12);
+  EXPECT_GT(rings["trapezoids"], 0);
+  EXPECT_NEAR(rings["bounds"][0], -90, 1e-6);
+  EXPECT_NEAR(rings["bounds"][3], 66.5132604, 1e-6);
+  EXPECT_EQ(rings["fields"], nlohmann::json::parse(R"([{"name": "name", "type": "string"},
+                                                       {"name": "rank", "type": "integer"}])"));
+  EXPECT_EQ(json["renderer"], "software");
+  EXPECT_EQ(json["generation"], sample_.data().get()->generation());
+  EXPECT_EQ(json["parameters"].size(), style_parameters().size());
+}
+
+TEST_F(SiteTest, DocumentsAreNotSentAgainToWhoHasThem) {
+  for (const char* target : {"/catalog", "/tiles/rings.json"}) {
+    const std::string tag(get(target).header("ETag"));
+    EXPECT_EQ(get(target, tag).status, 304);
+    EXPECT_EQ(get(target, "\"other\"").status, 200);
+  }
+}
+
+TEST(SiteLoadingTest, IsHealthyButNotReadyUntilTheDataIsThere) {
+  testing::SampleSite sample(/*is_loaded=*/false);
+  EXPECT_EQ(sample.get("/health").status, 200);
+  for (const char* target : {"/ready", "/catalog", "/tiles/rings.json", "/tiles/rings/0/0/0.png"}) {
+    const auto response = sample.get(target);
+    EXPECT_EQ(response.status, 503) << target;
+    EXPECT_EQ(response.header("Retry-After"), "1");
+  }
+  EXPECT_EQ(sample.get("/tiles/rings/0/0/x.png").status, 400);
+  sample.data().set(testing::sample_dataset());
+  for (const char* target : {"/health", "/ready", "/catalog", "/tiles/rings/0/0/0.png"}) {
+    EXPECT_EQ(sample.get(target).status, 200) << target;
+  }
+}
+
+TEST(SiteFilesTest, ServesTheViewer) {
+  const std::string root = ::testing::TempDir() + "/site_files_test";
+  std::filesystem::create_directories(root);
+  std::ofstream(root + "/index.html") << "<p>map</p>";
+  std::ofstream(root + "/a b.css") << "p {}";
+  testing::SampleSite sample(true, StaticFiles(root));
+  std::filesystem::remove_all(root);
+  const auto index = sample.get("/?layers=rings");
+  EXPECT_EQ(index.status, 200);
+  EXPECT_EQ(*index.body, "<p>map</p>");
+  EXPECT_EQ(index.header("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(sample.get("/", std::string(index.header("ETag"))).status, 304);
+  EXPECT_EQ(*sample.get("/a%20b.css").body, "p {}");
+  EXPECT_EQ(sample.get("/..%2f..%2fetc/passwd").status, 404);
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,87 @@
+#include "server/style_parameters.h"
+
+#include <gmock/gmock.h>
+
+namespace trapeze {
+namespace {
+
+const std::vector<std::string> kLayers = {"roads", "lakes"};
+
+OrProblem<StyleQuery> parse(std::string_view query) {
+  return StyleQuery::parse(decode_query(query).value(), kLayers);
+}
+
+std::string canonical(std::string_view query) {
+  const auto parsed = parse(query);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return "problem: " + problem->detail;
+  return std::get<StyleQuery>(parsed).canonical_text();
+}
+
+Problem problem_of(std::string_view query) {
+  const auto parsed = parse(query);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+  ADD_FAILURE() << query << " was taken";
+  return {0, ""};
+}
+
+TEST(StyleParametersTest, EqualStylesHaveEqualText) {
+  const std::string text = canonical("background=white&fill=red");
+  for (const char* query : {"fill=red&background=white", "fill=f00&background=fff",
+                            "fill=FF0000&background=WHITE", "fill=%23ff0000ff&background=ffffffff",
+                            "background=rgb(255,255,255)&&fill=rgba(255,+0,+0,+1)",
+                            "unknown=1&fill=red&background=white&unknown=2"}) {
+    EXPECT_EQ(canonical(query), text) << query;
+  }
+  EXPECT_EQ(canonical("fill-opacity=0.50"), canonical("fill-opacity=5e-1"));
+  EXPECT_EQ(canonical("fill-opacity=-0"), canonical("fill-opacity=0"));
+}
+
+TEST(StyleParametersTest, DifferentStylesHaveDifferentText) {
+  EXPECT_NE(canonical("fill=red"), canonical("fill=fe0000"));
+  EXPECT_NE(canonical("fill=red"), canonical("background=red"));
+  EXPECT_NE(canonical("fill=red"), canonical("roads.fill=red"));
+  EXPECT_NE(canonical("fill-opacity=0.5"), canonical("fill-opacity=0.51"));
+}
+
+TEST(StyleParametersTest, CanonicalTextReadsBackAsItself) {
+  const std::string text = canonical("lakes.fill=teal&fill-opacity=0.1&roads.fill-opacity=.25");
+  EXPECT_EQ(canonical(text), text);
+  EXPECT_EQ(text, "fill-opacity=0.1&lakes.fill=008080ff&roads.fill-opacity=0.25");
+}
+
+TEST(StyleParametersTest, NamesThatMeanNothingAreIgnored) {
+  for (const char* query :
+       {"fil=red", "sea.fill=nonsense", "roads.background=red", "roads.=1", ".fill=red", "Fill=red",
+        "fill%20=red", "=red", "utm_source=x&utm_source=y"}) {
+    EXPECT_EQ(canonical(query), "") << query;
+  }
+}
+
+TEST(StyleParametersTest, ALayersOwnSettingGoesBeforeTheOneForAll) {
+  const auto parsed = parse("fill=red&lakes.fill=blue");
+  const auto& query = std::get<StyleQuery>(parsed);
+  EXPECT_EQ(query.value_for("roads", ParameterId::fill), ParameterValue(Rgba{255, 0, 0, 255}));
+  EXPECT_EQ(query.value_for("lakes", ParameterId::fill), ParameterValue(Rgba{0, 0, 255, 255}));
+  EXPECT_EQ(query.value_for("lakes", ParameterId::fill_opacity), std::nullopt);
+}
+
+TEST(StyleParametersTest, WrongValuesAreProblemsThatNameTheParameter) {
+  for (const char* value : {"", "-1", "-0.001", "1.001", "2", "1e9", "nan", "inf", "-inf", "0x1",
+                            "0.5 ", "%200.5", "half", "0,5", "1e999"}) {
+    const Problem problem = problem_of(std::string("roads.fill-opacity=") + value);
+    EXPECT_EQ(problem.status, 400);
+    EXPECT_EQ(problem.parameter, "roads.fill-opacity");
+    EXPECT_EQ(problem.takes, "a number from 0 to 1");
+  }
+  for (const char* value : {"", "f", "ff", "fffff", "nocolour", "rgb(1,2)", "%3Cscript%3E"}) {
+    EXPECT_EQ(problem_of(std::string("fill=") + value).parameter, "fill") << value;
+  }
+}
+
+TEST(StyleParametersTest, AParameterGivenTwiceIsAProblem) {
+  EXPECT_EQ(problem_of("fill=red&fill=red").parameter, "fill");
+  EXPECT_EQ(problem_of("lakes.fill=red&fill=blue&lakes.fill=red").parameter, "lakes.fill");
+}
+
+}  // namespace
+}  // namespace trapeze

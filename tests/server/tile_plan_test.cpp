@@ -1,0 +1,92 @@
+#include "server/tile_plan.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/server/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+class TilePlanTest : public ::testing::Test {
+ protected:
+  TilePlan plan(const std::string& target) const {
+    const auto parsed = parse_tiles_target("/tiles/" + target);
+    auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
+    return std::get<TilePlan>(planned);
+  }
+  std::string tag(const std::string& target) const { return plan(target).entity_tag(); }
+
+  const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
+};
+
+TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
+  const TilePlan plan = this->plan("rings,west/0/0/0.png");
+  EXPECT_THAT(plan.layers, ::testing::ElementsAre(LayerPaint{0, {255, 0, 0, 255}},
+                                                  LayerPaint{1, {0, 0, 255, 128}}));
+  EXPECT_EQ(plan.background, kTransparent);
+}
+
+TEST_F(TilePlanTest, TheRequestGoesBeforeTheConfiguration) {
+  const TilePlan plan =
+      this->plan("rings,west/0/0/0.png?fill=lime&west.fill-opacity=1&background=ffff0080");
+  EXPECT_THAT(plan.layers, ::testing::ElementsAre(LayerPaint{0, {0, 255, 0, 255}},
+                                                  LayerPaint{1, {0, 255, 0, 255}}));
+  EXPECT_EQ(plan.background, (Rgba{255, 255, 0, 128}));
+}
+
+TEST_F(TilePlanTest, LeavesOutLayersThatCannotBeSeen) {
+  EXPECT_EQ(plan("west/5/0/0.png").layers.size(), 1u);
+  EXPECT_EQ(plan("west/6/0/0.png").layers.size(), 0u);
+  EXPECT_EQ(plan("rings/0/0/0.png?fill-opacity=0").layers.size(), 0u);
+}
+
+TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
+  const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png");
+  const auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
+  const auto& problem = std::get<Problem>(planned);
+  EXPECT_EQ(problem.status, 404);
+  EXPECT_EQ(problem.value, "nosuch");
+}
+
+TEST_F(TilePlanTest, EqualPicturesHaveEqualTags) {
+  const std::string same = tag("rings/3/4/4.png");
+  for (const char* target :
+       {"rings/3/4/4@1x.png", "rings,rings/3/4/4.png", "rings/3/4/4.png?fill=red",
+        "rings/3/4/4.png?rings.fill=F00&fill=blue", "rings/3/4/4.png?x=1",
+        "rings/3/4/4.png?background=ff000000", "rings/3/4/4.png?fill-opacity=1.0"}) {
+    EXPECT_EQ(tag(target), same) << target;
+  }
+}
+
+TEST_F(TilePlanTest, DifferentPicturesHaveDifferentTags) {
+  const std::string tag = this->tag("rings/3/4/4.png");
+  for (const char* target :
+       {"rings/3/4/4@2x.png", "rings/3/4/3.png", "rings/3/3/4.png", "rings/2/3/3.png",
+        "west/3/4/4.png", "rings,west/3/4/4.png", "rings/3/4/4.png?fill=fe0000",
+        "rings/3/4/4.png?background=white", "rings/3/4/4.png?fill-opacity=0.5"}) {
+    EXPECT_NE(this->tag(target), tag) << target;
+  }
+  EXPECT_NE(this->tag("rings,west/3/4/4.png"), this->tag("west,rings/3/4/4.png"));
+}
+
+TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
+  const auto again = testing::sample_dataset();
+  EXPECT_EQ(again->generation(), dataset_->generation());
+  TilePlan plan = this->plan("rings/0/0/0.png");
+  const std::string tag = plan.entity_tag();
+  plan.dataset = again;
+  EXPECT_EQ(plan.entity_tag(), tag);
+  auto layers = layers_of_files({testing::fixture("west.geojson")});
+  layers[0].name = "rings";  // the same name, other contents
+  plan.dataset = Dataset::load(layers);
+  EXPECT_NE(plan.entity_tag(), tag);
+}
+
+TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
+  const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
+  EXPECT_EQ(plan("rings/10/0/0.png").level(), nearest_level(pixel / 4));
+  EXPECT_EQ(plan("rings/10/0/0@2x.png").level(), nearest_level(pixel / 8));
+}
+
+}  // namespace
+}  // namespace trapeze
