@@ -58,8 +58,9 @@ void log_report(const LoadReport& report, const Layer& layer) {
       "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
       "{:.2f} s ({})",
       report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
-      layer.mesh().trapezoids.size(), static_cast<double>(layer.memory()) / 1e6,
-      report.total_seconds, report.driver);
+      layer.mesh().trapezoids.size(),
+      static_cast<double>(layer.memory() + layer.features().memory()) / 1e6, report.total_seconds,
+      report.driver);
   if (report.other_geometry > 0) {
     spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
                  report.other_geometry);
