@@ -44,7 +44,8 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
       return true;
     }
   }
-  outcome.failure = "its rings still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+  outcome.failure =
+      "its rings still cross after " + std::to_string(kMaxPasses) + " passes of noding";
   return false;
 }
 

@@ -40,19 +40,20 @@ class Layer {
   const Box& bounds() const;
   const MeshView& mesh() const;
 
-  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, with or without
-  /// those that stand for dust, as disjoint ranges in ascending order. Never leaves out a trapezoid
-  /// whose interior meets the box; may name a few that do not. In a trapezoid of dust that stands for
-  /// holes, left and right edge have changed places: its area is negative.
-  void select(const Box& box, Level level, SmallPolygons small, std::vector<TrapezoidRange>& ranges) const;
+  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, with or
+  /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
+  /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
+  /// that stands for holes, left and right edge have changed places: its area is negative.
+  void select(const Box& box, Level level, SmallPolygons small,
+              std::vector<TrapezoidRange>& ranges) const;
 
   /// Replaces `places` by boxes around what is left of the small polygons in and near `box` at
   /// `level`, several in one pixel taken together.
   void small_polygons(const Box& box, Level level, std::vector<Box>& places) const;
 
-  /// The same polygons generalized without the topological consistency test (paper, section 4.2), where
-  /// that makes a difference. Built when first asked for, which takes about as long as loading took
-  /// and as much memory again; callers that come meanwhile wait.
+  /// The same polygons generalized without the topological consistency test (paper, section 4.2),
+  /// where that makes a difference. Built when first asked for, which takes about as long as
+  /// loading took and as much memory again; callers that come meanwhile wait.
   const Layer& without_topology_test() const;
 
   /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
@@ -71,7 +72,8 @@ class Layer {
   };
   Size size() const;
 
-  /// Heap memory held by geometry and index, in bytes; attributes are counted by features().memory().
+  /// Heap memory held by geometry and index, in bytes; attributes are counted by
+  /// features().memory().
   std::size_t memory() const;
 
  private:

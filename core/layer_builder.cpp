@@ -1,7 +1,6 @@
 #include "core/layer_builder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -60,25 +59,30 @@ std::vector<Grain> concatenate(const std::vector<PartOf>& parts, Layer::Contents
   for (const auto& [stock, p] : parts) {
     const History& history = stock->history;
     // From indices of the stock to indices of the layer; wraps around where that is negative.
-    const auto vertex_shift = static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
+    const auto vertex_shift =
+        static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
     const auto edge_shift = static_cast<std::uint32_t>(layer.edges.size() - stock->parts[p].edges);
     const auto vertices = part_of(history.vertices, *stock, p, &Stock::Part::vertices);
     layer.vertices.insert(layer.vertices.end(), vertices.begin(), vertices.end());
     for (const MeshEdge e : part_of(history.edges, *stock, p, &Stock::Part::edges)) {
       layer.edges.push_back({e.upper + vertex_shift, e.lower + vertex_shift});
     }
-    for (const MeshTrapezoid& t : part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
-      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift, t.left + edge_shift,
-                                  t.right + edge_shift});
+    for (const MeshTrapezoid& t :
+         part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
+      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift,
+                                  t.left + edge_shift, t.right + edge_shift});
       layer.feature_of.push_back(stock->parts[p].row);
     }
     const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
     const auto grains = part_of(history.grains, *stock, p, &Stock::Part::grains);
     all_grains.insert(all_grains.end(), grains.begin(), grains.end());
-    layer.outline_ends.resize(stock->parts[p].row, static_cast<std::uint32_t>(layer.outlines.size()));
-    const std::size_t rings_end = p + 1 < stock->parts.size() ? stock->parts[p + 1].rings : stock->outlines.size();
-    for (std::size_t r = stock->parts[p].rings; r < rings_end; ++r) layer.outlines.add(stock->outlines[r]);
+    layer.outline_ends.resize(stock->parts[p].row,
+                              static_cast<std::uint32_t>(layer.outlines.size()));
+    const std::size_t rings_end =
+        p + 1 < stock->parts.size() ? stock->parts[p + 1].rings : stock->outlines.size();
+    for (std::size_t r = stock->parts[p].rings; r < rings_end; ++r)
+      layer.outlines.add(stock->outlines[r]);
     layer.outline_ends.push_back(static_cast<std::uint32_t>(layer.outlines.size()));
   }
   return all_grains;
@@ -99,7 +103,8 @@ void order_trapezoids(Layer::Contents& layer) {
   keys.reserve(layer.trapezoids.size());
   for (std::size_t i = 0; i < layer.trapezoids.size(); ++i) {
     const MeshTrapezoid& t = layer.trapezoids[i];
-    keys.emplace_back(order_key(box_of(view, t), layer.lifespans[i]), static_cast<std::uint32_t>(i));
+    keys.emplace_back(order_key(box_of(view, t), layer.lifespans[i]),
+                      static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   std::vector<std::uint32_t> order;
@@ -168,15 +173,18 @@ void append_mote(const Mote& mote, Layer::Contents& layer) {
   const auto e = static_cast<std::uint32_t>(layer.edges.size());
   layer.vertices.insert(layer.vertices.end(), {{x0, y0}, {x0, y1}, {x1, y0}, {x1, y1}});
   layer.edges.insert(layer.edges.end(), {{v, v + 1}, {v + 2, v + 3}});
-  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1} : MeshTrapezoid{v, v + 3, e + 1, e});
+  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1}
+                                           : MeshTrapezoid{v, v + 3, e + 1, e});
   layer.lifespans.push_back(mote.lifespan);
 }
 
 void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {
-    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)), static_cast<std::int32_t>(std::lround(motes[i].y))};
-    keys.emplace_back(order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan), static_cast<std::uint32_t>(i));
+    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)),
+                  static_cast<std::int32_t>(std::lround(motes[i].y))};
+    keys.emplace_back(order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan),
+                      static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   layer.vertices.reserve(layer.vertices.size() + 4 * motes.size());
@@ -184,12 +192,6 @@ void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
   layer.trapezoids.reserve(layer.trapezoids.size() + motes.size());
   layer.lifespans.reserve(layer.lifespans.size() + motes.size());
   for (const auto& [key, i] : keys) append_mote(motes[i], layer);
-}
-
-/// Counted from 1 on, so that 0 is never the id of a mesh.
-std::uint64_t next_mesh_id() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
 }
 
 }  // namespace
@@ -202,7 +204,8 @@ struct LayerBuilder::State {
   HistoryRecorder recorder;
 };
 
-LayerBuilder::LayerBuilder(const GeneralizationOptions& options) : state_(std::make_unique<State>()) {
+LayerBuilder::LayerBuilder(const GeneralizationOptions& options)
+    : state_(std::make_unique<State>()) {
   state_->options = options;
 }
 LayerBuilder::~LayerBuilder() = default;
@@ -222,7 +225,8 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   return outcome;
 }
 
-std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, FeatureTable features) {
+std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
+                                          FeatureTable features) {
   auto layer = std::make_unique<Layer::Contents>();
   if (!builders.empty()) layer->options = builders.front().state_->options;
   std::vector<const Stock*> stocks;
@@ -243,7 +247,7 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, F
   layer->outlines.points.shrink_to_fit();
   layer->outlines.ends.shrink_to_fit();
   layer->features = std::move(features);
-  layer->view = MeshView{next_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
+  layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->polygon_index = MeshIndex(layer->view, layer->polygons, layer->lifespans);
   layer->dust_index = MeshIndex(layer->view, layer->dust, layer->lifespans);
   return std::make_unique<Layer>(std::move(layer));

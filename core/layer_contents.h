@@ -23,8 +23,8 @@ struct Layer::Contents {
   MeshIndex dust_index;
   Size size;
   GeneralizationOptions options;
-  Rings outlines;                             // of all features, in order of rows
-  std::vector<std::uint32_t> outline_ends;    // by row: the number of rings up to it and with it
+  Rings outlines;                           // of all features, in order of rows
+  std::vector<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
   Box bounds;
   FeatureTable features;
 };
