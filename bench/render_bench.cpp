@@ -1,7 +1,7 @@
 // What the stages of a picture cost: coverage by each renderer, colour, PNG.
 //
 //   render_bench                          all stages
-//   render_bench --benchmark_filter=Draw  the renderers only
+//   render_bench --benchmark_filter=draw  the renderers only
 //
 // Pictures are 256 x 256. "scatter" is as many small separate trapezoids as named, like buildings;
 // "strips" fill half of the picture with as many slanted ones, some thin, some large, like land
@@ -144,19 +144,19 @@ void draw_arguments(benchmark::internal::Benchmark* bench) {
   bench->Args({2'000, 200});
 }
 
-BENCHMARK_CAPTURE(draw, Draw / software / scatter, RendererKind::software, BenchMesh::scatter)
+BENCHMARK_CAPTURE(draw, software_scatter, RendererKind::software, BenchMesh::scatter)
     ->Apply(draw_arguments);
-BENCHMARK_CAPTURE(draw, Draw / software / strips, RendererKind::software, BenchMesh::strips)
+BENCHMARK_CAPTURE(draw, software_strips, RendererKind::software, BenchMesh::strips)
     ->Apply(draw_arguments);
-BENCHMARK_CAPTURE(draw, Draw / egl / scatter, RendererKind::egl, BenchMesh::scatter)
+BENCHMARK_CAPTURE(draw, egl_scatter, RendererKind::egl, BenchMesh::scatter)
     ->Apply(draw_arguments)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK_CAPTURE(draw, Draw / egl / strips, RendererKind::egl, BenchMesh::strips)
+BENCHMARK_CAPTURE(draw, egl_strips, RendererKind::egl, BenchMesh::strips)
     ->Apply(draw_arguments)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK_CAPTURE(draw, Draw / osmesa / scatter, RendererKind::osmesa, BenchMesh::scatter)
+BENCHMARK_CAPTURE(draw, osmesa_scatter, RendererKind::osmesa, BenchMesh::scatter)
     ->Apply(draw_arguments)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

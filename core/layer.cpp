@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/layer_builder.h"
 #include "core/layer_contents.h"
 
 namespace trapeze {
@@ -36,6 +37,33 @@ void Layer::small_polygons(const Box& box, Level level, std::vector<Box>& places
   }
 }
 
+const Layer& Layer::without_topology_test() const {
+  if (contents_->options.topology == Topology::fast) return *this;
+  std::call_once(without_test_built_, [this] {
+    GeneralizationOptions options = contents_->options;
+    options.topology = Topology::fast;
+    LayerBuilder builder(options);
+    Rings rings;
+    for (std::uint32_t row = 0; row < features().size(); ++row) {
+      rings.clear();
+      append_outline(row, rings);
+      builder.add(row, rings);
+    }
+    std::vector<LayerBuilder> builders;
+    builders.push_back(std::move(builder));
+    without_test_ = LayerBuilder::join(builders, FeatureTable());
+  });
+  return *without_test_;
+}
+
+void Layer::append_outline(std::uint32_t row, Rings& rings) const {
+  const Contents& c = *contents_;
+  if (row >= c.outline_ends.size()) return;
+  for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
+    rings.add(c.outlines[i]);
+  }
+}
+
 std::uint32_t Layer::feature_of(std::uint32_t trapezoid) const {
   return trapezoid < contents_->feature_of.size() ? contents_->feature_of[trapezoid] : kNoFeature;
 }
@@ -44,10 +72,13 @@ Layer::Size Layer::size() const { return contents_->size; }
 
 std::size_t Layer::memory() const {
   const Contents& c = *contents_;
-  return c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
+  const std::size_t beside = without_test_ ? without_test_->memory() : 0;
+  return beside + c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
          c.trapezoids.capacity() * sizeof(MeshTrapezoid) +
          c.lifespans.capacity() * sizeof(Lifespan) +
-         c.feature_of.capacity() * sizeof(std::uint32_t) + c.polygon_index.memory() +
+         c.feature_of.capacity() * sizeof(std::uint32_t) +
+         c.outlines.points.capacity() * sizeof(Point) +
+         (c.outlines.ends.capacity() + c.outline_ends.capacity()) * sizeof(std::uint32_t) + c.polygon_index.memory() +
          c.dust_index.memory();
 }
 

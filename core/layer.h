@@ -1,15 +1,17 @@
 // A layer ready to be drawn: the trapezoids of all its polygons, where they are, and its features.
 //
-// Thread-safety: immutable; any number of threads may read.
+// Thread-safety: immutable to the eye; any number of threads may read.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/feature_table.h"
 #include "core/grid.h"
+#include "core/rings.h"
 #include "core/tolerance.h"
 #include "core/trapezoid_mesh.h"
 
@@ -28,7 +30,7 @@ class Layer {
 
   struct Contents;  // the stored arrays; made by LayerBuilder
 
-  explicit Layer(std::unique_ptr<const Contents> contents);
+  explicit Layer(std::unique_ptr<const Contents> contents);  // used by LayerBuilder
   ~Layer();
   Layer(const Layer&) = delete;
   Layer& operator=(const Layer&) = delete;
@@ -48,6 +50,14 @@ class Layer {
   /// `level`, several in one pixel taken together.
   void small_polygons(const Box& box, Level level, std::vector<Box>& places) const;
 
+  /// The same polygons generalized without the topological consistency test (paper, section 4.2), where
+  /// that makes a difference. Built when first asked for, which takes about as long as loading took
+  /// and as much memory again; callers that come meanwhile wait.
+  const Layer& without_topology_test() const;
+
+  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
+  void append_outline(std::uint32_t row, Rings& rings) const;
+
   /// The row, in features(), of the polygon that a trapezoid is a part of; kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 
@@ -66,6 +76,8 @@ class Layer {
 
  private:
   std::unique_ptr<const Contents> contents_;
+  mutable std::once_flag without_test_built_;
+  mutable std::unique_ptr<const Layer> without_test_;
 };
 
 }  // namespace trapeze

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/check_graph.h"
 #include "core/dust.h"
 #include "core/history.h"
 #include "core/layer_contents.h"
@@ -22,9 +23,11 @@ struct Stock {
     std::size_t edges;
     std::size_t trapezoids;
     std::size_t grains;
+    std::size_t rings;
   };
   std::vector<Part> parts;
   History history;
+  Rings outlines;
 };
 
 /// The parts of all builders in the order of features.
@@ -73,6 +76,10 @@ std::vector<Grain> concatenate(const std::vector<PartOf>& parts, Layer::Contents
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
     const auto grains = part_of(history.grains, *stock, p, &Stock::Part::grains);
     all_grains.insert(all_grains.end(), grains.begin(), grains.end());
+    layer.outline_ends.resize(stock->parts[p].row, static_cast<std::uint32_t>(layer.outlines.size()));
+    const std::size_t rings_end = p + 1 < stock->parts.size() ? stock->parts[p + 1].rings : stock->outlines.size();
+    for (std::size_t r = stock->parts[p].rings; r < rings_end; ++r) layer.outlines.add(stock->outlines[r]);
+    layer.outline_ends.push_back(static_cast<std::uint32_t>(layer.outlines.size()));
   }
   return all_grains;
 }
@@ -207,13 +214,17 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   if (!outcome.built) return outcome;
   Stock& stock = state_->stock;
   stock.parts.push_back({row, stock.history.vertices.size(), stock.history.edges.size(),
-                         stock.history.trapezoids.size(), stock.history.grains.size()});
+                         stock.history.trapezoids.size(), stock.history.grains.size(),
+                         stock.outlines.size()});
+  const Rings outline = rings_of(state_->graph);
+  for (std::size_t r = 0; r < outline.size(); ++r) stock.outlines.add(outline[r]);
   state_->recorder.record(state_->graph, state_->options, stock.history);
   return outcome;
 }
 
 std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, FeatureTable features) {
   auto layer = std::make_unique<Layer::Contents>();
+  if (!builders.empty()) layer->options = builders.front().state_->options;
   std::vector<const Stock*> stocks;
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
   const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), *layer);
@@ -229,6 +240,8 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, F
   layer->dust = {polygons, static_cast<std::uint32_t>(layer->trapezoids.size()) - polygons};
   layer->size.motes = layer->dust.count;
 
+  layer->outlines.points.shrink_to_fit();
+  layer->outlines.ends.shrink_to_fit();
   layer->features = std::move(features);
   layer->view = MeshView{next_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->polygon_index = MeshIndex(layer->view, layer->polygons, layer->lifespans);

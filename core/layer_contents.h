@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/layer.h"
 #include "core/mesh_index.h"
 
@@ -21,6 +22,9 @@ struct Layer::Contents {
   MeshIndex polygon_index;
   MeshIndex dust_index;
   Size size;
+  GeneralizationOptions options;
+  Rings outlines;                             // of all features, in order of rows
+  std::vector<std::uint32_t> outline_ends;    // by row: the number of rings up to it and with it
   Box bounds;
   FeatureTable features;
 };

@@ -60,6 +60,8 @@ vec3 anchored(Side side, double top, double bottom, dvec2 begin) {
 // The quad keeps half a pixel and half a row's slant away from the sides, so that it holds the
 // centre of every pixel touched; a little more makes up for the grid of the rasterizer. `outward`
 // is -1 for the left and 1 for the right side. Returns x where the quad begins and where it ends.
+// Towards a point of the trapezoid the sides of the quad may cross; in the middles of all rows,
+// where it counts, they have not crossed yet, and beyond nothing is covered.
 vec2 quad_side(Side side, double top, double bottom, double rows, float outward) {
   vec2 x = vec2(side.x_top, side.x_bottom);
   float widest = outward > 0.0 ? max(x.x, x.y) : min(x.x, x.y);
@@ -70,7 +72,7 @@ vec2 quad_side(Side side, double top, double bottom, double rows, float outward)
   float slope = float(side.slope);
   float margin = 0.51 + 0.5 * abs(slope);
   vec2 overhang = vec2(floor(top) - top, ceil(bottom) - bottom) * slope;
-  return x + outward * (margin + max(outward * overhang, 0.0));
+  return x + overhang + outward * margin;
 }
 
 void main() {

@@ -71,7 +71,7 @@ Json layer_json(const ServedLayer& served, const std::string& base_url) {
   json["rings"] = served.report.rings;
   json["vertices"] = served.report.vertices;
   json["trapezoids"] = served.layer->mesh().trapezoids.size();
-  json["memory"] = served.layer->memory();
+  json["memory"] = served.layer->memory() + served.layer->features().memory();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;
   json["fields"] = fields_json(served.layer->features());

@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
 // A connection that is closed while the client still sends would be reset, and the response lost:
 // so what it sends is read and thrown away for a little while.
-constexpr auto kLingerTime = std::chrono::seconds(2);
+constexpr auto kLingerTime = std::chrono::seconds(1);
 constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
 // Connections above the limit that are told so; those beyond are dropped without a word.
 constexpr std::size_t kMaxRefusals = 64;
@@ -47,13 +47,6 @@ std::string http_date(std::time_t time) {
   const std::size_t length =
       std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
   return {text.data(), length};
-}
-
-/// Whether it is the request line, and not the fields after it, that broke the limit.
-bool is_request_line_too_long(const beast::flat_buffer& buffer) {
-  const auto bytes = buffer.data();
-  const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
-  return text.substr(0, kMaxTargetLength + 32).find('\n') == std::string_view::npos;
 }
 
 bool is_http_error(const ErrorCode& error) {
@@ -137,6 +130,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void read();
   void on_read(const ErrorCode& error);
   void answer_unreadable(const ErrorCode& error);
+  /// Whether it is the request line, and not the fields after it, that broke the limit.
+  bool is_request_line_too_long() const;
   void handle(const http::request<http::string_body>& message);
   void send(HttpResponse response);
   template <typename Body>
@@ -214,12 +209,18 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
                                 state_.options().body_limit)};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem =
-        is_request_line_too_long(buffer_)
+        is_request_line_too_long()
             ? Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}
             : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
                                        state_.options().header_limit)};
   }
   send(problem_response(problem));
+}
+
+bool HttpServer::Connection::is_request_line_too_long() const {
+  // The parser knows the target only once it has seen the end of the request line.
+  const auto target = parser_->get().target();
+  return target.empty() || target.size() > kMaxTargetLength;
 }
 
 void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
@@ -229,6 +230,7 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
+    keep_alive_ = false;
     return send(problem_response({400, "A request needs one Host header."}));
   }
   // The pair lets go of the connection before the state that the connection refers to.

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include "server/build_id.h"
@@ -97,7 +98,7 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
 
 int run(int argc, char** argv) {
   CLI::App app(kDescription, "trapeze");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // none is reported below, with what there is
   app.set_version_flag("--version", "trapeze " + trapeze::version());
   bool is_verbose = false;
   app.add_flag("--verbose", is_verbose, "Log every request");
@@ -112,6 +113,10 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
+  }
+  if (app.get_subcommands().empty()) {
+    std::cerr << app.help();
+    return 1;
   }
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
   if (app.got_subcommand("serve")) return trapeze::run_serve(serve);

@@ -13,8 +13,9 @@ void BuildTally::remark(std::size_t order, std::int64_t id, std::string words) {
   if (remarks.size() < kMaxRemarks) remarks.push_back({order, {id, std::move(words)}});
 }
 
-FeatureBuilder::FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options)
-    : layers_(layers), options_(options), readers_(layers.size()) {}
+FeatureBuilder::FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options,
+                               const GeneralizationOptions& generalization)
+    : layers_(layers), options_(options), readers_(layers.size()), builder_(generalization) {}
 
 void FeatureBuilder::build(const FeatureJob& job) {
   reader_of(job.layer_index).read(*job.geometry, feature_);

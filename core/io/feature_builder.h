@@ -55,7 +55,8 @@ struct BuildTally {
 class FeatureBuilder {
  public:
   /// `layers` must outlive the builder.
-  FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options);
+  FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options,
+                 const GeneralizationOptions& generalization);
 
   /// Builds the graph of one feature. Throws SourceError if the whole source cannot be
   /// understood: it names no CRS and is not in degrees, or there is no way from its CRS.

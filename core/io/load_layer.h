@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/layer.h"
 
 namespace trapeze {
@@ -28,7 +29,9 @@ struct LoadReport {
   std::size_t other_geometry = 0;  // points, lines, no geometry: not drawn
   std::size_t empty = 0;           // polygons that are smaller than the grid, or outside the world
   std::size_t skipped = 0;         // could not be read, reprojected or repaired
-  std::size_t polygons = 0;        // parts of multipolygons
+  // Parts of multipolygons. Formats that store rings alone do not say which belong together: of
+  // OpenStreetMap relations every ring counts, of Shapefiles and File Geodatabases every clockwise.
+  std::size_t polygons = 0;
   std::size_t rings = 0;
   std::size_t source_vertices = 0;
   std::size_t vertices = 0;  // in the finished graphs
@@ -42,7 +45,9 @@ struct LoadReport {
 
 struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
-  /// Called from the reading thread now and then with a share in [0, 1] (or < 0 if unknown).
+  GeneralizationOptions generalization;
+  /// Called from the thread that called load_layer now and then, with the share of features read,
+  /// in [0, 1], or < 0 if unknown; at the end with 1. What it throws ends the loading.
   std::function<void(double)> progress;
 };
 
@@ -52,9 +57,16 @@ struct LoadedLayer {
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its
-/// layers. Features are in the order of the source whatever the number of threads. Throws
-/// std::runtime_error, naming the path, if it cannot be opened or has no layer; bad features never
-/// throw, they are reported.
+/// layers (of OpenStreetMap: its areas), each in its own reference system; without one, coordinates
+/// are taken for degrees if they can be. What lies beyond the 180th meridian comes back in on the
+/// other side; what lies beyond the Web Mercator square towards the poles is cut off.
+///
+/// Features are in the order of the source whatever the number of threads, one row of the table for
+/// each feature that has polygons, drawn or not. The result does not depend on the threads. Throws
+/// std::runtime_error, naming the path, if the source cannot be opened, has no layer, breaks off,
+/// or cannot be brought to Web Mercator; bad features never throw, they are reported.
+///
+/// Thread-safety: may be called from several threads at once.
 LoadedLayer load_layer(const std::string& path, const LoadOptions& options = {});
 
 }  // namespace trapeze

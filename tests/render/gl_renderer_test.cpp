@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -163,6 +164,36 @@ TEST_P(GlRendererTest, DrawsSliversThinnerThanAPixelLikeTheReference) {
              upper.y, lower.y);
   }
   expect_like_reference(mesh, {0, 0, 256, 256, 256}, "slivers of at most a quarter of a pixel");
+}
+
+TEST_P(GlRendererTest, DrawsTrianglesOfAllShapesLikeTheReference) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const View view{0, 0, 64, 128, 128};
+  const int side = 128 * 64;
+  for (const int reach : {200, 2'000, 20'000, 2'000'000, 200'000'000}) {  // of the sides, in cells
+    for (int i = 0; i < 60; ++i) {
+      const auto about = [&](int middle) {
+        return middle + static_cast<std::int32_t>(random() % (2u * static_cast<unsigned>(reach))) -
+               reach;
+      };
+      const Point apex{static_cast<std::int32_t>(random() % side),
+                       static_cast<std::int32_t>(random() % side)};
+      const std::int32_t height = 1 + static_cast<std::int32_t>(random() % 4'000);
+      const auto [west, east] = std::minmax({about(apex.x), about(apex.x)});
+      SampleMesh mesh;
+      if (i % 2 == 0) {
+        const std::uint32_t left = mesh.add_edge(apex, {west, apex.y + height});
+        mesh.add(left, mesh.add_edge(apex, {east, apex.y + height}), apex.y, apex.y + height);
+      } else {
+        const std::uint32_t left = mesh.add_edge({west, apex.y - height}, apex);
+        mesh.add(left, mesh.add_edge({east, apex.y - height}, apex), apex.y - height, apex.y);
+      }
+      expect_like_reference(mesh, view,
+                            "reach " + std::to_string(reach) + ", triangle " + std::to_string(i));
+    }
+  }
 }
 
 TEST_P(GlRendererTest, SumsTensOfThousandsOfTrapezoidsInAPixelLikeTheReference) {

@@ -194,7 +194,7 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
         "x.png"},
        "fill takes a colour"},
       {{"check"}, "FILE"},
-      {{}, "subcommand"},
+      {{}, "Usage"},
       {{"sevre"}, "sevre"}};
   for (const auto& [arguments, says] : wrong) {
     Program program(arguments);

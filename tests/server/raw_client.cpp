@@ -11,6 +11,7 @@
 #include <array>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace trapeze::testing {
 namespace {
@@ -90,6 +91,12 @@ RawResponse RawClient::receive(bool is_head) {
 RawResponse RawClient::get(const std::string& target, const std::string& more_headers) {
   send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + more_headers + "\r\n");
   return receive();
+}
+
+std::string RawClient::receive_all() {
+  while (read_more()) {
+  }
+  return std::exchange(received_, {});
 }
 
 bool RawClient::is_closed_within(std::chrono::milliseconds patience) {

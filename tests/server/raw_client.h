@@ -30,6 +30,8 @@ class RawClient {
   RawResponse receive(bool is_head = false);
   /// GET over this connection.
   RawResponse get(const std::string& target, const std::string& more_headers = {});
+  /// Reads until the connection ends, or nothing comes for ten seconds; what was read.
+  std::string receive_all();
   /// Whether the server has closed the connection, or does so within `patience`.
   bool is_closed_within(std::chrono::milliseconds patience);
 
