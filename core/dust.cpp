@@ -40,12 +40,13 @@ void lay_out(const Grain& grain, std::vector<Mote>& motes) {
     motes.push_back({grain.from.x + along * dx,
                      grain.from.y + along * dy,
                      grain.area / count,
-                     {grain.born, kNeverDies}});
+                     {grain.born, kNeverDies},
+                     false});
   }
 }
 
 Mote merged(const std::vector<Mote>& motes, std::size_t begin, std::size_t end, Level level) {
-  Mote sum{0, 0, 0, {level, kNeverDies}};
+  Mote sum{0, 0, 0, {level, kNeverDies}, true};
   double weight = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const double w = std::abs(motes[i].area);

@@ -21,6 +21,7 @@ struct Mote {
   double y = 0;     // cells
   double area = 0;  // cells squared, may be negative
   Lifespan lifespan;
+  bool is_merged = false;  // stands for several
 };
 
 /// The side of a pixel, in cells, whose default tolerance is that of the level.

@@ -1,5 +1,6 @@
 #include "core/layer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/layer_builder.h"
@@ -20,19 +21,26 @@ const MeshView& Layer::mesh() const {
   return contents_->view;
 }
 
-void Layer::select(const Box& box, Level level, SmallPolygons small,
-                   std::vector<TrapezoidRange>& ranges) const {
+void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
   ranges.clear();
-  contents_->polygon_index.select(box, level, contents_->lifespans, ranges);
-  if (small == SmallPolygons::dust) {
-    contents_->dust_index.select(box, level, contents_->lifespans, ranges);
-  }
+  contents_->polygon_index.select(selection.box, selection.level, selection.level,
+                                  contents_->lifespans, ranges);
+  if (selection.small == SmallPolygons::dust) select_dust(selection, ranges);
 }
 
-void Layer::small_polygons(const Box& box, Level level, std::vector<Box>& places) const {
+// Merged motes are those of the picture's pixels. Of the single ones, all that the tolerance has
+// made are wanted, unless a merged one stands for them already.
+void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
+  const Level resolution = std::min(selection.level, selection.pixel_level);
+  const Contents& c = *contents_;
+  c.mote_index.select(selection.box, selection.level, resolution, c.lifespans, ranges);
+  c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
+}
+
+void Layer::small_polygons(const Selection& selection, std::vector<Box>& places) const {
   places.clear();
   std::vector<TrapezoidRange> ranges;
-  contents_->dust_index.select(box, level, contents_->lifespans, ranges);
+  select_dust(selection, ranges);
   const MeshView& mesh = contents_->view;
   for (const TrapezoidRange& range : ranges) {
     for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
@@ -88,7 +96,7 @@ std::size_t Layer::memory() const {
          c.feature_of.capacity() * sizeof(std::uint32_t) +
          c.outlines.points.capacity() * sizeof(Point) +
          (c.outlines.ends.capacity() + c.outline_ends.capacity()) * sizeof(std::uint32_t) +
-         c.polygon_index.memory() + c.dust_index.memory();
+         c.polygon_index.memory() + c.mote_index.memory() + c.merged_mote_index.memory();
 }
 
 }  // namespace trapeze

@@ -40,16 +40,25 @@ class Layer {
   const Box& bounds() const;
   const MeshView& mesh() const;
 
-  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, with or
+  /// What of the mesh is wanted.
+  struct Selection {
+    Box box;
+    Level level = 0;  // of tolerance
+    /// The level of a quarter of a pixel: dust is taken together within pixels of this size,
+    /// however much greater the tolerance is.
+    Level pixel_level = kLastLevel;
+    SmallPolygons small = SmallPolygons::dust;
+  };
+
+  /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
   /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
   /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
   /// that stands for holes, left and right edge have changed places: its area is negative.
-  void select(const Box& box, Level level, SmallPolygons small,
-              std::vector<TrapezoidRange>& ranges) const;
+  void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
-  /// Replaces `places` by boxes around what is left of the small polygons in and near `box` at
-  /// `level`, several in one pixel taken together.
-  void small_polygons(const Box& box, Level level, std::vector<Box>& places) const;
+  /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
+  /// in one pixel taken together.
+  void small_polygons(const Selection& selection, std::vector<Box>& places) const;
 
   /// The same polygons generalized without the topological consistency test (paper, section 4.2),
   /// where that makes a difference. Built when first asked for, which takes about as long as
@@ -77,6 +86,8 @@ class Layer {
   std::size_t memory() const;
 
  private:
+  void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
   std::unique_ptr<const Contents> contents_;
   mutable std::once_flag without_test_built_;
   mutable std::unique_ptr<const Layer> without_test_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/check_graph.h"
@@ -178,12 +179,14 @@ void append_mote(const Mote& mote, Layer::Contents& layer) {
   layer.lifespans.push_back(mote.lifespan);
 }
 
-void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+/// Single motes first, then merged ones; returns the number of single ones.
+std::uint32_t append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
+  using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
+  std::vector<Key> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {
     const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)),
                   static_cast<std::int32_t>(std::lround(motes[i].y))};
-    keys.emplace_back(order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan),
+    keys.emplace_back(motes[i].is_merged, order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan),
                       static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
@@ -191,7 +194,12 @@ void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
   layer.edges.reserve(layer.edges.size() + 2 * motes.size());
   layer.trapezoids.reserve(layer.trapezoids.size() + motes.size());
   layer.lifespans.reserve(layer.lifespans.size() + motes.size());
-  for (const auto& [key, i] : keys) append_mote(motes[i], layer);
+  std::uint32_t singles = 0;
+  for (const auto& [is_merged, key, i] : keys) {
+    append_mote(motes[i], layer);
+    singles += !is_merged;
+  }
+  return singles;
 }
 
 }  // namespace
@@ -239,17 +247,20 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   for (const Point p : layer->vertices) layer->bounds.include(p);
   const auto polygons = static_cast<std::uint32_t>(layer->trapezoids.size());
   layer->size = {layer->vertices.size(), layer->trapezoids.size(), layer->edges.size(), 0};
-  append_dust(settle(grains), *layer);
-  layer->polygons = {0, polygons};
-  layer->dust = {polygons, static_cast<std::uint32_t>(layer->trapezoids.size()) - polygons};
-  layer->size.motes = layer->dust.count;
+  const std::uint32_t motes = append_dust(settle(grains), *layer);
+  const auto all = static_cast<std::uint32_t>(layer->trapezoids.size());
+  layer->size.motes = all - polygons;
 
   layer->outlines.points.shrink_to_fit();
   layer->outlines.ends.shrink_to_fit();
   layer->features = std::move(features);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
-  layer->polygon_index = MeshIndex(layer->view, layer->polygons, layer->lifespans);
-  layer->dust_index = MeshIndex(layer->view, layer->dust, layer->lifespans);
+  const auto index = [&layer](std::uint32_t from, std::uint32_t to) {
+    return MeshIndex(layer->view, {from, to - from}, layer->lifespans);
+  };
+  layer->polygon_index = index(0, polygons);
+  layer->mote_index = index(polygons, polygons + motes);
+  layer->merged_mote_index = index(polygons + motes, all);
   return std::make_unique<Layer>(std::move(layer));
 }
 

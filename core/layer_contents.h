@@ -17,10 +17,10 @@ struct Layer::Contents {
   std::vector<Lifespan> lifespans;        // by trapezoid
   std::vector<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // looks at the arrays above
-  TrapezoidRange polygons;                // trapezoids of polygons, then
-  TrapezoidRange dust;                    // trapezoids of dust
+  // Trapezoids of polygons come first, then those of single motes, then those of merged ones.
   MeshIndex polygon_index;
-  MeshIndex dust_index;
+  MeshIndex mote_index;
+  MeshIndex merged_mote_index;
   Size size;
   GeneralizationOptions options;
   Rings outlines;                           // of all features, in order of rows

@@ -82,15 +82,15 @@ MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
   }
 }
 
-void MeshIndex::select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+void MeshIndex::select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
                        std::vector<TrapezoidRange>& ranges) const {
   if (range_.count == 0) return;
-  descend(heights_.size() - 1, 0, Query{box, level, lifespans, ranges});
+  descend(heights_.size() - 1, 0, Query{box, born, alive, lifespans, ranges});
 }
 
 void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
   const Entry& entry = heights_[height][index];
-  if (query.level < entry.min_born || query.level >= entry.max_dies) return;
+  if (query.born < entry.min_born || query.alive >= entry.max_dies) return;
   if (!entry.box.intersects(query.box)) return;
   const std::size_t begin = index * kFanout;
   if (height > 0) {
@@ -100,7 +100,7 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
   }
   const std::size_t end = std::min<std::size_t>(begin + kFanout, range_.count);
   for (std::size_t i = range_.first + begin; i < range_.first + end; ++i) {
-    if (!query.lifespans[i].contains(query.level)) continue;
+    if (query.lifespans[i].born > query.born || query.lifespans[i].dies <= query.alive) continue;
     const auto id = static_cast<std::uint32_t>(i);
     if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {
       ++query.ranges.back().count;

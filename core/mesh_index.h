@@ -27,9 +27,10 @@ class MeshIndex {
   /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh.
   MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans);
 
-  /// Appends to `ranges` the trapezoids that live at `level` and may meet `box`, as disjoint ranges
-  /// in ascending order.
-  void select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+  /// Appends to `ranges` the trapezoids that are born at `born` or before, die after `alive`, and
+  /// may meet `box`, as disjoint ranges in ascending order. With both levels equal: those alive
+  /// there.
+  void select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
 
   std::size_t memory() const;
@@ -44,7 +45,8 @@ class MeshIndex {
   };
   struct Query {
     const Box& box;
-    Level level;
+    Level born;
+    Level alive;
     std::span<const Lifespan> lifespans;
     std::vector<TrapezoidRange>& ranges;
   };

@@ -39,7 +39,14 @@ class SegmentTree {
     }
   }
 
-  /// Calls visit(index) for every segment whose box meets `box` and whose index is >= `from`.
+  std::size_t leaf_count() const { return segments_.empty() ? 0 : levels_.front().size(); }
+  const Box& leaf_box(std::size_t leaf) const { return levels_.front()[leaf]; }
+  std::size_t leaf_begin(std::size_t leaf) const { return leaf * kFanout; }
+  std::size_t leaf_end(std::size_t leaf) const {
+    return std::min((leaf + 1) * kFanout, segments_.size());
+  }
+
+  /// Calls visit(leaf) for every leaf whose box meets `box` and whose number is >= `from`.
   template <class Visit>
   void query(const Box& box, std::size_t from, const Visit& visit) const {
     if (!segments_.empty()) descend(levels_.size() - 1, 0, box, from, visit);
@@ -52,17 +59,11 @@ class SegmentTree {
   void descend(std::size_t level, std::size_t index, const Box& box, std::size_t from,
                const Visit& visit) const {
     if (!levels_[level][index].intersects(box)) return;
-    const std::size_t begin = index * kFanout;
-    if (level == 0) {
-      const std::size_t end = std::min(begin + kFanout, segments_.size());
-      for (std::size_t i = std::max(begin, from); i < end; ++i) {
-        if (box_of(segments_[i]).intersects(box)) visit(i);
-      }
-      return;
-    }
+    if (level == 0) return visit(index);
     // Subtrees that end before `from` hold nothing of interest.
-    std::size_t span = kFanout;
+    std::size_t span = 1;
     for (std::size_t l = 1; l < level; ++l) span *= kFanout;
+    const std::size_t begin = index * kFanout;
     const std::size_t end = std::min(begin + kFanout, levels_[level - 1].size());
     for (std::size_t i = begin; i < end; ++i) {
       if ((i + 1) * span > from) descend(level - 1, i, box, from, visit);
@@ -182,9 +183,20 @@ struct Pass {
 std::vector<Point> hot_cells(const std::vector<Segment>& segments, const SegmentTree& tree,
                              HotCells cells) {
   std::vector<Point> hot;
+  // A leaf at a time: its segments are near each other and have the same neighbours.
+  for (std::size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    tree.query(tree.leaf_box(leaf), leaf, [&](std::size_t other) {
+      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+        const Box box = box_of(segments[i]);
+        if (!box.intersects(tree.leaf_box(other))) continue;
+        for (std::size_t k = std::max(i + 1, tree.leaf_begin(other)); k < tree.leaf_end(other);
+             ++k) {
+          if (box_of(segments[k]).intersects(box)) add_meetings(segments[i], segments[k], hot);
+        }
+      }
+    });
+  }
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    tree.query(box_of(segments[i]), i + 1,
-               [&](std::size_t k) { add_meetings(segments[i], segments[k], hot); });
     if (cells == HotCells::crossings_and_vertices) {
       hot.push_back(segments[i].first);
       hot.push_back(segments[i].second);
@@ -203,8 +215,10 @@ std::vector<Pass> find_passes(const std::vector<Segment>& segments, const Segmen
     // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch
     // it.
     const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
-    tree.query(around, 0, [&](std::size_t i) {
-      if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+    tree.query(around, 0, [&](std::size_t leaf) {
+      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+        if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+      }
     });
   }
   std::stable_sort(passes.begin(), passes.end(),

@@ -200,8 +200,12 @@ void mark_border(std::string_view text, Rgba colour, Picture& picture) {
     blend(picture, 0, i, colour, 1);
     blend(picture, picture.width - 1, i, colour, 1);
   }
-  // Twice as large as the glyphs, to be read.
+  // Twice as large as the glyphs, on a plate of white, to be read.
   constexpr int kZoom = 2;
+  const int length = static_cast<int>(text.size()) * (kGlyphWidth + 1) * kZoom;
+  for (int y = 3; y < 7 + kGlyphHeight * kZoom; ++y) {
+    for (int x = 3; x < 5 + length; ++x) blend(picture, x, y, {255, 255, 255, 255}, 1);
+  }
   int left = 5;
   for (const char c : text) {
     const auto rows = glyph(c);

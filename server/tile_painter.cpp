@@ -71,9 +71,10 @@ std::optional<PaintedTile> TilePainter::paint(const TilePlan& plan, Deadline dea
     const Layer& layer = painted_layer(plan, paint);
     {
       const Stopwatch stopwatch(tile.times.select_ms);
-      layer.select(box, paint.level, paint.small, ranges_);
+      const Layer::Selection selection{box, paint.level, plan.pixel_level(), paint.small};
+      layer.select(selection, ranges_);
       places_.clear();
-      if (paint.small == SmallPolygons::keep) layer.small_polygons(box, paint.level, places_);
+      if (paint.small == SmallPolygons::keep) layer.small_polygons(selection, places_);
     }
     if (ranges_.empty() && places_.empty()) continue;  // there is nothing of this layer here
     const Stopwatch stopwatch(tile.times.draw_ms);
@@ -116,7 +117,7 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
   spread_palette(picture);
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = painted_layer(plan, paint);
-    layer.select(view.box(), paint.level, SmallPolygons::drop, ranges_);
+    layer.select({view.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges_);
     if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges_, view, kMeshColour, picture);
     if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges_, view, kVertexColour, picture);
   }

@@ -25,7 +25,7 @@ constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
                                            {0x94, 0x8b, 0x80, 255}}};
 
 Rgba fill_of_layer(const StyleQuery& query, const LayerConfig& config, std::size_t layer) {
-  Rgba fill = config.style.fill.value_or(kPalette[layer % kPalette.size()]);
+  Rgba fill = default_fill(config, layer);
   if (const auto value = query.value_for(config.name, ParameterId::fill)) {
     fill = std::get<Rgba>(*value);
   }
@@ -36,14 +36,16 @@ Rgba fill_of_layer(const StyleQuery& query, const LayerConfig& config, std::size
   return with_opacity(fill, opacity);
 }
 
+double cells_per_pixel(const TileId& tile, int scale) {
+  return static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
+}
+
 Level level_of_layer(const TileRequest& request, const std::string& layer) {
   double pixels = kTolerancePixels;
   if (const auto value = request.style.value_for(layer, ParameterId::simplify)) {
     pixels = std::get<double>(*value);
   }
-  const double cells_per_pixel =
-      static_cast<double>(request.tile.side()) / (static_cast<double>(kTilePixels) * request.scale);
-  return nearest_level(pixels * cells_per_pixel);
+  return nearest_level(pixels * cells_per_pixel(request.tile, request.scale));
 }
 
 Topology topology_of_layer(const StyleQuery& query, const std::string& layer) {
@@ -69,6 +71,10 @@ DebugMarks debug_marks(const StyleQuery& query) {
 
 }  // namespace
 
+Level TilePlan::pixel_level() const {
+  return nearest_level(cells_per_pixel(tile, scale) / 4);
+}
+
 std::string TilePlan::key() const {
   std::string key =
       fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
@@ -88,6 +94,10 @@ std::string TilePlan::entity_tag() const {
   hash.add(build_id());
   hash.add(key());
   return fmt::format("\"{:016x}\"", hash.value());
+}
+
+Rgba default_fill(const LayerConfig& config, std::size_t position) {
+  return config.style.fill.value_or(kPalette[position % kPalette.size()]);
 }
 
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {

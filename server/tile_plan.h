@@ -45,6 +45,9 @@ struct TilePlan {
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
   DebugMarks debug;
+
+  /// The level of a quarter of a pixel of the picture.
+  Level pixel_level() const;
   /// Equal for plans that give the same picture with the same program, however the requests were
   /// written. Holds the revisions of the layers.
   std::string key() const;
@@ -55,6 +58,9 @@ struct TilePlan {
 
 /// The problem is 404 for a layer that is not in the dataset.
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+
+/// What fills the layer at `position` of the dataset if a request does not say.
+Rgba default_fill(const LayerConfig& config, std::size_t position);
 
 /// The problem to answer with for a layer name that is not in the dataset.
 Problem unknown_layer(const std::string& name, const Dataset& dataset);

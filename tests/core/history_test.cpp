@@ -168,6 +168,32 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
   }
 }
 
+TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {
+  // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells.
+  std::vector<LayerBuilder> builders(1);
+  FeatureTable features(std::vector<Field>{});
+  Rings first = rings_from_text("0 0, 10 0, 10 10, 0 10");
+  Rings second = rings_from_text("30 0, 40 0, 40 10, 30 10");
+  builders[0].add(features.append(0, {}), first);
+  builders[0].add(features.append(1, {}), second);
+  const auto layer = LayerBuilder::join(builders, std::move(features));
+  const auto count = [&](double epsilon, double pixel, SmallPolygons small) {
+    std::vector<TrapezoidRange> ranges;
+    layer->select({layer->bounds(), nearest_level(epsilon), nearest_level(pixel / 4), small},
+                  ranges);
+    std::uint32_t sum = 0;
+    for (const TrapezoidRange& range : ranges) sum += range.count;
+    return sum;
+  };
+  EXPECT_EQ(count(64, 64, SmallPolygons::dust), 1u);
+  EXPECT_EQ(count(64, 8, SmallPolygons::dust), 2u);
+  EXPECT_EQ(count(64, 64, SmallPolygons::drop), 0u);
+  EXPECT_EQ(count(64, 64, SmallPolygons::keep), 0u);
+  std::vector<Box> places;
+  layer->small_polygons({layer->bounds(), nearest_level(64), nearest_level(2)}, places);
+  EXPECT_EQ(places.size(), 2u);
+}
+
 TEST(LayerBuilder, LayerDoesNotDependOnWhichBuilderGotWhat) {
   const auto layer_of = [](int builder_count) {
     std::vector<LayerBuilder> builders(static_cast<std::size_t>(builder_count));
@@ -210,8 +236,8 @@ TEST(Layer, SelectionOfAPartHoldsEverythingThatTouchesIt) {
     Box box;
     box.include(Point{at(random), at(random)});
     box.include(Point{at(random) / (1 + i % 9), at(random) / (1 + i % 9)});
-    layer->select(layer->bounds(), level, SmallPolygons::dust, all);
-    layer->select(box, level, SmallPolygons::dust, part);
+    layer->select({layer->bounds(), level}, all);
+    layer->select({box, level}, part);
     const auto selected = ids(part);
     EXPECT_TRUE(std::is_sorted(selected.begin(), selected.end()));
     for (const std::uint32_t t : ids(all)) {
