@@ -44,7 +44,7 @@ struct TilePlan {
   int scale = 1;
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
-  DebugMarks debug;
+  DebugMarks debug = {};
 
   /// The level of a quarter of a pixel of the picture.
   Level pixel_level() const;
