@@ -1,12 +1,12 @@
 // One polygon's trapezoidal graph, adapted in place to any tolerance, forward and back (paper,
 // section 3.2).
 //
-// All vertices wait in a priority stack, ordered by weight and then by vertex. Adapting to a tolerance
-// pops every vertex of smaller weight and removes it, unless the topological consistency test blocks
-// it; a blocked vertex is tried again as soon as its blocker or one of its neighbours in the ring has
-// gone, and counts as of the weight that was popped last. So there is one fixed sequence of removals,
-// and the graph at a tolerance is a prefix of it: its state depends on the tolerance only, never on
-// what was asked before.
+// All vertices wait in a priority stack, ordered by weight and then by vertex. Adapting to a
+// tolerance pops every vertex of smaller weight and removes it, unless the topological consistency
+// test blocks it; a blocked vertex is tried again as soon as its blocker or one of its neighbours
+// in the ring has gone, and counts as of the weight that was popped last. So there is one fixed
+// sequence of removals, and the graph at a tolerance is a prefix of it: its state depends on the
+// tolerance only, never on what was asked before.
 //
 // Thread-safety: none; different graphs may be used by different threads.
 #pragma once
@@ -42,9 +42,9 @@ class PriorityStack {
 
   struct Counts {
     std::uint64_t removals = 0;
-    std::uint64_t tests = 0;     // decisions made
-    std::uint64_t walked = 0;    // trapezoids looked at in them
-    std::uint64_t touched = 0;   // trapezoids changed by removals
+    std::uint64_t tests = 0;    // decisions made
+    std::uint64_t walked = 0;   // trapezoids looked at in them
+    std::uint64_t touched = 0;  // trapezoids changed by removals
   };
   const Counts& counts() const { return counts_; }
 

@@ -22,18 +22,21 @@ void Boundary::number_vertices(std::size_t count) {
   vertex_of_.resize(count);
   vertices.clear();
   vertices.reserve(count + 2);
-  vertices.push_back(Point{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()});
+  vertices.push_back(
+      Point{std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()});
   has_touches = false;
   constexpr std::uint32_t kBias = 0x80000000u;
   for (std::size_t i = 0; i < sorted_.size(); ++i) {
     const std::uint64_t key = sorted_[i].key;
     if (i == 0 || sorted_[i - 1].key != key) {
-      vertices.push_back(Point{static_cast<std::int32_t>(static_cast<std::uint32_t>(key) ^ kBias),
-                               static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32) ^ kBias)});
+      vertices.push_back(
+          Point{static_cast<std::int32_t>(static_cast<std::uint32_t>(key) ^ kBias),
+                static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32) ^ kBias)});
     }
     vertex_of_[sorted_[i].index] = VertexId(vertices.size() - 1);
   }
-  vertices.push_back(Point{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()});
+  vertices.push_back(
+      Point{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()});
 }
 
 void Boundary::index_incident_edges() {

@@ -34,7 +34,8 @@ struct Boundary {
   std::vector<VertexId> ring_vertex;
 
   std::span<const EdgeId> edges_at(VertexId v) const {
-    return std::span<const EdgeId>(incident).subspan(first[v], first[VertexId(v.value + 1)] - first[v]);
+    return std::span<const EdgeId>(incident).subspan(first[v],
+                                                     first[VertexId(v.value + 1)] - first[v]);
   }
 
   /// Edge i runs from the i-th point of the rings to the next one of its ring. Rings are clean (see

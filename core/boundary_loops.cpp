@@ -11,9 +11,9 @@ void BoundaryLoops::take_rings(const Rings& rings, const Boundary& boundary,
   std::size_t begin = 0;
   for (const std::uint32_t end : rings.ends) {
     for (std::size_t i = begin; i < end; ++i) {
-      corners[CornerId(i)] = Corner{boundary.ring_vertex[i], EdgeId(i),
-                                    CornerId(i == begin ? end - 1 : i - 1),
-                                    CornerId(i + 1 < end ? i + 1 : begin)};
+      corners[CornerId(i)] =
+          Corner{boundary.ring_vertex[i], EdgeId(i), CornerId(i == begin ? end - 1 : i - 1),
+                 CornerId(i + 1 < end ? i + 1 : begin)};
     }
     begin = end;
   }
@@ -33,8 +33,8 @@ void BoundaryLoops::trace(const Boundary& boundary, TrapezoidalGraph& graph) {
   if (boundary.has_touches) cut_into_simple_loops(graph);
 }
 
-// The edges around v in a circle: those that start at v from left to right, then those that end at v
-// from right to left. Two successive edges with inside between them are paired.
+// The edges around v in a circle: those that start at v from left to right, then those that end at
+// v from right to left. Two successive edges with inside between them are paired.
 void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph& graph,
                                VertexId v) {
   const auto edges = boundary.edges_at(v);
@@ -63,7 +63,8 @@ void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph&
     // What follows e in the circle is on the right of an edge below v and on the left of one above.
     const bool below = boundary.edges[e].upper == v;
     const Side following = below ? kRight : kLeft;
-    if (graph.edge(e).face[following] != kOutside) set_partner(e, around_[(i + 1) % around_.size()]);
+    if (graph.edge(e).face[following] != kOutside)
+      set_partner(e, around_[(i + 1) % around_.size()]);
   }
 }
 
@@ -120,7 +121,8 @@ void BoundaryLoops::cut_into_simple_loops(TrapezoidalGraph& graph) {
   }
 }
 
-void BoundaryLoops::close_loop(TrapezoidalGraph& graph, const CornerId* begin, const CornerId* end) {
+void BoundaryLoops::close_loop(TrapezoidalGraph& graph, const CornerId* begin,
+                               const CornerId* end) {
   for (const CornerId* c = begin; c != end; ++c) {
     graph.corners_[*c].next = c + 1 != end ? c[1] : *begin;
     graph.corners_[*c].prev = c != begin ? c[-1] : end[-1];

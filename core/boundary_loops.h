@@ -1,8 +1,8 @@
 // Walks the edges of a trapezoidal graph into simple loops and writes them down as corners.
 //
 // The rings of the source serve where they can. Where rings touch, the edges at the common vertex
-// are paired anew, two edges that bound one inside wedge at a time, and a loop that still comes back
-// to a vertex is cut there, so that every loop visits a vertex at most once.
+// are paired anew, two edges that bound one inside wedge at a time, and a loop that still comes
+// back to a vertex is cut there, so that every loop visits a vertex at most once.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class BoundaryLoops {
   static void close_loop(TrapezoidalGraph& graph, const CornerId* begin, const CornerId* end);
 
   std::vector<EdgeId> around_;
-  std::vector<EdgeId> partner_;        // by 2 * edge + (0 at the upper end, 1 at the lower)
+  std::vector<EdgeId> partner_;  // by 2 * edge + (0 at the upper end, 1 at the lower)
   const Boundary* boundary_ = nullptr;
   std::vector<std::uint32_t> position_;  // of a vertex on the stack + 1
   std::vector<CornerId> loop_;

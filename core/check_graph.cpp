@@ -19,7 +19,8 @@ Fraction x_at_level(const TrapezoidalGraph& g, EdgeId e, VertexId level) {
   const Point l = g.point(g.edge(e).end[kDown]);
   const Point p = g.point(level);
   const Int128 dy = std::int64_t{l.y} - u.y;
-  // In sweep order a level edge is passed through from left to right at once: it is met at p itself.
+  // In sweep order a level edge is passed through from left to right at once: it is met at p
+  // itself.
   if (dy == 0) return {p.x, 1};
   return {Int128{u.x} * dy + (Int128{l.x} - u.x) * (std::int64_t{p.y} - u.y), dy};
 }
@@ -55,8 +56,8 @@ class Checker {
 
   void check_vertices() {
     for (std::size_t v = 2; v <= g_.vertex_count(); ++v) {
-      require(is_above(g_.point(VertexId(v - 1)), g_.point(VertexId(v))), "I1: vertices ", v - 1, " and ",
-              v, " are not in sweep order");
+      require(is_above(g_.point(VertexId(v - 1)), g_.point(VertexId(v))), "I1: vertices ", v - 1,
+              " and ", v, " are not in sweep order");
     }
   }
 
@@ -66,12 +67,14 @@ class Checker {
       const Edge& e = g_.edge(EdgeId(i));
       if (!e.is_alive() || g_.is_frame(EdgeId(i))) continue;
       require(e.end[kUp] < e.end[kDown], "I2: edge ", i, " does not go down");
-      require(!g_.is_frame(e.end[kUp]) && !g_.is_frame(e.end[kDown]), "I2: edge ", i, " ends at the frame");
+      require(!g_.is_frame(e.end[kUp]) && !g_.is_frame(e.end[kDown]), "I2: edge ", i,
+              " ends at the frame");
       require(e.face[kLeft] != e.face[kRight], "I7: edge ", i, " separates nothing");
       ends.emplace_back(e.end[kUp], e.end[kDown]);
     }
     std::sort(ends.begin(), ends.end());
-    require(std::adjacent_find(ends.begin(), ends.end()) == ends.end(), "I2: two edges have the same ends");
+    require(std::adjacent_find(ends.begin(), ends.end()) == ends.end(),
+            "I2: two edges have the same ends");
   }
 
   void check_node(NodeId id) {
@@ -81,8 +84,8 @@ class Checker {
       const Edge& e = g_.edge(n.edge[s]);
       require(e.is_alive(), "I3: node ", id.value, " has a dead edge");
       if (!ok()) return;
-      require(e.end[kUp] <= n.end[kUp] && n.end[kDown] <= e.end[kDown], "I3: edge ", n.edge[s].value,
-              " does not span node ", id.value);
+      require(e.end[kUp] <= n.end[kUp] && n.end[kDown] <= e.end[kDown], "I3: edge ",
+              n.edge[s].value, " does not span node ", id.value);
       for (const Direction d : {kUp, kDown}) {
         const NodeId next = n.link[s][d];
         require(next.is_none() == (e.end[d] == n.end[d]), "I5: node ", id.value,
@@ -119,14 +122,14 @@ class Checker {
       NodeId last;
       while (!n.is_none() && ok()) {
         const Node& node = g_.node(n);
-        require(node.is_alive() && node.edge[own] == id && node.end[kUp] == level, "I6: the nodes along edge ",
-                id.value, " do not follow each other");
+        require(node.is_alive() && node.edge[own] == id && node.end[kUp] == level,
+                "I6: the nodes along edge ", id.value, " do not follow each other");
         level = node.end[kDown];
         last = n;
         n = node.link[own][kDown];
       }
-      require(level == e.end[kDown] && last == e.extreme[s][kDown], "I6: the nodes along edge ", id.value,
-              " do not reach its end");
+      require(level == e.end[kDown] && last == e.extreme[s][kDown], "I6: the nodes along edge ",
+              id.value, " do not reach its end");
       if (!ok()) return;
     }
   }
@@ -144,8 +147,8 @@ class Checker {
         ++length;
         const Corner& corner = g_.corner(c);
         const Corner& next = g_.corner(corner.next);
-        require(next.is_alive() && next.prev == c, "I9: corners ", c.value, " and ", corner.next.value,
-                " do not follow each other");
+        require(next.is_alive() && next.prev == c, "I9: corners ", c.value, " and ",
+                corner.next.value, " do not follow each other");
         if (!ok()) return;
         const Edge& e = g_.edge(corner.edge);
         require(e.is_alive() && e.end[kUp] == std::min(corner.vertex, next.vertex) &&
@@ -177,18 +180,23 @@ class Checker {
       if (e.face[kLeft] != kOutside) area += strip;
       if (e.face[kRight] != kOutside) area -= strip;
     }
-    require(area == g_.doubled_area(), "I8: the areas of the inside nodes do not add up to the polygon's");
+    require(area == g_.doubled_area(),
+            "I8: the areas of the inside nodes do not add up to the polygon's");
   }
 
   const TrapezoidalGraph& g_;
   std::string failure_;
 };
 
-auto key_of(Point p) { return std::pair(p.y, p.x); }
+auto key_of(Point p) {
+  return std::pair(p.y, p.x);
+}
 
 }  // namespace
 
-std::string check_graph(const TrapezoidalGraph& graph) { return Checker(graph).run(); }
+std::string check_graph(const TrapezoidalGraph& graph) {
+  return Checker(graph).run();
+}
 
 std::vector<PlainTrapezoid> plain_trapezoids(const TrapezoidalGraph& g) {
   std::vector<PlainTrapezoid> found;

@@ -14,8 +14,8 @@ namespace trapeze {
 /// string if there is none. O(n log n).
 std::string check_graph(const TrapezoidalGraph& graph);
 
-/// A trapezoid by its geometry alone, independent of numbering: top and bottom vertex, left and right
-/// edge (upper and lower end each; frame edges are empty), face.
+/// A trapezoid by its geometry alone, independent of numbering: top and bottom vertex, left and
+/// right edge (upper and lower end each; frame edges are empty), face.
 struct PlainTrapezoid {
   Point top, bottom;
   Point left[2], right[2];

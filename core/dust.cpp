@@ -19,11 +19,12 @@ std::uint64_t spread_bits(std::uint64_t v) {
   return (v | v << 1) & 0x5555555555555555ull;
 }
 
-/// Interleaved bits: two points are in one square of 2^k cells if their codes agree but for the last
-/// 2k bits.
+/// Interleaved bits: two points are in one square of 2^k cells if their codes agree but for the
+/// last 2k bits.
 std::uint64_t morton(double x, double y) {
   const auto biased = [](double v) {
-    return static_cast<std::uint64_t>(std::clamp(std::floor(v) - kGridMin, 0.0, static_cast<double>(kGridSize)));
+    return static_cast<std::uint64_t>(
+        std::clamp(std::floor(v) - kGridMin, 0.0, static_cast<double>(kGridSize)));
   };
   return spread_bits(biased(x)) | spread_bits(biased(y)) << 1;
 }
@@ -36,13 +37,16 @@ void lay_out(const Grain& grain, std::vector<Mote>& motes) {
   const int count = std::clamp(static_cast<int>(std::ceil(pixels)), 1, kMaxMotesOfGrain);
   for (int i = 0; i < count; ++i) {
     const double along = (i + 0.5) / count;
-    motes.push_back({grain.from.x + along * dx, grain.from.y + along * dy, grain.area / count,
-                     {grain.born, kNeverDies}});
+    motes.push_back({grain.from.x + along * dx,
+                     grain.from.y + along * dy,
+                     grain.area / count,
+                     {grain.born, kNeverDies},
+                     false});
   }
 }
 
 Mote merged(const std::vector<Mote>& motes, std::size_t begin, std::size_t end, Level level) {
-  Mote sum{0, 0, 0, {level, kNeverDies}};
+  Mote sum{0, 0, 0, {level, kNeverDies}, true};
   double weight = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const double w = std::abs(motes[i].area);
@@ -58,7 +62,9 @@ Mote merged(const std::vector<Mote>& motes, std::size_t begin, std::size_t end, 
 
 }  // namespace
 
-double pixel_of_level(Level level) { return 4 * epsilon_of_level(level); }
+double pixel_of_level(Level level) {
+  return 4 * epsilon_of_level(level);
+}
 
 std::vector<Mote> settle(const std::vector<Grain>& grains) {
   std::vector<Mote> motes;
@@ -79,11 +85,13 @@ std::vector<Mote> settle(const std::vector<Grain>& grains) {
     codes.push_back(code);
   }
   const auto keep = [&settled](const Mote& m) {
-    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestArea) settled.push_back(m);
+    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestArea)
+      settled.push_back(m);
   };
   std::vector<Mote> born;
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
-    const int square = 2 * static_cast<int>(std::lround(std::log2(pixel_of_level(static_cast<Level>(level)))));
+    const int square =
+        2 * static_cast<int>(std::lround(std::log2(pixel_of_level(static_cast<Level>(level)))));
     std::size_t kept = 0;
     for (std::size_t i = 0; i < now.size();) {
       std::size_t end = i;

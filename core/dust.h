@@ -1,10 +1,11 @@
-// Dust: the area of loops too small to draw, kept as coverage, so that a town seen from far is a grey
-// tint and not a hole.
+// Dust: the area of loops too small to draw, kept as coverage, so that a town seen from far is a
+// grey tint and not a hole.
 //
 // A grain that a loop left behind is laid out as square motes. From one octave of tolerance to the
-// next, motes that fall into one pixel (four times the tolerance: the default tolerance is a quarter
-// of a pixel) become one, so that the motes of a tile are bounded by its pixels, however many polygons
-// fall into it. Each mote has a lifespan, like a trapezoid. Motes of holes have negative area.
+// next, motes that fall into one pixel (four times the tolerance: the default tolerance is a
+// quarter of a pixel) become one, so that the motes of a tile are bounded by its pixels, however
+// many polygons fall into it. Each mote has a lifespan, like a trapezoid. Motes of holes have
+// negative area.
 #pragma once
 
 #include <vector>
@@ -20,13 +21,14 @@ struct Mote {
   double y = 0;     // cells
   double area = 0;  // cells squared, may be negative
   Lifespan lifespan;
+  bool is_merged = false;  // stands for several
 };
 
 /// The side of a pixel, in cells, whose default tolerance is that of the level.
 double pixel_of_level(Level level);
 
-/// The motes of all levels. The sum of the areas alive at a level is that of the grains born by then,
-/// but for motes too small to matter (less than half a cell squared).
+/// The motes of all levels. The sum of the areas alive at a level is that of the grains born by
+/// then, but for motes too small to matter (less than half a cell squared).
 std::vector<Mote> settle(const std::vector<Grain>& grains);
 
 }  // namespace trapeze

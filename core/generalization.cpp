@@ -4,17 +4,21 @@
 
 namespace trapeze {
 
-// Throughout: `back` is the direction towards the removed vertex and `d` away from it. A node on side
-// s of an edge has that edge as its own edge on the opposite side.
+// Throughout: `back` is the direction towards the removed vertex and `d` away from it. A node on
+// side s of an edge has that edge as its own edge on the opposite side.
 
 void Generalization::remove(CornerId corner, Removal removal) {
   assert(removal != Removal::blocked);
   log_.begin();
   switch (removal) {
-    case Removal::regular: return remove_regular(corner);
-    case Removal::extremum: return remove_extremum(corner);
-    case Removal::loop: return remove_loop(corner);
-    case Removal::blocked: return;
+    case Removal::regular:
+      return remove_regular(corner);
+    case Removal::extremum:
+      return remove_extremum(corner);
+    case Removal::loop:
+      return remove_loop(corner);
+    case Removal::blocked:
+      return;
   }
 }
 
@@ -73,7 +77,7 @@ bool Generalization::upper_list_is_shorter(EdgeId upper, EdgeId lower) const {
     up[s] = g_.edge(upper).extreme[s][kUp];
     down[s] = g_.edge(lower).extreme[s][kUp];
   }
-  const auto advance = [this](NodeId (&list)[2]) {
+  const auto advance = [this](NodeId(&list)[2]) {
     bool more = false;
     for (const Side s : {kLeft, kRight}) {
       if (!list[s].is_none()) list[s] = g_.node(list[s]).link[opposite(s)][kDown];
@@ -181,8 +185,8 @@ void Generalization::remove_loop(CornerId corner) {
 }
 
 // Two lists of nodes, along the outer sides of two edges that disappear between them, become one.
-// Whichever node ends first is widened to the far side of the other list, and the other goes on below
-// it, until `stop` is reached.
+// Whichever node ends first is widened to the far side of the other list, and the other goes on
+// below it, until `stop` is reached.
 //
 //   |near|  |far |            |  near   |
 //   |----|  |    |     =>     |---------|

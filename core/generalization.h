@@ -1,8 +1,9 @@
-// The generalization operators (paper, section 3.2): removing one vertex changes the trapezoids next
-// to it, and nothing else.
+// The generalization operators (paper, section 3.2): removing one vertex changes the trapezoids
+// next to it, and nothing else.
 //
 // The paper's operators on inside trapezoids all come about here, with the outside meshed as well:
-//   merging       two trapezoids above each other become one where a level disappears, or two beside
+//   merging       two trapezoids above each other become one where a level disappears, or two
+//   beside
 //                 each other where the edge between them disappears;
 //   elimination   the trapezoid in the tip of an extremum, or inside the last triangle, disappears;
 //   degeneration  a trapezoid whose top or bottom had two corners becomes a triangle, when the edge
@@ -46,7 +47,9 @@ class Generalization {
   void drop_beside(NodeId keep, NodeId gone, Side side, Direction d);
 
   NodeId& extreme_of(EdgeId e, Side side, Direction d) { return log_.edit(e).extreme[side][d]; }
-  void set_link(NodeId n, Side side, Direction d, NodeId next) { log_.edit(n).link[side][d] = next; }
+  void set_link(NodeId n, Side side, Direction d, NodeId next) {
+    log_.edit(n).link[side][d] = next;
+  }
   void kill(NodeId n) { log_.edit(n) = Node{}; }
   void kill(EdgeId e) { log_.edit(e) = Edge{}; }
   void unlink(CornerId corner, EdgeId joined);

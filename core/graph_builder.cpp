@@ -31,12 +31,15 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
 }
 
 bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome) {
-  // The quick way first; the second pass is certain to be enough, the others are for safety.
-  constexpr int kMaxPasses = 4;
+  // The quick way is repeated while it may help; the thorough one is certain to be enough at once,
+  // and repeated only for safety.
+  constexpr int kQuickPasses = 3;
+  constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
-    segments = node_segments(std::move(segments),
-                             pass == 0 ? HotCells::crossings : HotCells::crossings_and_vertices);
+    segments =
+        node_segments(std::move(segments),
+                      pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
     if (segments.empty()) return false;  // everything cancelled: no area
     boundary_.assign(segments);
     if (trapezoidation_.build(boundary_, graph)) {
@@ -44,7 +47,8 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
       return true;
     }
   }
-  outcome.failure = "its rings still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+  outcome.failure =
+      "its rings still cross after " + std::to_string(kMaxPasses) + " passes of noding";
   return false;
 }
 

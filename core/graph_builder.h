@@ -25,9 +25,9 @@ struct BuildOutcome {
 /// Reusable memory; one a thread.
 class GraphBuilder {
  public:
-  /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed rings;
-  /// nodes crossings, touches and overlaps on the grid. `rings` are cleaned in place. Never throws
-  /// for bad geometry: `graph` is meaningful only if the outcome says built.
+  /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed
+  /// rings; nodes crossings, touches and overlaps on the grid. `rings` are cleaned in place. Never
+  /// throws for bad geometry: `graph` is meaningful only if the outcome says built.
   BuildOutcome build(Rings& rings, TrapezoidalGraph& graph);
 
  private:

@@ -31,7 +31,9 @@ struct Point {
 
 /// The sweep order: by y, then by x. It acts as a shear that leaves no two distinct points level,
 /// so that every trapezoid has exactly one vertex on its top and one on its bottom.
-constexpr bool is_above(Point a, Point b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+constexpr bool is_above(Point a, Point b) {
+  return a.y != b.y ? a.y < b.y : a.x < b.x;
+}
 
 /// Twice the signed area of the triangle abc, in cells squared: positive if c lies to the right of
 /// the directed line ab as seen on the map (y grows downwards), negative to the left, 0 if the
@@ -39,10 +41,11 @@ constexpr bool is_above(Point a, Point b) { return a.y != b.y ? a.y < b.y : a.x 
 constexpr std::int64_t orientation(Point a, Point b, Point c) {
   // The products may reach 2^62 each and their difference never leaves [-2^62, 2^62]; unsigned
   // arithmetic makes the step between them well defined.
-  const auto product = [](std::int64_t p, std::int64_t q) { return static_cast<std::uint64_t>(p * q); };
-  return static_cast<std::int64_t>(
-      product(std::int64_t{b.x} - a.x, std::int64_t{c.y} - a.y) -
-      product(std::int64_t{b.y} - a.y, std::int64_t{c.x} - a.x));
+  const auto product = [](std::int64_t p, std::int64_t q) {
+    return static_cast<std::uint64_t>(p * q);
+  };
+  return static_cast<std::int64_t>(product(std::int64_t{b.x} - a.x, std::int64_t{c.y} - a.y) -
+                                   product(std::int64_t{b.y} - a.y, std::int64_t{c.x} - a.x));
 }
 
 /// A closed axis-parallel rectangle of the grid, in cells; empty if min > max in x or y.

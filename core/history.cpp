@@ -11,7 +11,8 @@ constexpr std::uint32_t kNoVersion = 0xffffffff;
 /// Equal but perhaps for another of two level vertices at the top or the bottom.
 bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
   const auto y = [&history](std::uint32_t vertex) { return history.vertices[vertex].y; };
-  return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) && y(a.bottom) == y(b.bottom);
+  return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) &&
+         y(a.bottom) == y(b.bottom);
 }
 
 }  // namespace
@@ -79,8 +80,8 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
     const bool goes_down = first.vertex == graph.edge(first.edge).end[kUp];
     const bool clockwise = doubled > 0;
     const Side own = goes_down == clockwise ? kLeft : kRight;
-    loops_.push_back({std::abs(static_cast<double>(doubled)) / 2,
-                      graph.edge(first.edge).face[own] == kOutside});
+    loops_.push_back(
+        {std::abs(static_cast<double>(doubled)) / 2, graph.edge(first.edge).face[own] == kOutside});
   }
 }
 
@@ -103,7 +104,8 @@ void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level)
   // The last triangle was no wider than the tolerance: its longest side stands for the loop.
   const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
   const auto [from, to] = stack_.last_side();
-  history_->grains.push_back({graph.point(from), graph.point(to), loop.is_hole ? -loop.area : loop.area, level});
+  history_->grains.push_back(
+      {graph.point(from), graph.point(to), loop.is_hole ? -loop.area : loop.area, level});
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
@@ -135,14 +137,16 @@ void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
   open_edge(graph, e);
   for (const Side s : {kLeft, kRight}) {
     if (edge.face[s] == kOutside) continue;
-    for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown]) touch(n);
+    for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown])
+      touch(n);
   }
 }
 
 void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
   const Edge& edge = graph.edge(e);
   edge_version_[e] = static_cast<std::uint32_t>(history_->edges.size());
-  history_->edges.push_back({vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
+  history_->edges.push_back(
+      {vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
 }
 
 void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
@@ -153,8 +157,9 @@ void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level 
     version = kNoVersion;
     return;
   }
-  const MeshTrapezoid now{vertex_base_ + node.end[kUp].value - 1, vertex_base_ + node.end[kDown].value - 1,
-                          edge_version_[node.edge[kLeft]], edge_version_[node.edge[kRight]]};
+  const MeshTrapezoid now{vertex_base_ + node.end[kUp].value - 1,
+                          vertex_base_ + node.end[kDown].value - 1, edge_version_[node.edge[kLeft]],
+                          edge_version_[node.edge[kRight]]};
   if (version != kNoVersion) {
     if (covers_the_same(*history_, history_->trapezoids[version], now)) return;
     history_->lifespans[version].dies = level;

@@ -1,10 +1,10 @@
 // The history of a graph: every version of its inside trapezoids between the untouched polygon and
 // the coarsest tolerance, each with its lifespan (see tolerance.h).
 //
-// The sequence of removals is played once from fine to coarse. At every level of the ladder the nodes
-// that changed since the level before end their version there and begin a new one. Versions that no
-// level sees are never stored, which bounds the memory; edges have versions of their own, which the
-// versions of trapezoids name.
+// The sequence of removals is played once from fine to coarse. At every level of the ladder the
+// nodes that changed since the level before end their version there and begin a new one. Versions
+// that no level sees are never stored, which bounds the memory; edges have versions of their own,
+// which the versions of trapezoids name.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace trapeze {
 
-/// A loop that became too small to keep: its area stays on the map as dust, spread along the segment
-/// that was left of it.
+/// A loop that became too small to keep: its area stays on the map as dust, spread along the
+/// segment that was left of it.
 struct Grain {
   Point from;
   Point to;

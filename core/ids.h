@@ -1,5 +1,5 @@
-// Distinct types for the numbers of vertices, edges, nodes and corners, so that they cannot be mixed
-// up, and tables indexed by them.
+// Distinct types for the numbers of vertices, edges, nodes and corners, so that they cannot be
+// mixed up, and tables indexed by them.
 #pragma once
 
 #include <cstdint>

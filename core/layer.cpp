@@ -1,7 +1,9 @@
 #include "core/layer.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "core/layer_builder.h"
 #include "core/layer_contents.h"
 
 namespace trapeze {
@@ -9,30 +11,71 @@ namespace trapeze {
 Layer::Layer(std::unique_ptr<const Contents> contents) : contents_(std::move(contents)) {}
 Layer::~Layer() = default;
 
-const FeatureTable& Layer::features() const { return contents_->features; }
-const Box& Layer::bounds() const { return contents_->bounds; }
-const MeshView& Layer::mesh() const { return contents_->view; }
-
-void Layer::select(const Box& box, Level level, SmallPolygons small,
-                   std::vector<TrapezoidRange>& ranges) const {
-  ranges.clear();
-  contents_->polygon_index.select(box, level, contents_->lifespans, ranges);
-  if (small == SmallPolygons::dust) {
-    contents_->dust_index.select(box, level, contents_->lifespans, ranges);
-  }
+const FeatureTable& Layer::features() const {
+  return contents_->features;
+}
+const Box& Layer::bounds() const {
+  return contents_->bounds;
+}
+const MeshView& Layer::mesh() const {
+  return contents_->view;
 }
 
-void Layer::small_polygons(const Box& box, Level level, std::vector<Box>& places) const {
+void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
+  ranges.clear();
+  contents_->polygon_index.select(selection.box, selection.level, selection.level,
+                                  contents_->lifespans, ranges);
+  if (selection.small == SmallPolygons::dust) select_dust(selection, ranges);
+}
+
+// Merged motes are those of the picture's pixels. Of the single ones, all that the tolerance has
+// made are wanted, unless a merged one stands for them already.
+void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
+  const Level resolution = std::min(selection.level, selection.pixel_level);
+  const Contents& c = *contents_;
+  c.mote_index.select(selection.box, selection.level, resolution, c.lifespans, ranges);
+  c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
+}
+
+void Layer::small_polygons(const Selection& selection, std::vector<Box>& places) const {
   places.clear();
   std::vector<TrapezoidRange> ranges;
-  contents_->dust_index.select(box, level, contents_->lifespans, ranges);
+  select_dust(selection, ranges);
   const MeshView& mesh = contents_->view;
   for (const TrapezoidRange& range : ranges) {
     for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
       const MeshTrapezoid& t = mesh.trapezoids[i];
-      const bool is_hole = mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
+      const bool is_hole =
+          mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
       if (!is_hole) places.push_back(box_of(mesh, t));
     }
+  }
+}
+
+const Layer& Layer::without_topology_test() const {
+  if (contents_->options.topology == Topology::fast) return *this;
+  std::call_once(without_test_built_, [this] {
+    GeneralizationOptions options = contents_->options;
+    options.topology = Topology::fast;
+    LayerBuilder builder(options);
+    Rings rings;
+    for (std::uint32_t row = 0; row < features().size(); ++row) {
+      rings.clear();
+      append_outline(row, rings);
+      builder.add(row, rings);
+    }
+    std::vector<LayerBuilder> builders;
+    builders.push_back(std::move(builder));
+    without_test_ = LayerBuilder::join(builders, FeatureTable());
+  });
+  return *without_test_;
+}
+
+void Layer::append_outline(std::uint32_t row, Rings& rings) const {
+  const Contents& c = *contents_;
+  if (row >= c.outline_ends.size()) return;
+  for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
+    rings.add(c.outlines[i]);
   }
 }
 
@@ -40,15 +83,20 @@ std::uint32_t Layer::feature_of(std::uint32_t trapezoid) const {
   return trapezoid < contents_->feature_of.size() ? contents_->feature_of[trapezoid] : kNoFeature;
 }
 
-Layer::Size Layer::size() const { return contents_->size; }
+Layer::Size Layer::size() const {
+  return contents_->size;
+}
 
 std::size_t Layer::memory() const {
   const Contents& c = *contents_;
-  return c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
+  const std::size_t beside = without_test_ ? without_test_->memory() : 0;
+  return beside + c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
          c.trapezoids.capacity() * sizeof(MeshTrapezoid) +
          c.lifespans.capacity() * sizeof(Lifespan) +
-         c.feature_of.capacity() * sizeof(std::uint32_t) + c.polygon_index.memory() +
-         c.dust_index.memory();
+         c.feature_of.capacity() * sizeof(std::uint32_t) +
+         c.outlines.points.capacity() * sizeof(Point) +
+         (c.outlines.ends.capacity() + c.outline_ends.capacity()) * sizeof(std::uint32_t) +
+         c.polygon_index.memory() + c.mote_index.memory() + c.merged_mote_index.memory();
 }
 
 }  // namespace trapeze

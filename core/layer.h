@@ -1,15 +1,17 @@
 // A layer ready to be drawn: the trapezoids of all its polygons, where they are, and its features.
 //
-// Thread-safety: immutable; any number of threads may read.
+// Thread-safety: immutable to the eye; any number of threads may read.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/feature_table.h"
 #include "core/grid.h"
+#include "core/rings.h"
 #include "core/tolerance.h"
 #include "core/trapezoid_mesh.h"
 
@@ -28,7 +30,7 @@ class Layer {
 
   struct Contents;  // the stored arrays; made by LayerBuilder
 
-  explicit Layer(std::unique_ptr<const Contents> contents);
+  explicit Layer(std::unique_ptr<const Contents> contents);  // used by LayerBuilder
   ~Layer();
   Layer(const Layer&) = delete;
   Layer& operator=(const Layer&) = delete;
@@ -38,15 +40,33 @@ class Layer {
   const Box& bounds() const;
   const MeshView& mesh() const;
 
-  /// Replaces `ranges` by the trapezoids of the mesh at `level` that may touch `box`, with or without
-  /// those that stand for dust, as disjoint ranges in ascending order. Never leaves out a trapezoid
-  /// whose interior meets the box; may name a few that do not. In a trapezoid of dust that stands for
-  /// holes, left and right edge have changed places: its area is negative.
-  void select(const Box& box, Level level, SmallPolygons small, std::vector<TrapezoidRange>& ranges) const;
+  /// What of the mesh is wanted.
+  struct Selection {
+    Box box;
+    Level level = 0;  // of tolerance
+    /// The level of a quarter of a pixel: dust is taken together within pixels of this size,
+    /// however much greater the tolerance is.
+    Level pixel_level = kLastLevel;
+    SmallPolygons small = SmallPolygons::dust;
+  };
 
-  /// Replaces `places` by boxes around what is left of the small polygons in and near `box` at
-  /// `level`, several in one pixel taken together.
-  void small_polygons(const Box& box, Level level, std::vector<Box>& places) const;
+  /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
+  /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
+  /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
+  /// that stands for holes, left and right edge have changed places: its area is negative.
+  void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
+  /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
+  /// in one pixel taken together.
+  void small_polygons(const Selection& selection, std::vector<Box>& places) const;
+
+  /// The same polygons generalized without the topological consistency test (paper, section 4.2),
+  /// where that makes a difference. Built when first asked for, which takes about as long as
+  /// loading took and as much memory again; callers that come meanwhile wait.
+  const Layer& without_topology_test() const;
+
+  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
+  void append_outline(std::uint32_t row, Rings& rings) const;
 
   /// The row, in features(), of the polygon that a trapezoid is a part of; kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
@@ -61,11 +81,16 @@ class Layer {
   };
   Size size() const;
 
-  /// Heap memory held by geometry and index, in bytes; attributes are counted by features().memory().
+  /// Heap memory held by geometry and index, in bytes; attributes are counted by
+  /// features().memory().
   std::size_t memory() const;
 
  private:
+  void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
   std::unique_ptr<const Contents> contents_;
+  mutable std::once_flag without_test_built_;
+  mutable std::unique_ptr<const Layer> without_test_;
 };
 
 }  // namespace trapeze

@@ -1,10 +1,11 @@
 #include "core/layer_builder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
+#include "core/check_graph.h"
 #include "core/dust.h"
 #include "core/history.h"
 #include "core/layer_contents.h"
@@ -22,9 +23,11 @@ struct Stock {
     std::size_t edges;
     std::size_t trapezoids;
     std::size_t grains;
+    std::size_t rings;
   };
   std::vector<Part> parts;
   History history;
+  Rings outlines;
 };
 
 /// The parts of all builders in the order of features.
@@ -57,22 +60,31 @@ std::vector<Grain> concatenate(const std::vector<PartOf>& parts, Layer::Contents
   for (const auto& [stock, p] : parts) {
     const History& history = stock->history;
     // From indices of the stock to indices of the layer; wraps around where that is negative.
-    const auto vertex_shift = static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
+    const auto vertex_shift =
+        static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
     const auto edge_shift = static_cast<std::uint32_t>(layer.edges.size() - stock->parts[p].edges);
     const auto vertices = part_of(history.vertices, *stock, p, &Stock::Part::vertices);
     layer.vertices.insert(layer.vertices.end(), vertices.begin(), vertices.end());
     for (const MeshEdge e : part_of(history.edges, *stock, p, &Stock::Part::edges)) {
       layer.edges.push_back({e.upper + vertex_shift, e.lower + vertex_shift});
     }
-    for (const MeshTrapezoid& t : part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
-      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift, t.left + edge_shift,
-                                  t.right + edge_shift});
+    for (const MeshTrapezoid& t :
+         part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
+      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift,
+                                  t.left + edge_shift, t.right + edge_shift});
       layer.feature_of.push_back(stock->parts[p].row);
     }
     const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
     const auto grains = part_of(history.grains, *stock, p, &Stock::Part::grains);
     all_grains.insert(all_grains.end(), grains.begin(), grains.end());
+    layer.outline_ends.resize(stock->parts[p].row,
+                              static_cast<std::uint32_t>(layer.outlines.size()));
+    const std::size_t rings_end =
+        p + 1 < stock->parts.size() ? stock->parts[p + 1].rings : stock->outlines.size();
+    for (std::size_t r = stock->parts[p].rings; r < rings_end; ++r)
+      layer.outlines.add(stock->outlines[r]);
+    layer.outline_ends.push_back(static_cast<std::uint32_t>(layer.outlines.size()));
   }
   return all_grains;
 }
@@ -92,7 +104,8 @@ void order_trapezoids(Layer::Contents& layer) {
   keys.reserve(layer.trapezoids.size());
   for (std::size_t i = 0; i < layer.trapezoids.size(); ++i) {
     const MeshTrapezoid& t = layer.trapezoids[i];
-    keys.emplace_back(order_key(box_of(view, t), layer.lifespans[i]), static_cast<std::uint32_t>(i));
+    keys.emplace_back(order_key(box_of(view, t), layer.lifespans[i]),
+                      static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   std::vector<std::uint32_t> order;
@@ -161,28 +174,32 @@ void append_mote(const Mote& mote, Layer::Contents& layer) {
   const auto e = static_cast<std::uint32_t>(layer.edges.size());
   layer.vertices.insert(layer.vertices.end(), {{x0, y0}, {x0, y1}, {x1, y0}, {x1, y1}});
   layer.edges.insert(layer.edges.end(), {{v, v + 1}, {v + 2, v + 3}});
-  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1} : MeshTrapezoid{v, v + 3, e + 1, e});
+  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1}
+                                           : MeshTrapezoid{v, v + 3, e + 1, e});
   layer.lifespans.push_back(mote.lifespan);
 }
 
-void append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+/// Single motes first, then merged ones; returns the number of single ones.
+std::uint32_t append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
+  using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
+  std::vector<Key> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {
-    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)), static_cast<std::int32_t>(std::lround(motes[i].y))};
-    keys.emplace_back(order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan), static_cast<std::uint32_t>(i));
+    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)),
+                  static_cast<std::int32_t>(std::lround(motes[i].y))};
+    keys.emplace_back(motes[i].is_merged, order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan),
+                      static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   layer.vertices.reserve(layer.vertices.size() + 4 * motes.size());
   layer.edges.reserve(layer.edges.size() + 2 * motes.size());
   layer.trapezoids.reserve(layer.trapezoids.size() + motes.size());
   layer.lifespans.reserve(layer.lifespans.size() + motes.size());
-  for (const auto& [key, i] : keys) append_mote(motes[i], layer);
-}
-
-/// Counted from 1 on, so that 0 is never the id of a mesh.
-std::uint64_t next_mesh_id() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
+  std::uint32_t singles = 0;
+  for (const auto& [is_merged, key, i] : keys) {
+    append_mote(motes[i], layer);
+    singles += !is_merged;
+  }
+  return singles;
 }
 
 }  // namespace
@@ -195,7 +212,8 @@ struct LayerBuilder::State {
   HistoryRecorder recorder;
 };
 
-LayerBuilder::LayerBuilder(const GeneralizationOptions& options) : state_(std::make_unique<State>()) {
+LayerBuilder::LayerBuilder(const GeneralizationOptions& options)
+    : state_(std::make_unique<State>()) {
   state_->options = options;
 }
 LayerBuilder::~LayerBuilder() = default;
@@ -207,13 +225,18 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   if (!outcome.built) return outcome;
   Stock& stock = state_->stock;
   stock.parts.push_back({row, stock.history.vertices.size(), stock.history.edges.size(),
-                         stock.history.trapezoids.size(), stock.history.grains.size()});
+                         stock.history.trapezoids.size(), stock.history.grains.size(),
+                         stock.outlines.size()});
+  const Rings outline = rings_of(state_->graph);
+  for (std::size_t r = 0; r < outline.size(); ++r) stock.outlines.add(outline[r]);
   state_->recorder.record(state_->graph, state_->options, stock.history);
   return outcome;
 }
 
-std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, FeatureTable features) {
+std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
+                                          FeatureTable features) {
   auto layer = std::make_unique<Layer::Contents>();
+  if (!builders.empty()) layer->options = builders.front().state_->options;
   std::vector<const Stock*> stocks;
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
   const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), *layer);
@@ -224,15 +247,20 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders, F
   for (const Point p : layer->vertices) layer->bounds.include(p);
   const auto polygons = static_cast<std::uint32_t>(layer->trapezoids.size());
   layer->size = {layer->vertices.size(), layer->trapezoids.size(), layer->edges.size(), 0};
-  append_dust(settle(grains), *layer);
-  layer->polygons = {0, polygons};
-  layer->dust = {polygons, static_cast<std::uint32_t>(layer->trapezoids.size()) - polygons};
-  layer->size.motes = layer->dust.count;
+  const std::uint32_t motes = append_dust(settle(grains), *layer);
+  const auto all = static_cast<std::uint32_t>(layer->trapezoids.size());
+  layer->size.motes = all - polygons;
 
+  layer->outlines.points.shrink_to_fit();
+  layer->outlines.ends.shrink_to_fit();
   layer->features = std::move(features);
-  layer->view = MeshView{next_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
-  layer->polygon_index = MeshIndex(layer->view, layer->polygons, layer->lifespans);
-  layer->dust_index = MeshIndex(layer->view, layer->dust, layer->lifespans);
+  layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
+  const auto index = [&layer](std::uint32_t from, std::uint32_t to) {
+    return MeshIndex(layer->view, {from, to - from}, layer->lifespans);
+  };
+  layer->polygon_index = index(0, polygons);
+  layer->mote_index = index(polygons, polygons + motes);
+  layer->merged_mote_index = index(polygons + motes, all);
   return std::make_unique<Layer>(std::move(layer));
 }
 

@@ -1,5 +1,5 @@
-// From rings to a layer: every feature's polygon is trapezoidated, generalized through all levels, and
-// the history of its graph stored for drawing.
+// From rings to a layer: every feature's polygon is trapezoidated, generalized through all levels,
+// and the history of its graph stored for drawing.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,8 @@ class LayerBuilder {
   /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
   BuildOutcome add(std::uint32_t row, Rings& rings);
 
-  /// Joins what the builders hold into one layer; the builders are empty afterwards.
+  /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
+  /// with the same options.
   static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features);
 
  private:

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/layer.h"
 #include "core/mesh_index.h"
 
@@ -16,11 +17,14 @@ struct Layer::Contents {
   std::vector<Lifespan> lifespans;        // by trapezoid
   std::vector<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // looks at the arrays above
-  TrapezoidRange polygons;                // trapezoids of polygons, then
-  TrapezoidRange dust;                    // trapezoids of dust
+  // Trapezoids of polygons come first, then those of single motes, then those of merged ones.
   MeshIndex polygon_index;
-  MeshIndex dust_index;
+  MeshIndex mote_index;
+  MeshIndex merged_mote_index;
   Size size;
+  GeneralizationOptions options;
+  Rings outlines;                           // of all features, in order of rows
+  std::vector<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
   Box bounds;
   FeatureTable features;
 };

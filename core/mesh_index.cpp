@@ -18,7 +18,8 @@ struct Interval {
 Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, std::int32_t y1) {
   const Point a = mesh.vertices[edge.upper];
   const Point b = mesh.vertices[edge.lower];
-  if (a.y == b.y) return {static_cast<double>(std::min(a.x, b.x)), static_cast<double>(std::max(a.x, b.x))};
+  if (a.y == b.y)
+    return {static_cast<double>(std::min(a.x, b.x)), static_cast<double>(std::max(a.x, b.x))};
   const double slope = (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y);
   const double x0 = a.x + slope * (static_cast<double>(y0) - a.y);
   const double x1 = a.x + slope * (static_cast<double>(y1) - a.y);
@@ -26,7 +27,9 @@ Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, st
 }
 
 /// An octave of levels to a class; the untouched and the undying are classes of their own.
-unsigned lifespan_class(Level level) { return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave; }
+unsigned lifespan_class(Level level) {
+  return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
+}
 
 }  // namespace
 
@@ -43,16 +46,19 @@ Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
 }
 
 std::uint64_t order_key(const Box& box, Lifespan lifespan) {
-  const std::int64_t extent = std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
+  const std::int64_t extent =
+      std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
   // Two octaves of size to a class.
-  const auto size = static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(extent)) / 2);
+  const auto size =
+      static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(extent)) / 2);
   const Point centre{static_cast<std::int32_t>((std::int64_t{box.min_x} + box.max_x) / 2),
                      static_cast<std::int32_t>((std::int64_t{box.min_y} + box.max_y) / 2)};
   return (std::uint64_t{lifespan_class(lifespan.born)} << 45) |
          (std::uint64_t{lifespan_class(lifespan.dies)} << 38) | (size << 32) | hilbert(centre);
 }
 
-MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans)
+MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
+                     std::span<const Lifespan> lifespans)
     : range_(range) {
   std::vector<Entry> entries((range.count + kFanout - 1) / kFanout);
   for (std::size_t i = 0; i < range.count; ++i) {
@@ -76,15 +82,15 @@ MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const
   }
 }
 
-void MeshIndex::select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+void MeshIndex::select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
                        std::vector<TrapezoidRange>& ranges) const {
   if (range_.count == 0) return;
-  descend(heights_.size() - 1, 0, Query{box, level, lifespans, ranges});
+  descend(heights_.size() - 1, 0, Query{box, born, alive, lifespans, ranges});
 }
 
 void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
   const Entry& entry = heights_[height][index];
-  if (query.level < entry.min_born || query.level >= entry.max_dies) return;
+  if (query.born < entry.min_born || query.alive >= entry.max_dies) return;
   if (!entry.box.intersects(query.box)) return;
   const std::size_t begin = index * kFanout;
   if (height > 0) {
@@ -94,7 +100,7 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
   }
   const std::size_t end = std::min<std::size_t>(begin + kFanout, range_.count);
   for (std::size_t i = range_.first + begin; i < range_.first + end; ++i) {
-    if (!query.lifespans[i].contains(query.level)) continue;
+    if (query.lifespans[i].born > query.born || query.lifespans[i].dies <= query.alive) continue;
     const auto id = static_cast<std::uint32_t>(i);
     if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {
       ++query.ranges.back().count;

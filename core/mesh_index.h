@@ -1,5 +1,6 @@
-// Where the trapezoids of a mesh are and when they live: a packed tree over the array of trapezoids,
-// which is ordered so that what is near in lifespan, size and place is near in the array.
+// Where the trapezoids of a mesh are and when they live: a packed tree over the array of
+// trapezoids, which is ordered so that what is near in lifespan, size and place is near in the
+// array.
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,10 @@ class MeshIndex {
   /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh.
   MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans);
 
-  /// Appends to `ranges` the trapezoids that live at `level` and may meet `box`, as disjoint ranges in
-  /// ascending order.
-  void select(const Box& box, Level level, std::span<const Lifespan> lifespans,
+  /// Appends to `ranges` the trapezoids that are born at `born` or before, die after `alive`, and
+  /// may meet `box`, as disjoint ranges in ascending order. With both levels equal: those alive
+  /// there.
+  void select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
 
   std::size_t memory() const;
@@ -43,7 +45,8 @@ class MeshIndex {
   };
   struct Query {
     const Box& box;
-    Level level;
+    Level born;
+    Level alive;
     std::span<const Lifespan> lifespans;
     std::vector<TrapezoidRange>& ranges;
   };

@@ -22,7 +22,8 @@ class SegmentTree {
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < segments.size(); i += kFanout) {
       Box b;
-      for (std::size_t k = i; k < std::min(i + kFanout, segments.size()); ++k) b.include(box_of(segments[k]));
+      for (std::size_t k = i; k < std::min(i + kFanout, segments.size()); ++k)
+        b.include(box_of(segments[k]));
       boxes.push_back(b);
     }
     levels_.push_back(std::move(boxes));
@@ -38,7 +39,14 @@ class SegmentTree {
     }
   }
 
-  /// Calls visit(index) for every segment whose box meets `box` and whose index is >= `from`.
+  std::size_t leaf_count() const { return segments_.empty() ? 0 : levels_.front().size(); }
+  const Box& leaf_box(std::size_t leaf) const { return levels_.front()[leaf]; }
+  std::size_t leaf_begin(std::size_t leaf) const { return leaf * kFanout; }
+  std::size_t leaf_end(std::size_t leaf) const {
+    return std::min((leaf + 1) * kFanout, segments_.size());
+  }
+
+  /// Calls visit(leaf) for every leaf whose box meets `box` and whose number is >= `from`.
   template <class Visit>
   void query(const Box& box, std::size_t from, const Visit& visit) const {
     if (!segments_.empty()) descend(levels_.size() - 1, 0, box, from, visit);
@@ -51,17 +59,11 @@ class SegmentTree {
   void descend(std::size_t level, std::size_t index, const Box& box, std::size_t from,
                const Visit& visit) const {
     if (!levels_[level][index].intersects(box)) return;
-    const std::size_t begin = index * kFanout;
-    if (level == 0) {
-      const std::size_t end = std::min(begin + kFanout, segments_.size());
-      for (std::size_t i = std::max(begin, from); i < end; ++i) {
-        if (box_of(segments_[i]).intersects(box)) visit(i);
-      }
-      return;
-    }
+    if (level == 0) return visit(index);
     // Subtrees that end before `from` hold nothing of interest.
-    std::size_t span = kFanout;
+    std::size_t span = 1;
     for (std::size_t l = 1; l < level; ++l) span *= kFanout;
+    const std::size_t begin = index * kFanout;
     const std::size_t end = std::min(begin + kFanout, levels_[level - 1].size());
     for (std::size_t i = begin; i < end; ++i) {
       if ((i + 1) * span > from) descend(level - 1, i, box, from, visit);
@@ -106,7 +108,9 @@ Int128 round_half_up(Int128 a, Int128 b) {
   return q;
 }
 
-int sign(std::int64_t v) { return (v > 0) - (v < 0); }
+int sign(std::int64_t v) {
+  return (v > 0) - (v < 0);
+}
 
 /// Appends where two segments meet, other than at a common end: the rounded crossing of their
 /// interiors, or the ends of one that lie on the other.
@@ -118,7 +122,8 @@ void add_meetings(const Segment& s, const Segment& t, std::vector<Point>& points
   const std::int64_t t2 = orientation(s.first, s.second, t.second);
   if (sign(t1) * sign(t2) > 0) return;
   if (sign(s1) * sign(s2) < 0 && sign(t1) * sign(t2) < 0) {
-    // Along s the orientation to t goes linearly from s1 to s2: it is 0 at the share s1 / (s1 - s2).
+    // Along s the orientation to t goes linearly from s1 to s2: it is 0 at the share s1 / (s1 -
+    // s2).
     Int128 num = s1;
     Int128 den = static_cast<Int128>(s1) - s2;
     if (den < 0) {
@@ -159,7 +164,8 @@ bool passes_cell(const Segment& s, Point centre) {
   bool right = false;
   for (const int dx : {-1, 1}) {
     for (const int dy : {-1, 1}) {
-      Int128 side = static_cast<Int128>(bx - ax) * (y + dy - ay) - static_cast<Int128>(by - ay) * (x + dx - ax);
+      Int128 side = static_cast<Int128>(bx - ax) * (y + dy - ay) -
+                    static_cast<Int128>(by - ay) * (x + dx - ax);
       if (side == 0) side = (dx > 0 ? by - ay : 0) - (dy > 0 ? bx - ax : 0);
       left = left || side <= 0;
       right = right || side >= 0;
@@ -174,10 +180,23 @@ struct Pass {
   Point hot;
 };
 
-std::vector<Point> hot_cells(const std::vector<Segment>& segments, const SegmentTree& tree, HotCells cells) {
+std::vector<Point> hot_cells(const std::vector<Segment>& segments, const SegmentTree& tree,
+                             HotCells cells) {
   std::vector<Point> hot;
+  // A leaf at a time: its segments are near each other and have the same neighbours.
+  for (std::size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    tree.query(tree.leaf_box(leaf), leaf, [&](std::size_t other) {
+      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+        const Box box = box_of(segments[i]);
+        if (!box.intersects(tree.leaf_box(other))) continue;
+        for (std::size_t k = std::max(i + 1, tree.leaf_begin(other)); k < tree.leaf_end(other);
+             ++k) {
+          if (box_of(segments[k]).intersects(box)) add_meetings(segments[i], segments[k], hot);
+        }
+      }
+    });
+  }
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    tree.query(box_of(segments[i]), i + 1, [&](std::size_t k) { add_meetings(segments[i], segments[k], hot); });
     if (cells == HotCells::crossings_and_vertices) {
       hot.push_back(segments[i].first);
       hot.push_back(segments[i].second);
@@ -193,10 +212,13 @@ std::vector<Pass> find_passes(const std::vector<Segment>& segments, const Segmen
                               const std::vector<Point>& hot) {
   std::vector<Pass> passes;
   for (const Point p : hot) {
-    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch it.
+    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch
+    // it.
     const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
-    tree.query(around, 0, [&](std::size_t i) {
-      if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+    tree.query(around, 0, [&](std::size_t leaf) {
+      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+        if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+      }
     });
   }
   std::stable_sort(passes.begin(), passes.end(),
@@ -208,13 +230,15 @@ void add_piece(Point a, Point b, std::vector<Segment>& pieces) {
   if (a != b) pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
 }
 
-/// Appends the pieces of a segment that passes the cells of [begin, end), which are put in order along
-/// the segment: by the distance of the centre in its direction.
-void add_pieces(const Segment& s, std::vector<Pass>::iterator begin, std::vector<Pass>::iterator end,
-                std::vector<Segment>& pieces) {
+/// Appends the pieces of a segment that passes the cells of [begin, end), which are put in order
+/// along the segment: by the distance of the centre in its direction.
+void add_pieces(const Segment& s, std::vector<Pass>::iterator begin,
+                std::vector<Pass>::iterator end, std::vector<Segment>& pieces) {
   const auto along = [&s](const Pass& pass) {
-    return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) * (std::int64_t{pass.hot.x} - s.first.x) +
-           static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) * (std::int64_t{pass.hot.y} - s.first.y);
+    return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) *
+               (std::int64_t{pass.hot.x} - s.first.x) +
+           static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) *
+               (std::int64_t{pass.hot.y} - s.first.y);
   };
   std::sort(begin, end, [&](const Pass& a, const Pass& b) { return along(a) < along(b); });
   Point last = s.first;

@@ -1,9 +1,9 @@
 // Noding on the integer grid: rings that cross, touch or overlap become edges that meet only at
 // common vertices.
 //
-// Snap rounding (Hobby 1999; Guibas and Marimont 1998): cells are made "hot", and each segment is led
-// through the centres of all hot cells that it passes. No point moves by more than half a cell in x
-// and y. Pieces that then coincide cancel in pairs (even-odd).
+// Snap rounding (Hobby 1999; Guibas and Marimont 1998): cells are made "hot", and each segment is
+// led through the centres of all hot cells that it passes. No point moves by more than half a cell
+// in x and y. Pieces that then coincide cancel in pairs (even-odd).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ using Segment = std::pair<Point, Point>;
 std::vector<Segment> segments_of(const Rings& rings);
 
 enum class HotCells : std::uint8_t {
-  /// Those of crossings and of vertices that lie on other segments. Quick, and nearly always enough;
+  /// Those of crossings and of vertices that lie on other segments. Quick, and nearly always
+  /// enough;
   /// but a segment that is moved can come to cross another one next to it.
   crossings,
   /// Those of all vertices as well: the result is certain to have no crossing left.

@@ -76,8 +76,7 @@ Decision decide_extremum(const TrapezoidalGraph& g, CornerId c, Topology topolog
     if (g.node(wedge).edge[s] != x.near_edge) return blocked_by(v, 2);  // other edges between them
   }
   if (g.node(wedge).end[x.away] != x.near_vertex) return blocked_by(g.node(wedge).end[x.away], 1);
-  const std::int64_t inner =
-      orientation(g.point(x.near_vertex), g.point(x.far_vertex), g.point(v));
+  const std::int64_t inner = orientation(g.point(x.near_vertex), g.point(x.far_vertex), g.point(v));
   std::uint32_t walked = 1;
   const Side own = opposite(s);
   const NodeId first = g.node(wedge).link[own][x.away];

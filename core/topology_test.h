@@ -1,10 +1,11 @@
 // May a vertex be removed? The topological consistency test (paper, section 3.3), exact and local.
 //
-// Removing a vertex V between A and B replaces the boundary A V B by A B. No edge is crossed, and no
-// part of the boundary changes sides, exactly if the closed triangle A V B holds no other vertex. If
-// it holds one, then a trapezoid along AV or VB on the triangle's side has such a vertex at its top or
-// bottom: the horizontal line from the vertex nearest to AV or VB reaches it unhindered. So only
-// those trapezoids are looked at (the paper's minimal surrounding trapezoid set).
+// Removing a vertex V between A and B replaces the boundary A V B by A B. No edge is crossed, and
+// no part of the boundary changes sides, exactly if the closed triangle A V B holds no other
+// vertex. If it holds one, then a trapezoid along AV or VB on the triangle's side has such a vertex
+// at its top or bottom: the horizontal line from the vertex nearest to AV or VB reaches it
+// unhindered. So only those trapezoids are looked at (the paper's minimal surrounding trapezoid
+// set).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ namespace trapeze {
 
 enum class Topology : std::uint8_t {
   strict,  // the boundary never crosses or touches itself where it did not before
-  fast,    // only what the operators themselves need is asked for, as in the paper's runs without the
-           // test: the boundary may come to cross itself
+  fast,  // only what the operators themselves need is asked for, as in the paper's runs without the
+         // test: the boundary may come to cross itself
 };
 
 /// What removing a corner amounts to.
@@ -37,8 +38,8 @@ struct Decision {
 /// Decides about the removal of `corner`, which is alive.
 Decision decide_removal(const TrapezoidalGraph& graph, CornerId corner, Topology topology);
 
-/// At an extremum: the edges to the nearer and to the farther neighbour of V in sweep order, and where
-/// they are. Meaningful if V's neighbours lie both above or both below it.
+/// At an extremum: the edges to the nearer and to the farther neighbour of V in sweep order, and
+/// where they are. Meaningful if V's neighbours lie both above or both below it.
 struct Extremum {
   Direction away = kDown;  // from V towards its neighbours
   EdgeId near_edge;

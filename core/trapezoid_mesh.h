@@ -26,7 +26,8 @@ struct MeshEdge {
 
 /// The region between two edges, from the level of vertex `top` down to the level of vertex
 /// `bottom`. Both edges span the whole height; corners lie where edges and levels meet and are not
-/// stored. top.y == bottom.y is possible (the sweep order breaks ties): such a trapezoid has no area.
+/// stored. top.y == bottom.y is possible (the sweep order breaks ties): such a trapezoid has no
+/// area.
 struct MeshTrapezoid {
   std::uint32_t top = 0;     // index of a vertex
   std::uint32_t bottom = 0;  // index of a vertex
@@ -42,6 +43,18 @@ struct MeshView {
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
   std::span<const MeshTrapezoid> trapezoids;
+};
+
+/// An id that no mesh of this process has had; never 0. Thread-safe.
+std::uint64_t new_mesh_id();
+
+/// A mesh of rectangles, a trapezoid each.
+struct BoxMesh {
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
+
+  void add(const Box& box);
 };
 
 /// Trapezoids first, first + 1, ..., first + count - 1 of a mesh.

@@ -10,8 +10,8 @@ constexpr LinkKind pseudo(Direction d) {
   return d == kUp ? LinkKind::pseudo_division : LinkKind::pseudo_join;
 }
 
-/// Follows outside nodes from the tip of an island in direction `d` to the end of the hole around it,
-/// and returns the inside node beyond; none if the outside is not a hole but reaches the frame.
+/// Follows outside nodes from the tip of an island in direction `d` to the end of the hole around
+/// it, and returns the inside node beyond; none if the outside is not a hole but reaches the frame.
 NodeId beyond_hole(const TrapezoidalGraph& g, NodeId tip, Direction d) {
   // The outside node left of the island's leftmost edge at its tip.
   NodeId n = g.edge(g.node(tip).edge[kLeft]).extreme[kLeft][d];
@@ -64,7 +64,7 @@ std::vector<Link> TrapezoidalGraph::links() const {
     const Neighbours below = neighbours(n, kDown);
     for (int i = 0; i < below.count; ++i) {
       const NodeId lower = below.node[static_cast<std::size_t>(i)];
-      const LinkKind kind = below.count == 2                     ? LinkKind::division
+      const LinkKind kind = below.count == 2                    ? LinkKind::division
                             : neighbours(lower, kUp).count == 2 ? LinkKind::join
                                                                 : LinkKind::connection;
       found.push_back({n, lower, kind});
@@ -113,7 +113,7 @@ std::vector<Link> TrapezoidalGraph::pseudo_links() const {
 Connectedness TrapezoidalGraph::connectedness(NodeId n) const {
   const bool up = neighbours(n, kUp).count > 0;
   const bool down = neighbours(n, kDown).count > 0;
-  return up && down ? Connectedness::two_sided
+  return up && down   ? Connectedness::two_sided
          : up || down ? Connectedness::one_sided
                       : Connectedness::isolated;
 }
@@ -170,7 +170,8 @@ Int128 TrapezoidalGraph::doubled_area() const {
       const Point l = vertices_[edges_[e].end[kDown]];
       const Int128 dx = std::int64_t{l.x} - u.x;
       const Int128 dy = std::int64_t{l.y} - u.y;
-      const Int128 piece = (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
+      const Int128 piece =
+          (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
       numerator[e.value] += side == kRight ? piece : -piece;
     }
   }
@@ -189,7 +190,8 @@ std::size_t TrapezoidalGraph::memory() const {
          nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(Corner);
 }
 
-std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vector<NodeId>& chain) {
+std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph,
+                                   const std::vector<NodeId>& chain) {
   std::vector<StripPoint> strip;
   const auto add_level = [&](const Node& node, Direction d) {
     const double y = graph.point(node.end[d]).y;

@@ -1,9 +1,9 @@
-// The trapezoidal graph of one polygon (paper, section 3.1): trapezoids are nodes, and the relations
-// between a trapezoid and the ones above and below it are links.
+// The trapezoidal graph of one polygon (paper, section 3.1): trapezoids are nodes, and the
+// relations between a trapezoid and the ones above and below it are links.
 //
-// The graph meshes the whole plane, inside and outside, within a frame of two edges and two vertices
-// at infinity. Corners of trapezoids are implied by edges and never stored, so no vertex is
-// introduced. Vertices are numbered in sweep order (y, then x): "above" is a comparison of ids.
+// The graph meshes the whole plane, inside and outside, within a frame of two edges and two
+// vertices at infinity. Corners of trapezoids are implied by edges and never stored, so no vertex
+// is introduced. Vertices are numbered in sweep order (y, then x): "above" is a comparison of ids.
 //
 //            top vertex (at a corner or between)
 //        ----*----------
@@ -32,8 +32,12 @@ namespace trapeze {
 enum Side : int { kLeft = 0, kRight = 1 };
 enum Direction : int { kUp = 0, kDown = 1 };
 
-constexpr Side opposite(Side s) { return static_cast<Side>(1 - s); }
-constexpr Direction opposite(Direction d) { return static_cast<Direction>(1 - d); }
+constexpr Side opposite(Side s) {
+  return static_cast<Side>(1 - s);
+}
+constexpr Direction opposite(Direction d) {
+  return static_cast<Direction>(1 - d);
+}
 
 /// A trapezoid. `end` are its top and bottom vertex, `edge` its left and right edge, and
 /// `link[side][direction]` the next node along that edge, none at the end of the edge.
@@ -121,13 +125,14 @@ class TrapezoidalGraph {
   /// divisions and joins, and for islands the pseudo-divisions and pseudo-joins.
   std::vector<Link> links() const;
   /// The links that tie an island to its surroundings. The island's starting node hangs by a
-  /// pseudo-division on the node above the hole it lies in; its ending node is tied by a pseudo-join
-  /// to the node below that hole. Derived from the outside trapezoids of the hole.
+  /// pseudo-division on the node above the hole it lies in; its ending node is tied by a
+  /// pseudo-join to the node below that hole. Derived from the outside trapezoids of the hole.
   std::vector<Link> pseudo_links() const;
   Connectedness connectedness(NodeId n) const;
 
-  /// The topmost inside node, the leftmost if several are level (the paper's starting node), and the
-  /// bottommost, the rightmost if several are level (the ending node). None if nothing is inside.
+  /// The topmost inside node, the leftmost if several are level (the paper's starting node), and
+  /// the bottommost, the rightmost if several are level (the ending node). None if nothing is
+  /// inside.
   NodeId starting_node() const;
   NodeId ending_node() const;
 
@@ -162,8 +167,8 @@ struct StripPoint {
   double y = 0;
 };
 
-/// A trapezoidal chain as a quad strip: left and right point of the top of the first node, then left
-/// and right point of the bottom of every node.
+/// A trapezoidal chain as a quad strip: left and right point of the top of the first node, then
+/// left and right point of the bottom of every node.
 std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vector<NodeId>& chain);
 
 }  // namespace trapeze

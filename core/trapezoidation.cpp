@@ -5,8 +5,11 @@
 namespace trapeze {
 namespace {
 
-/// Negative if p lies left of the edge (at p's level in sweep order), positive if right, 0 if on it.
-std::int64_t side_of(Point upper, Point lower, Point p) { return -orientation(upper, lower, p); }
+/// Negative if p lies left of the edge (at p's level in sweep order), positive if right, 0 if on
+/// it.
+std::int64_t side_of(Point upper, Point lower, Point p) {
+  return -orientation(upper, lower, p);
+}
 
 }  // namespace
 
@@ -141,9 +144,8 @@ bool Trapezoidation::sweep_general(VertexId v) {
 bool Trapezoidation::sort_starting_edges(VertexId v) {
   const Point p = boundary_->vertices[v];
   const auto lower = [this](EdgeId e) { return boundary_->vertices[boundary_->edges[e].lower]; };
-  std::sort(starting_.begin(), starting_.end(), [&](EdgeId a, EdgeId b) {
-    return side_of(p, lower(a), lower(b)) > 0;
-  });
+  std::sort(starting_.begin(), starting_.end(),
+            [&](EdgeId a, EdgeId b) { return side_of(p, lower(a), lower(b)) > 0; });
   for (std::size_t i = 1; i < starting_.size(); ++i) {
     if (side_of(p, lower(starting_[i - 1]), lower(starting_[i])) == 0) return false;
   }
@@ -198,7 +200,8 @@ Trapezoidation::Slot Trapezoidation::locate(VertexId v) const {
   Slot left = 0;
   for (Slot slot = root_; slot != kNoSlot;) {
     const Boundary::Ends e = boundary_->edges[status_[slot].edge];
-    const std::int64_t side = side_of(boundary_->vertices[e.upper], boundary_->vertices[e.lower], p);
+    const std::int64_t side =
+        side_of(boundary_->vertices[e.upper], boundary_->vertices[e.lower], p);
     if (side == 0) return kNoSlot;
     if (side > 0) left = slot;
     slot = status_[slot].child[side > 0];

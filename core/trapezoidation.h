@@ -1,10 +1,10 @@
 // Trapezoidation by plane sweep (paper, section 3.1), O(n log n), exact.
 //
 // The sweep goes through the vertices in sweep order and keeps the edges that cross the sweep line
-// from left to right, in a balanced tree and in a linked list. At a regular vertex one edge takes the
-// place of another in O(1); only where edges begin is the tree searched. Every pair of edges that
-// become neighbours is tested, so a crossing, an overlap or a vertex on an edge is always found
-// (Shamos and Hoey): the sweep either succeeds or says that the boundary is not noded.
+// from left to right, in a balanced tree and in a linked list. At a regular vertex one edge takes
+// the place of another in O(1); only where edges begin is the tree searched. Every pair of edges
+// that become neighbours is tested, so a crossing, an overlap or a vertex on an edge is always
+// found (Shamos and Hoey): the sweep either succeeds or says that the boundary is not noded.
 #pragma once
 
 #include <cstdint>

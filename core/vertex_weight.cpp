@@ -63,9 +63,13 @@ std::optional<WeightRule> weight_rule_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of(WeightRule rule) { return kNames[static_cast<std::size_t>(rule)].first; }
+std::string_view name_of(WeightRule rule) {
+  return kNames[static_cast<std::size_t>(rule)].first;
+}
 
-double squared_distance(Point p, Point a, Point b) { return DistanceFrom(a, b).squared(p); }
+double squared_distance(Point p, Point a, Point b) {
+  return DistanceFrom(a, b).squared(p);
+}
 
 std::span<const double> VertexWeights::weigh(std::span<const Point> ring, WeightRule rule) {
   weights_.assign(ring.size(), kInfinite);
@@ -77,8 +81,8 @@ std::span<const double> VertexWeights::weigh(std::span<const Point> ring, Weight
   return weights_;
 }
 
-/// The uppermost vertex and the one farthest from it: a choice that any starting point and direction
-/// agree on.
+/// The uppermost vertex and the one farthest from it: a choice that any starting point and
+/// direction agree on.
 VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) const {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -98,8 +102,8 @@ VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) co
   return anchors;
 }
 
-// Binary recursive partitioning, iteratively. Of equally distant vertices the one nearest the middle
-// of its piece splits it: a comb of equal teeth is halved and not peeled tooth by tooth.
+// Binary recursive partitioning, iteratively. Of equally distant vertices the one nearest the
+// middle of its piece splits it: a comb of equal teeth is halved and not peeled tooth by tooth.
 void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_parents) {
   const std::size_t n = ring.size();
   const auto wrapped = [n](std::size_t i) { return i < n ? i : i - n; };
@@ -117,14 +121,13 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
     const DistanceFrom distance(ring[wrapped(piece.begin)], ring[wrapped(piece.end)]);
     double farthest = -1;
     std::size_t split = piece.begin + 1;
-    const auto off_middle = [&](std::size_t i) {
-      return std::max(i - piece.begin, piece.end - i);
-    };
+    const auto off_middle = [&](std::size_t i) { return std::max(i - piece.begin, piece.end - i); };
     for (std::size_t i = piece.begin + 1; i < piece.end; ++i) {
       const double squared = distance.squared(ring[wrapped(i)]);
       if (squared < farthest) continue;
       if (squared > farthest || off_middle(i) < off_middle(split) ||
-          (off_middle(i) == off_middle(split) && is_above(ring[wrapped(i)], ring[wrapped(split)]))) {
+          (off_middle(i) == off_middle(split) &&
+           is_above(ring[wrapped(i)], ring[wrapped(split)]))) {
         farthest = squared;
         split = i;
       }

@@ -1,15 +1,15 @@
 // Vertex weights: how much a vertex matters for the shape of its ring (paper, section 3.2).
 //
-// A weight is a distance in grid cells; a vertex is to go at every tolerance greater than its weight.
-// Two corners of a ring, its anchors, have no finite weight: they go with the ring.
+// A weight is a distance in grid cells; a vertex is to go at every tolerance greater than its
+// weight. Two corners of a ring, its anchors, have no finite weight: they go with the ring.
 //
 // Thread-safety: one VertexWeights a thread.
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/grid.h"
@@ -20,7 +20,8 @@ enum class WeightRule : std::uint8_t {
   /// Douglas-Peucker distance, lowered to the weight of the parent in the BLG tree where that is
   /// smaller: dropping all weights below a tolerance is exactly Douglas-Peucker at that tolerance.
   douglas_peucker,
-  /// The paper's adjustment, Eq. (1): the same distances, but the parent is raised to its children, so
+  /// The paper's adjustment, Eq. (1): the same distances, but the parent is raised to its children,
+  /// so
   /// that no vertex is kept less long than one that was split off below it.
   raised_parents,
   /// Visvalingam-Whyatt: the square root of the area of the triangle with the neighbours that are
@@ -34,8 +35,8 @@ std::string_view name_of(WeightRule rule);
 /// Reusable memory for weighing rings.
 class VertexWeights {
  public:
-  /// The weight of every vertex of a closed ring of at least three points, in the order given; equal
-  /// for the same ring started elsewhere or run through the other way round.
+  /// The weight of every vertex of a closed ring of at least three points, in the order given;
+  /// equal for the same ring started elsewhere or run through the other way round.
   std::span<const double> weigh(std::span<const Point> ring, WeightRule rule);
 
  private:

@@ -28,8 +28,8 @@ LonLat lonlat_from_grid(double x, double y) {
 }
 
 GridPosition grid_from_lonlat(LonLat position) {
-  // The inverse hyperbolic tangent of the sine is what is usually written asinh(tan(latitude)), in a
-  // third of the time and equal to within 1e-5 cells in the square.
+  // The inverse hyperbolic tangent of the sine is what is usually written asinh(tan(latitude)), in
+  // a third of the time and equal to within 1e-5 cells in the square.
   const double sine = std::clamp(std::sin(position.lat * kDegree), -kSineNearPole, kSineNearPole);
   return {position.lon * kDegree * kCellsPerRadian,
           -0.5 * std::log((1 + sine) / (1 - sine)) * kCellsPerRadian};

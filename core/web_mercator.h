@@ -42,8 +42,12 @@ struct TileId {
   /// Side of the tile in cells.
   constexpr std::int64_t side() const { return kGridSize >> z; }
   /// The corner in the north-west, in cells.
-  constexpr std::int64_t origin_x() const { return kGridMin + static_cast<std::int64_t>(x) * side(); }
-  constexpr std::int64_t origin_y() const { return kGridMin + static_cast<std::int64_t>(y) * side(); }
+  constexpr std::int64_t origin_x() const {
+    return kGridMin + static_cast<std::int64_t>(x) * side();
+  }
+  constexpr std::int64_t origin_y() const {
+    return kGridMin + static_cast<std::int64_t>(y) * side();
+  }
 
   friend constexpr bool operator==(const TileId&, const TileId&) = default;
 };

@@ -55,7 +55,17 @@ Json fields_json(const FeatureTable& features) {
   return fields;
 }
 
-Json layer_json(const ServedLayer& served, const std::string& base_url) {
+/// The style of a layer where a request does not say otherwise, in the words of the query
+/// parameters.
+Json style_json(const LayerConfig& config, std::size_t position) {
+  Rgba fill = default_fill(config, position);
+  const double opacity = config.style.fill_opacity * fill.a / 255.0;
+  fill.a = 255;
+  return {{"fill", fmt::format("#{:02x}{:02x}{:02x}", fill.r, fill.g, fill.b)},
+          {"fill-opacity", opacity}};
+}
+
+Json layer_json(const ServedLayer& served, std::size_t position, const std::string& base_url) {
   const LayerConfig& config = served.config;
   const Box& box = served.layer->bounds();
   Json json;
@@ -71,9 +81,10 @@ Json layer_json(const ServedLayer& served, const std::string& base_url) {
   json["rings"] = served.report.rings;
   json["vertices"] = served.report.vertices;
   json["trapezoids"] = served.layer->mesh().trapezoids.size();
-  json["memory"] = served.layer->memory();
+  json["memory"] = served.layer->memory() + served.layer->features().memory();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;
+  json["style"] = style_json(config, position);
   json["fields"] = fields_json(served.layer->features());
   json["tilejson"] = fmt::format("{}/tiles/{}.json", base_url, config.name);
   return json;
@@ -139,7 +150,9 @@ std::string tiles_url(const TileJsonRequest& request, const std::string& base_ur
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
                          const std::string& base_url) {
   Json layers = Json::array();
-  for (const ServedLayer& layer : dataset.layers()) layers.push_back(layer_json(layer, base_url));
+  for (std::size_t i = 0; i < dataset.layers().size(); ++i) {
+    layers.push_back(layer_json(dataset.layers()[i], i, base_url));
+  }
   Json json;
   json["layers"] = std::move(layers);
   json["generation"] = dataset.generation();

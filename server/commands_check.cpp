@@ -10,12 +10,11 @@ namespace trapeze {
 namespace {
 
 void print_memory(const Layer& layer, const LoadReport& report) {
-  const std::size_t attributes = layer.features().memory();
-  const std::size_t graphs = layer.memory() - attributes;
+  const std::size_t graphs = layer.memory();
   const double per_vertex =
       report.vertices == 0 ? 0 : static_cast<double>(graphs) / static_cast<double>(report.vertices);
   fmt::print("  memory of graphs      {} bytes, {:.1f} per vertex\n", graphs, per_vertex);
-  fmt::print("  memory of attributes  {} bytes\n", attributes);
+  fmt::print("  memory of attributes  {} bytes\n", layer.features().memory());
 }
 
 void print_notes(const LoadReport& report) {

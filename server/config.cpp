@@ -165,6 +165,15 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
   if (layer.min_zoom > layer.max_zoom) {
     reader.fail(fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
   }
+  std::string weights(name_of(layer.weights));
+  reader.read("weights", weights);
+  if (const auto rule = weight_rule_from_name(weights)) {
+    layer.weights = *rule;
+  } else {
+    reader.fail(
+        *table.get("weights"),
+        "layer.weights takes \"douglas-peucker\", \"raised-parents\" or \"effective-area\"");
+  }
   if (const toml::node* style = reader.find("style")) {
     if (!style->is_table()) reader.fail(*style, "layer.style takes a table");
     layer.style = read_style(path, *style->as_table());

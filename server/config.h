@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vertex_weight.h"
 #include "core/web_mercator.h"
 #include "render/colour.h"
 #include "render/make_renderer.h"
@@ -25,6 +26,7 @@ struct LayerConfig {
   std::string attribution;
   std::string description;
   LayerStyle style;
+  WeightRule weights = WeightRule::douglas_peucker;
   int min_zoom = 0;  // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
 };

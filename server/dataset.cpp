@@ -2,7 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <bit>
+#include <future>
+#include <numeric>
 
 #include "server/content_hash.h"
 #include "server/load_progress.h"
@@ -55,8 +58,9 @@ void log_report(const LoadReport& report, const Layer& layer) {
       "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
       "{:.2f} s ({})",
       report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
-      layer.mesh().trapezoids.size(), static_cast<double>(layer.memory()) / 1e6,
-      report.total_seconds, report.driver);
+      layer.mesh().trapezoids.size(),
+      static_cast<double>(layer.memory() + layer.features().memory()) / 1e6, report.total_seconds,
+      report.driver);
   if (report.other_geometry > 0) {
     spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
                  report.other_geometry);
@@ -73,27 +77,49 @@ void log_report(const LoadReport& report, const Layer& layer) {
   if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
 }
 
+/// One progress for several layers that load at once: the mean of their shares.
+class SharedProgress {
+ public:
+  explicit SharedProgress(const std::vector<LayerConfig>& layers)
+      : shares_(layers.size(), 0),
+        progress_(std::in_place, layers.size() == 1 ? layers.front().file
+                                                    : fmt::format("{} layers", layers.size())) {}
+
+  void show(std::size_t layer, double share) {
+    const std::lock_guard lock(mutex_);
+    shares_[layer] = share;
+    const bool is_known = std::ranges::none_of(shares_, [](double s) { return s < 0; });
+    const double sum = std::accumulate(shares_.begin(), shares_.end(), 0.0);
+    progress_->show(is_known ? sum / static_cast<double>(shares_.size()) : -1);
+  }
+  void finish() { progress_.reset(); }
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> shares_;
+  std::optional<LoadProgress> progress_;
+};
+
 }  // namespace
 
-LoadedLayer load_with_progress(const std::string& file) {
-  LoadedLayer loaded;
-  {
-    LoadProgress progress(file);
-    LoadOptions options;
-    options.progress = [&progress](double share) { progress.show(share); };
-    loaded = load_layer(file, options);
-  }
-  log_report(loaded.report, *loaded.layer);
-  return loaded;
-}
-
 std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers) {
-  std::vector<ServedLayer> served;
-  for (const LayerConfig& config : layers) {
-    LoadedLayer loaded = load_with_progress(config.file);
-    const std::uint64_t revision = hash_contents(*loaded.layer);
-    served.push_back({config, std::move(loaded.layer), std::move(loaded.report), revision});
+  // All at once: while one layer is at a step for one core, another one uses the others.
+  SharedProgress progress(layers);
+  std::vector<std::future<ServedLayer>> loading;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    loading.push_back(std::async(std::launch::async, [&progress, &layers, i] {
+      LoadOptions options;
+      options.generalization.weights = layers[i].weights;
+      options.progress = [&progress, i](double share) { progress.show(i, share); };
+      LoadedLayer loaded = load_layer(layers[i].file, options);
+      const std::uint64_t revision = hash_contents(*loaded.layer);
+      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision};
+    }));
   }
+  std::vector<ServedLayer> served;
+  for (std::future<ServedLayer>& layer : loading) served.push_back(layer.get());
+  progress.finish();
+  for (const ServedLayer& layer : served) log_report(layer.report, *layer.layer);
   return std::make_shared<const Dataset>(std::move(served));
 }
 

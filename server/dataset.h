@@ -25,7 +25,7 @@ struct ServedLayer {
 /// Thread-safety: immutable, any number of threads may read.
 class Dataset {
  public:
-  /// Loads all layers one after another, each on all cores, with progress and a summary in the log.
+  /// Loads all layers at once, on all cores, with progress and a summary in the log.
   /// Throws std::runtime_error naming the file if one cannot be read.
   static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers);
 
@@ -42,9 +42,6 @@ class Dataset {
   std::vector<ServedLayer> layers_;
   std::string generation_;
 };
-
-/// Loads one file with progress, and logs what was found, repaired and skipped.
-LoadedLayer load_with_progress(const std::string& file);
 
 /// The dataset of now, null while the first is loading. Thread-safe.
 class CurrentDataset {

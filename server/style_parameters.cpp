@@ -10,14 +10,59 @@
 namespace trapeze {
 namespace {
 
+// The greatest tolerance that a request may ask for: half the side of a tile would leave nothing.
+constexpr double kMaxSimplify = 64;
+
 constexpr std::array kParameters = {
-    StyleParameter{ParameterId::background, "background", ParameterType::colour, 0, 0,
-                   "transparent", false, "colour of the tile below all layers"},
-    StyleParameter{ParameterId::fill, "fill", ParameterType::colour, 0, 0, "the layer's own colour",
-                   true, "colour of the polygons"},
-    StyleParameter{ParameterId::fill_opacity, "fill-opacity", ParameterType::number, 0, 1,
-                   "the layer's own opacity", true,
+    StyleParameter{ParameterId::background,
+                   "background",
+                   ParameterType::colour,
+                   0,
+                   0,
+                   {},
+                   "transparent",
+                   false,
+                   "colour of the tile below all layers"},
+    StyleParameter{ParameterId::debug, "debug", ParameterType::words, 0, 0, "mesh tile vertices",
+                   "nothing", false,
+                   "what to draw over the tile: the trapezoids, the border of the tile with its "
+                   "numbers, the vertices that are kept"},
+    StyleParameter{ParameterId::fill,
+                   "fill",
+                   ParameterType::colour,
+                   0,
+                   0,
+                   {},
+                   "the layer's own colour",
+                   true,
+                   "colour of the polygons"},
+    StyleParameter{ParameterId::fill_opacity,
+                   "fill-opacity",
+                   ParameterType::number,
+                   0,
+                   1,
+                   {},
+                   "the layer's own opacity",
+                   true,
                    "opacity of the polygons, multiplied with that of their colour"},
+    StyleParameter{ParameterId::simplify,
+                   "simplify",
+                   ParameterType::number,
+                   0,
+                   kMaxSimplify,
+                   {},
+                   "0.25",
+                   true,
+                   "how far the drawn boundary may be from the true one, in pixels of the picture; "
+                   "0 draws every vertex"},
+    StyleParameter{ParameterId::small, "small", ParameterType::word, 0, 0, "drop dust keep", "dust",
+                   true,
+                   "polygons too small for the tolerance: dust keeps their area as a tint, keep "
+                   "draws each at least a pixel large, drop leaves them out"},
+    StyleParameter{ParameterId::topology, "topology", ParameterType::word, 0, 0, "fast strict",
+                   "strict", true,
+                   "strict keeps boundaries from crossing each other, fast simplifies without that "
+                   "test"},
 };
 
 constexpr bool is_in_order() {
@@ -38,8 +83,41 @@ std::optional<double> parse_number(std::string_view text, double min, double max
   return number + 0.0;
 }
 
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+std::optional<ParameterValue> parse_word(std::string_view text, std::string_view words) {
+  const auto known = split(words, ' ');
+  if (std::ranges::find(known, text) == known.end()) return std::nullopt;
+  return std::string(text);
+}
+
+/// The canonical form has each word once, in the order of the table.
+std::optional<ParameterValue> parse_words(std::string_view text, std::string_view words) {
+  const auto known = split(words, ' ');
+  const auto given = split(text, ',');
+  for (const std::string_view word : given) {
+    if (std::ranges::find(known, word) == known.end()) return std::nullopt;
+  }
+  std::string canonical;
+  for (const std::string_view word : known) {
+    if (std::ranges::find(given, word) == given.end()) continue;
+    if (!canonical.empty()) canonical.push_back(',');
+    canonical += word;
+  }
+  return canonical;
+}
+
 std::string format_value(const ParameterValue& value) {
   if (const auto* colour = std::get_if<Rgba>(&value)) return to_hex(*colour);
+  if (const auto* words = std::get_if<std::string>(&value)) return *words;
   return fmt::format("{}", std::get<double>(value));  // the shortest text that reads back the same
 }
 
@@ -90,6 +168,10 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
       return parse_colour(text);
     case ParameterType::number:
       return parse_number(text, parameter.min, parameter.max);
+    case ParameterType::word:
+      return parse_word(text, parameter.words);
+    case ParameterType::words:
+      return parse_words(text, parameter.words);
   }
   return std::nullopt;
 }
@@ -101,6 +183,11 @@ std::string describe_values(const StyleParameter& parameter) {
              "rgb(r,g,b) or rgba(r,g,b,a)";
     case ParameterType::number:
       return fmt::format("a number from {} to {}", parameter.min, parameter.max);
+    case ParameterType::word:
+      return fmt::format("one of {}", fmt::join(split(parameter.words, ' '), ", "));
+    case ParameterType::words:
+      return fmt::format("some of {}, separated by commas",
+                         fmt::join(split(parameter.words, ' '), ", "));
   }
   return {};
 }

@@ -17,9 +17,22 @@
 namespace trapeze {
 
 /// In the order of the table, which is the order of names.
-enum class ParameterId : std::uint8_t { background, fill, fill_opacity };
+enum class ParameterId : std::uint8_t {
+  background,
+  debug,
+  fill,
+  fill_opacity,
+  simplify,
+  small,
+  topology,
+};
 
-enum class ParameterType : std::uint8_t { colour, number };
+enum class ParameterType : std::uint8_t {
+  colour,
+  number,
+  word,   // one of StyleParameter::words
+  words,  // some of them, separated by commas, in any order
+};
 
 struct StyleParameter {
   ParameterId id;
@@ -27,12 +40,14 @@ struct StyleParameter {
   ParameterType type;
   double min;  // of a number
   double max;
+  std::string_view words;         // separated by spaces, in alphabetical order
   std::string_view default_text;  // in words
   bool is_per_layer;              // may be written layer.name= too
   std::string_view description;
 };
 
-using ParameterValue = std::variant<Rgba, double>;
+/// Words are in the order of the table, each once, separated by commas.
+using ParameterValue = std::variant<Rgba, double, std::string>;
 
 std::span<const StyleParameter> style_parameters();
 const StyleParameter& style_parameter(ParameterId id);

@@ -40,10 +40,14 @@ class TilePainter {
   std::optional<PaintedTile> paint(const TilePlan& plan, Deadline deadline);
 
  private:
+  void draw_with_places(const Layer& layer, const View& view, Coverage& out);
+  void mark(const TilePlan& plan, const View& view, Picture& picture);
+
   std::unique_ptr<CoverageRenderer> renderer_;
   // Kept from tile to tile only for their memory.
   std::vector<Coverage> coverages_;
   std::vector<TrapezoidRange> ranges_;
+  std::vector<Box> places_;
 };
 
 }  // namespace trapeze

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/layer.h"
 #include "core/tolerance.h"
+#include "core/topology_test.h"
 #include "core/web_mercator.h"
 #include "render/colour.h"
 #include "server/dataset.h"
@@ -18,8 +20,21 @@ namespace trapeze {
 struct LayerPaint {
   std::size_t layer = 0;  // position in the dataset
   Rgba fill;
+  Level level = 0;  // of the ladder of tolerances
+  Topology topology = Topology::strict;
+  SmallPolygons small = SmallPolygons::dust;
 
   friend bool operator==(const LayerPaint&, const LayerPaint&) = default;
+};
+
+/// What is drawn over the tile to look into it (paper, Figure 7 f to j).
+struct DebugMarks {
+  bool mesh = false;      // the sides of the trapezoids
+  bool vertices = false;  // the vertices that are kept
+  bool tile = false;      // the border of the tile, with its numbers
+
+  bool any() const { return mesh || vertices || tile; }
+  friend bool operator==(const DebugMarks&, const DebugMarks&) = default;
 };
 
 /// Layers that cannot be seen, being transparent or outside of their zooms, are left out.
@@ -29,9 +44,10 @@ struct TilePlan {
   int scale = 1;
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
+  DebugMarks debug = {};
 
-  /// The level at which the mesh is drawn: a quarter of an output pixel.
-  Level level() const;
+  /// The level of a quarter of a pixel of the picture.
+  Level pixel_level() const;
   /// Equal for plans that give the same picture with the same program, however the requests were
   /// written. Holds the revisions of the layers.
   std::string key() const;
@@ -42,6 +58,9 @@ struct TilePlan {
 
 /// The problem is 404 for a layer that is not in the dataset.
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+
+/// What fills the layer at `position` of the dataset if a request does not say.
+Rgba default_fill(const LayerConfig& config, std::size_t position);
 
 /// The problem to answer with for a layer name that is not in the dataset.
 Problem unknown_layer(const std::string& name, const Dataset& dataset);

@@ -55,7 +55,8 @@ struct BuildTally {
 class FeatureBuilder {
  public:
   /// `source` must outlive the builder.
-  explicit FeatureBuilder(const FeatureSource& source) : reader_(source) {}
+  FeatureBuilder(const FeatureSource& source, const GeneralizationOptions& generalization)
+      : reader_(source), builder_(generalization) {}
 
   /// Builds the graph of one feature. Throws SourceError if the whole source cannot be
   /// understood: it names no CRS and is not in degrees, or there is no way from its CRS.

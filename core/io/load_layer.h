@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/layer.h"
 
 namespace trapeze {
@@ -44,9 +45,10 @@ struct LoadReport {
 
 struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
+  GeneralizationOptions generalization = {};
   /// Called from the thread that called load_layer now and then, with the share of features read,
   /// in [0, 1], or < 0 if unknown; at the end with 1. What it throws ends the loading.
-  std::function<void(double)> progress;
+  std::function<void(double)> progress = {};
 };
 
 struct LoadedLayer {

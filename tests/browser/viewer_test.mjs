@@ -73,8 +73,10 @@ test("shows every layer over the others, in its colour, with its attribution", a
   assert.ok(of_layer(tiles, "land").length > 0);
   assert.ok(of_layer(tiles, "lake").length > 0);
   assert.deepEqual(await page.locator("#layers .name").allInnerTexts(), ["Lake", "Land"]);
-  assert.ok((await pixels_of_colour(page, "land", [0xd8, 0xc9, 0x9b])) > 1000);
-  assert.ok((await pixels_of_colour(page, "lake", [0x4f, 0x8f, 0xba])) > 1000);
+  assert.ok((await pixels_of_colour(page, "land", [0xd8, 0xc9, 0x9b])) > 1000,
+    "land has the colour of the configuration, which the catalog tells as its style");
+  assert.ok((await pixels_of_colour(page, "lake", [0x4f, 0x8f, 0xba])) > 1000,
+    "lake has the colour of the configuration, which the catalog tells as its style");
   const attribution = page.locator(".leaflet-control-attribution");
   assert.equal(await attribution.innerText(), "Leaflet | Drawn by hand");
   assert.equal(await attribution.getByText("hand").getAttribute("href"), "https://example.org/");

@@ -95,11 +95,12 @@ TEST(AdaptableGraph, FastRemovalKeepsTheLinksWhole) {
   }
 }
 
-/// Douglas-Peucker written the plain way, on one ring with the anchors of the weights: the uppermost
-/// point and the farthest from it.
+/// Douglas-Peucker written the plain way, on one ring with the anchors of the weights: the
+/// uppermost point and the farthest from it.
 class PlainDouglasPeucker {
  public:
-  PlainDouglasPeucker(std::span<const Point> ring, double epsilon) : ring_(ring), epsilon_(epsilon) {
+  PlainDouglasPeucker(std::span<const Point> ring, double epsilon)
+      : ring_(ring), epsilon_(epsilon) {
     keep_.assign(ring.size(), false);
     std::size_t top = 0;
     for (std::size_t i = 1; i < ring.size(); ++i) top = is_above(ring[i], ring[top]) ? i : top;
@@ -109,20 +110,24 @@ class PlainDouglasPeucker {
     };
     std::size_t far = 0;
     for (std::size_t i = 1; i < ring.size(); ++i) {
-      if (squared(i) > squared(far) || (squared(i) == squared(far) && is_above(ring[i], ring[far]))) far = i;
+      if (squared(i) > squared(far) || (squared(i) == squared(far) && is_above(ring[i], ring[far])))
+        far = i;
     }
     keep_[top] = keep_[far] = true;
     split(top, far);
     split(far, top);
   }
-  std::size_t kept() const { return static_cast<std::size_t>(std::count(keep_.begin(), keep_.end(), true)); }
+  std::size_t kept() const {
+    return static_cast<std::size_t>(std::count(keep_.begin(), keep_.end(), true));
+  }
 
  private:
   void split(std::size_t a, std::size_t b) {
     double farthest = -1;
     std::vector<std::size_t> ties;
     std::vector<std::size_t> between;
-    for (std::size_t i = (a + 1) % ring_.size(); i != b; i = (i + 1) % ring_.size()) between.push_back(i);
+    for (std::size_t i = (a + 1) % ring_.size(); i != b; i = (i + 1) % ring_.size())
+      between.push_back(i);
     for (std::size_t k = 0; k < between.size(); ++k) {
       const double d = std::sqrt(squared_distance(ring_[between[k]], ring_[a], ring_[b]));
       if (d > farthest) ties.clear();
@@ -134,8 +139,8 @@ class PlainDouglasPeucker {
     const auto off_middle = [&](std::size_t k) { return std::max(k + 1, between.size() - k); };
     std::size_t best = ties[0];
     for (const std::size_t k : ties) {
-      if (off_middle(k) < off_middle(best) ||
-          (off_middle(k) == off_middle(best) && is_above(ring_[between[k]], ring_[between[best]]))) {
+      if (off_middle(k) < off_middle(best) || (off_middle(k) == off_middle(best) &&
+                                               is_above(ring_[between[k]], ring_[between[best]]))) {
         best = k;
       }
     }

@@ -25,9 +25,13 @@ Built build(Rings rings) {
   return b;
 }
 
-Built build(const std::string& text) { return build(rings_from_text(text)); }
+Built build(const std::string& text) {
+  return build(rings_from_text(text));
+}
 
-std::int64_t doubled_area(const TrapezoidalGraph& g) { return static_cast<std::int64_t>(g.doubled_area()); }
+std::int64_t doubled_area(const TrapezoidalGraph& g) {
+  return static_cast<std::int64_t>(g.doubled_area());
+}
 
 TEST(GraphBuilder, TriangleIsTwoTrapezoidsInside) {
   const Built b = build("0 0, 10 5, 0 10");
@@ -49,7 +53,8 @@ TEST(GraphBuilder, HoleIsNotInside) {
 }
 
 TEST(GraphBuilder, IslandInAHoleIsInsideAgain) {
-  const Built b = build("0 0, 100 0, 100 100, 0 100; 20 20, 20 80, 80 80, 80 20; 40 40, 60 40, 60 60, 40 60");
+  const Built b =
+      build("0 0, 100 0, 100 100, 0 100; 20 20, 20 80, 80 80, 80 20; 40 40, 60 40, 60 60, 40 60");
   EXPECT_EQ(doubled_area(b.graph), 2 * (100 * 100 - 60 * 60 + 20 * 20));
 }
 
@@ -104,7 +109,8 @@ TEST(GraphBuilder, RingDrawnTwiceCancelsToNothing) {
 }
 
 TEST(GraphBuilder, SpikesDuplicatesAndCollapsedRingsAreDropped) {
-  const Built b = build("0 0, 10 0, 10 0, 10 5, 30 5, 10 5, 10 10, 0 10; 50 50, 60 60; 70 70, 80 70, 75 70");
+  const Built b =
+      build("0 0, 10 0, 10 0, 10 5, 30 5, 10 5, 10 10, 0 10; 50 50, 60 60; 70 70, 80 70, 75 70");
   ASSERT_TRUE(b.outcome.built);
   EXPECT_EQ(b.outcome.rings, 3u);
   EXPECT_EQ(b.outcome.collapsed_rings, 2u);
@@ -119,7 +125,8 @@ TEST(GraphBuilder, EmptyInputIsNotBuiltAndNotAFailure) {
 
 TEST(GraphBuilder, WholeWorldIsExact) {
   const Built b = build(
-      "-1073741824 -1073741824, 1073741824 -1073741824, 1073741824 1073741824, -1073741824 1073741824;"
+      "-1073741824 -1073741824, 1073741824 -1073741824, 1073741824 1073741824, -1073741824 "
+      "1073741824;"
       "-1073741823 -1073741823, 1073741823 1073741823, -1073741823 1073741822");
   ASSERT_TRUE(b.outcome.built);
 }
@@ -130,13 +137,17 @@ TEST(GraphBuilder, RandomStarsWithHolesHaveTheAreaOfTheirRings) {
     std::mt19937 random(seed);
     Rings rings;
     const double scale = seed % 3 == 0 ? 30 : seed % 3 == 1 ? 1000 : 5e8;
-    const auto outer = random_star(random, {0, 0}, 5 + static_cast<int>(seed % 60), 0.5 * scale, scale);
-    const auto hole = random_star(random, {0, 0}, 5 + static_cast<int>(seed % 17), 0.2 * scale, 0.35 * scale);
-    const auto island = random_star(random, {0, 0}, 4 + static_cast<int>(seed % 7), 0.05 * scale, 0.15 * scale);
+    const auto outer =
+        random_star(random, {0, 0}, 5 + static_cast<int>(seed % 60), 0.5 * scale, scale);
+    const auto hole =
+        random_star(random, {0, 0}, 5 + static_cast<int>(seed % 17), 0.2 * scale, 0.35 * scale);
+    const auto island =
+        random_star(random, {0, 0}, 4 + static_cast<int>(seed % 7), 0.05 * scale, 0.15 * scale);
     rings.add(outer);
     rings.add(hole);
     rings.add(island);
-    const std::int64_t area = doubled_area_of(outer) - doubled_area_of(hole) + doubled_area_of(island);
+    const std::int64_t area =
+        doubled_area_of(outer) - doubled_area_of(hole) + doubled_area_of(island);
     const Built b = build(rings);
     ASSERT_TRUE(b.outcome.built);
     if (!b.outcome.noded) {

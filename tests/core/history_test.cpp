@@ -30,7 +30,8 @@ std::multiset<Drawn> inside_of(const TrapezoidalGraph& g) {
     const std::int32_t top = g.point(node.end[kUp]).y;
     const std::int32_t bottom = g.point(node.end[kDown]).y;
     if (top == bottom) continue;  // no area
-    found.insert(drawn(top, bottom, at(kLeft, kUp), at(kLeft, kDown), at(kRight, kUp), at(kRight, kDown)));
+    found.insert(
+        drawn(top, bottom, at(kLeft, kUp), at(kLeft, kDown), at(kRight, kUp), at(kRight, kDown)));
   }
   return found;
 }
@@ -41,8 +42,9 @@ std::multiset<Drawn> alive_at(const History& h, Level level) {
     if (!h.lifespans[i].contains(level)) continue;
     const MeshTrapezoid& t = h.trapezoids[i];
     const auto at = [&](std::uint32_t v) { return h.vertices[v]; };
-    found.insert(drawn(at(t.top).y, at(t.bottom).y, at(h.edges[t.left].upper), at(h.edges[t.left].lower),
-                       at(h.edges[t.right].upper), at(h.edges[t.right].lower)));
+    found.insert(drawn(at(t.top).y, at(t.bottom).y, at(h.edges[t.left].upper),
+                       at(h.edges[t.left].lower), at(h.edges[t.right].upper),
+                       at(h.edges[t.right].lower)));
   }
   return found;
 }
@@ -62,7 +64,8 @@ TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
       recorder.record(graph, options, history);
       for (int level = 0; level <= kLastLevel; ++level) {
         adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph())) << "level " << level;
+        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph()))
+            << "level " << level;
       }
     }
   }
@@ -76,7 +79,8 @@ TEST(History, NoVersionLivesForNoTime) {
     if (!builder.build(rings, graph).built) continue;
     History history;
     HistoryRecorder().record(graph, {}, history);
-    for (const Lifespan life : history.lifespans) EXPECT_LT(life.born, life.dies) << "seed " << seed;
+    for (const Lifespan life : history.lifespans)
+      EXPECT_LT(life.born, life.dies) << "seed " << seed;
   }
 }
 
@@ -94,8 +98,8 @@ TEST(History, RecordingAfterOthersIsTheSameAsAlone) {
     if (seed == 1) HistoryRecorder().record(copy, {}, alone);
   }
   const std::size_t first = both.trapezoids.size() - alone.trapezoids.size();
-  EXPECT_TRUE(std::equal(both.lifespans.begin() + static_cast<std::ptrdiff_t>(first), both.lifespans.end(),
-                         alone.lifespans.begin(), alone.lifespans.end()));
+  EXPECT_TRUE(std::equal(both.lifespans.begin() + static_cast<std::ptrdiff_t>(first),
+                         both.lifespans.end(), alone.lifespans.begin(), alone.lifespans.end()));
 }
 
 TEST(History, SquareLeavesAGrainOfItsArea) {
@@ -114,7 +118,8 @@ TEST(History, SquareLeavesAGrainOfItsArea) {
 TEST(History, HoleLeavesAGrainOfNegativeArea) {
   GraphBuilder builder;
   TrapezoidalGraph graph;
-  Rings rings = rings_from_text("0 0, 1000 0, 1000 1000, 0 1000; 400 400, 410 400, 410 410, 400 410");
+  Rings rings =
+      rings_from_text("0 0, 1000 0, 1000 1000, 0 1000; 400 400, 410 400, 410 410, 400 410");
   ASSERT_TRUE(builder.build(rings, graph).built);
   History history;
   HistoryRecorder().record(graph, {}, history);
@@ -155,9 +160,38 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
   const std::vector<Mote> motes = settle(grains);
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
     const double pixel = pixel_of_level(static_cast<Level>(level));
-    const auto alive = std::count_if(motes.begin(), motes.end(), [&](const Mote& m) { return m.lifespan.contains(static_cast<Level>(level)); });
-    EXPECT_LE(static_cast<double>(alive), std::pow(std::ceil(4096 / pixel), 2)) << "level " << level;
+    const auto alive = std::count_if(motes.begin(), motes.end(), [&](const Mote& m) {
+      return m.lifespan.contains(static_cast<Level>(level));
+    });
+    EXPECT_LE(static_cast<double>(alive), std::pow(std::ceil(4096 / pixel), 2))
+        << "level " << level;
   }
+}
+
+TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {
+  // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells.
+  std::vector<LayerBuilder> builders(1);
+  FeatureTable features(std::vector<Field>{});
+  Rings first = rings_from_text("0 0, 10 0, 10 10, 0 10");
+  Rings second = rings_from_text("30 0, 40 0, 40 10, 30 10");
+  builders[0].add(features.append(0, {}), first);
+  builders[0].add(features.append(1, {}), second);
+  const auto layer = LayerBuilder::join(builders, std::move(features));
+  const auto count = [&](double epsilon, double pixel, SmallPolygons small) {
+    std::vector<TrapezoidRange> ranges;
+    layer->select({layer->bounds(), nearest_level(epsilon), nearest_level(pixel / 4), small},
+                  ranges);
+    std::uint32_t sum = 0;
+    for (const TrapezoidRange& range : ranges) sum += range.count;
+    return sum;
+  };
+  EXPECT_EQ(count(64, 64, SmallPolygons::dust), 1u);
+  EXPECT_EQ(count(64, 8, SmallPolygons::dust), 2u);
+  EXPECT_EQ(count(64, 64, SmallPolygons::drop), 0u);
+  EXPECT_EQ(count(64, 64, SmallPolygons::keep), 0u);
+  std::vector<Box> places;
+  layer->small_polygons({layer->bounds(), nearest_level(64), nearest_level(2)}, places);
+  EXPECT_EQ(places.size(), 2u);
 }
 
 TEST(LayerBuilder, LayerDoesNotDependOnWhichBuilderGotWhat) {
@@ -202,8 +236,8 @@ TEST(Layer, SelectionOfAPartHoldsEverythingThatTouchesIt) {
     Box box;
     box.include(Point{at(random), at(random)});
     box.include(Point{at(random) / (1 + i % 9), at(random) / (1 + i % 9)});
-    layer->select(layer->bounds(), level, SmallPolygons::dust, all);
-    layer->select(box, level, SmallPolygons::dust, part);
+    layer->select({layer->bounds(), level}, all);
+    layer->select({box, level}, part);
     const auto selected = ids(part);
     EXPECT_TRUE(std::is_sorted(selected.begin(), selected.end()));
     for (const std::uint32_t t : ids(all)) {

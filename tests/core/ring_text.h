@@ -32,8 +32,8 @@ inline Rings rings_from_text(const std::string& text) {
   return rings;
 }
 
-/// Twice the area by even-odd of rings that do not cross: outer rings minus holes, by nesting depth.
-/// Independent of the code under test; O(n^2).
+/// Twice the area by even-odd of rings that do not cross: outer rings minus holes, by nesting
+/// depth. Independent of the code under test; O(n^2).
 inline std::int64_t doubled_area_of(std::span<const Point> ring) {
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -45,8 +45,8 @@ inline std::int64_t doubled_area_of(std::span<const Point> ring) {
 }
 
 /// A star-shaped ring around a centre with random radii.
-inline std::vector<Point> random_star(std::mt19937& random, Point centre, int points, double min_radius,
-                                      double max_radius) {
+inline std::vector<Point> random_star(std::mt19937& random, Point centre, int points,
+                                      double min_radius, double max_radius) {
   std::uniform_real_distribution<double> radius(min_radius, max_radius);
   std::vector<Point> ring;
   for (int i = 0; i < points; ++i) {

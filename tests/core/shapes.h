@@ -10,11 +10,13 @@
 
 namespace trapeze {
 
-/// Stars with holes and islands, combs, spirals, nested squares with touching corners, scribbles: by
-/// seed.
+/// Stars with holes and islands, combs, spirals, nested squares with touching corners, scribbles:
+/// by seed.
 inline Rings random_shape(unsigned seed) {
   std::mt19937 random(seed);
-  const auto between = [&](int a, int b) { return std::uniform_int_distribution<int>(a, b)(random); };
+  const auto between = [&](int a, int b) {
+    return std::uniform_int_distribution<int>(a, b)(random);
+  };
   Rings rings;
   switch (seed % 7) {
     case 0: {  // a star with a hole and an island
@@ -55,7 +57,8 @@ inline Rings random_shape(unsigned seed) {
     case 3: {  // a scribble: crossings, touches and overlaps everywhere
       const int range = seed % 2 == 0 ? 15 : 100000;
       for (int r = 0; r < 2; ++r) {
-        for (int i = between(6, 25); i > 0; --i) rings.points.push_back({between(-range, range), between(-range, range)});
+        for (int i = between(6, 25); i > 0; --i)
+          rings.points.push_back({between(-range, range), between(-range, range)});
         rings.close_ring();
       }
       break;
@@ -84,7 +87,9 @@ inline Rings random_shape(unsigned seed) {
       rings.add(coast);
       for (int i = 0; i < 12; ++i) {
         const double angle = 0.5 * i;
-        rings.add(random_star(random, {static_cast<std::int32_t>(7800 * std::cos(angle)), static_cast<std::int32_t>(7800 * std::sin(angle))},
+        rings.add(random_star(random,
+                              {static_cast<std::int32_t>(7800 * std::cos(angle)),
+                               static_cast<std::int32_t>(7800 * std::sin(angle))},
                               between(3, 20), 300, 1100));
       }
       break;

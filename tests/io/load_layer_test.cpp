@@ -54,7 +54,7 @@ double x_at(const MeshView& mesh, const MeshEdge& edge, double y) {
 // Area of one feature at full detail, in cells.
 double area_of(const Layer& layer, std::uint32_t row) {
   std::vector<TrapezoidRange> ranges;
-  layer.select({kGridMin, kGridMin, kGridMax, kGridMax}, 0, SmallPolygons::dust, ranges);
+  layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}}, ranges);
   const MeshView& mesh = layer.mesh();
   double area = 0;
   for (const TrapezoidRange range : ranges) {

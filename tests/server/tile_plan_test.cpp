@@ -84,8 +84,8 @@ TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
 
 TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
   const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
-  EXPECT_EQ(plan("rings/10/0/0.png").level(), nearest_level(pixel / 4));
-  EXPECT_EQ(plan("rings/10/0/0@2x.png").level(), nearest_level(pixel / 8));
+  EXPECT_EQ(plan("rings/10/0/0.png").layers[0].level, nearest_level(pixel / 4));
+  EXPECT_EQ(plan("rings/10/0/0@2x.png").layers[0].level, nearest_level(pixel / 8));
 }
 
 }  // namespace
