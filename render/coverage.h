@@ -2,7 +2,8 @@
 //
 // The coverage of a pixel is min(1, sum of the exact areas of pixel and trapezoid in common, over
 // all trapezoids drawn), computed wide and rounded once, at the end, to 0..255. Trapezoids of one
-// polygon do not overlap, so neither seams nor ghost lines can show between them.
+// polygon do not overlap, so neither seams nor ghost lines can show between them. A trapezoid whose
+// left and right edge have changed places has negative area: it takes coverage away.
 #pragma once
 
 #include <cstdint>

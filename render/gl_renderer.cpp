@@ -22,7 +22,7 @@ uniform dvec2 size;             // of the picture, in pixels
 // A side is the line through (x, y), going `slope` pixels east for each one south.
 flat out vec4 left_side;   // x, y, slope, and the trapezoid's top; local
 flat out vec4 right_side;  // x, y, slope, and the trapezoid's bottom; local
-flat out vec2 corner;      // where local coordinates begin
+flat out vec3 corner;      // where local coordinates begin, and the sign of the area
 
 const float kFarOff = 4096.0;  // pixels beyond the picture where a slanted quad is given up
 
@@ -82,17 +82,25 @@ void main() {
   double bottom = min((double(levels.y) - origin.y) * pixels_per_cell, size.y);
   gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);
   left_side = right_side = vec4(0.0);
-  corner = vec2(0.0);
+  corner = vec3(0.0);
   if (top >= bottom) return;
 
   Side left = cut(texelFetch(trapezoids, first + 1).xy, texelFetch(trapezoids, first + 2).xy,
                   top, bottom);
   Side right = cut(texelFetch(trapezoids, first + 3).xy, texelFetch(trapezoids, first + 4).xy,
                    top, bottom);
+  // Where left and right have changed places, the area counts negative.
+  float sign = 1.0;
+  if (left.x_top + left.x_bottom > right.x_top + right.x_bottom) {
+    Side west = right;
+    right = left;
+    left = west;
+    sign = -1.0;
+  }
   if (max(right.x_top, right.x_bottom) <= 0.0LF || min(left.x_top, left.x_bottom) >= size.x) return;
 
   dvec2 begin = floor(dvec2(clamp(left.x_top, 0.0LF, size.x), top));
-  corner = vec2(begin);
+  corner = vec3(begin, sign);
   left_side = vec4(anchored(left, top, bottom, begin), top - begin.y);
   right_side = vec4(anchored(right, top, bottom, begin), bottom - begin.y);
 
@@ -109,7 +117,7 @@ void main() {
 constexpr const char* kFragmentShader = R"(#version 430 core
 flat in vec4 left_side;
 flat in vec4 right_side;
-flat in vec2 corner;
+flat in vec3 corner;
 out float covered;
 
 // The mean of clamp(u, 0, 1) for u going evenly from `a` to `b`.
@@ -131,12 +139,12 @@ float left_of(vec4 side, float pixel_x, float from_y, float to_y) {
 }
 
 void main() {
-  vec2 pixel = gl_FragCoord.xy - 0.5 - corner;
+  vec2 pixel = gl_FragCoord.xy - 0.5 - corner.xy;
   float from_y = max(pixel.y, left_side.w);
   float to_y = min(pixel.y + 1.0, right_side.w);
   float width = left_of(right_side, pixel.x, from_y, to_y) -
                 left_of(left_side, pixel.x, from_y, to_y);
-  covered = max(to_y - from_y, 0.0) * max(width, 0.0);
+  covered = corner.z * max(to_y - from_y, 0.0) * max(width, 0.0);
 }
 )";
 

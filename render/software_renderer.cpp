@@ -103,8 +103,10 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
   const Point left_lower = mesh.vertices[left.lower];
   const Point right_upper = mesh.vertices[right.upper];
   const Point right_lower = mesh.vertices[right.lower];
-  if (frame.x(std::max(right_upper.x, right_lower.x)) <= 0) return;
-  if (frame.x(std::min(left_upper.x, left_lower.x)) >= frame.width) return;
+  // Either side may be the western one: where they have changed places, the area is negative.
+  if (frame.x(std::max({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) <= 0) return;
+  if (frame.x(std::min({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) >= frame.width)
+    return;
 
   add_side(left_upper, left_lower, y_top, y_bottom, 1.0f, frame);
   add_side(right_upper, right_lower, y_top, y_bottom, -1.0f, frame);

@@ -101,6 +101,27 @@ TEST_P(GlRendererTest, DrawsLikeTheReferenceAtEveryZoom) {
   }
 }
 
+TEST_P(GlRendererTest, TakesCoverageAwayLikeTheReferenceWhereEdgesHaveChangedPlaces) {
+  const View view = View::of_tile({12, 2047, 2047});
+  const Box box = view.box();
+  const std::int32_t step = (box.max_x - box.min_x) / 32;
+  SampleMesh mesh;
+  mesh.add_box(box.min_x, box.min_y, box.max_x, box.max_y);
+  // Holes of every part of a pixel, up to and across all borders of the picture.
+  for (int row = -1; row <= 32; ++row) {
+    for (int column = -1; column <= 32; ++column) {
+      const std::int32_t west = box.min_x + column * step + row;
+      const std::int32_t top = box.min_y + row * step + column;
+      const std::int32_t east = west + step * (row + 2) / 40;
+      const std::int32_t bottom = top + step * (column + 2) / 40;
+      const std::uint32_t left = mesh.add_edge({west, top}, {west + row, bottom});
+      const std::uint32_t right = mesh.add_edge({east, top}, {east + row, bottom});
+      mesh.add(right, left, top, bottom);
+    }
+  }
+  expect_like_reference(mesh, view, "holes");
+}
+
 TEST_P(GlRendererTest, DrawsTrapezoidsFarLargerThanThePictureLikeTheReference) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);

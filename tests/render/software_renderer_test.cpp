@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/render/compare_renderers.h"
@@ -78,6 +79,22 @@ TEST(SoftwareRendererTest, CoversPixelsOfABoxByTheirSharesExactly) {
       EXPECT_EQ(coverage.at(column, row), level(columns[column] * rows[row]))
           << column << ", " << row;
     }
+  }
+}
+
+TEST(SoftwareRendererTest, ABoxWithItsEdgesChangedRoundTakesCoverageAway) {
+  SampleMesh mesh;
+  mesh.add_box(-16, -16, 80, 80);
+  // Two columns of holes over the west and the east border, a quarter of a pixel wide inside, and
+  // one hole of half a pixel within.
+  for (const auto& [west, east] : {std::pair{-8, 4}, std::pair{60, 72}, std::pair{24, 32}}) {
+    mesh.add(mesh.add_edge({east, 0}, {east, 16}), mesh.add_edge({west, 0}, {west, 16}), 0, 16);
+  }
+  const Coverage coverage = draw(mesh, square_view(0, 16, 4));
+  const double first_row[] = {0.75, 0.5, 1, 0.75};
+  for (int column = 0; column < 4; ++column) {
+    EXPECT_EQ(coverage.at(column, 0), level(first_row[column])) << column;
+    EXPECT_EQ(coverage.at(column, 1), 255) << column;
   }
 }
 
