@@ -1,0 +1,83 @@
+// Tiles put together are one picture: no seam shows where they meet.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "render/software_renderer.h"
+#include "tests/pictures/real_layers.h"
+#include "tests/pictures/shared_gl.h"
+#include "tests/render/compare_renderers.h"
+
+namespace trapeze::testing {
+namespace {
+
+constexpr std::array kZooms = {0, 3, 6, 9, 11, 13, 15, 17, 19, 21};
+constexpr int kPlacesPerZoom = 6;
+
+void draw(const RealLayer& real, const View& view, CoverageRenderer& renderer, Coverage& out) {
+  std::vector<TrapezoidRange> ranges;
+  real.layer->select(default_selection(view), ranges);
+  renderer.draw(real.layer->mesh(), ranges, view, out);
+}
+
+/// The four tiles of the next zoom that make up `tile`, as one coverage.
+Coverage put_together(const RealLayer& real, const TileId& tile, CoverageRenderer& renderer) {
+  Coverage all(2 * kTilePixels, 2 * kTilePixels);
+  Coverage quarter;
+  for (std::uint32_t south = 0; south < 2; ++south) {
+    for (std::uint32_t east = 0; east < 2; ++east) {
+      const TileId child{tile.z + 1, 2 * tile.x + east, 2 * tile.y + south};
+      draw(real, View::of_tile(child), renderer, quarter);
+      for (int row = 0; row < kTilePixels; ++row) {
+        std::copy_n(quarter.row_begin(row), kTilePixels,
+                    all.row_begin(row + static_cast<int>(south) * kTilePixels) +
+                        static_cast<int>(east) * kTilePixels);
+      }
+    }
+  }
+  return all;
+}
+
+void expect_no_seams(const RealLayer& real, CoverageRenderer& renderer) {
+  for (const int zoom : kZooms) {
+    for (const TileId& tile : tiles_around_vertices(real, zoom, kPlacesPerZoom, 2)) {
+      Coverage whole;
+      draw(real, View::of_tile(tile, 2), renderer, whole);
+      const Difference difference = compare_coverages(whole, put_together(real, tile, renderer));
+      EXPECT_LE(difference.worst, 1) << text_of(tile) << ": " << difference;
+    }
+  }
+}
+
+class NeighbouringTilesTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    real_ = real_layer(GetParam());
+    if (real_ == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of .fgb files";
+  }
+
+  const RealLayer* real_ = nullptr;
+};
+
+TEST_P(NeighbouringTilesTest, AreOnePictureInSoftware) {
+  SoftwareRenderer software;
+  expect_no_seams(*real_, software);
+}
+
+using GlNeighbouringTilesTest = NeighbouringTilesTest;
+
+TEST_P(GlNeighbouringTilesTest, AreOnePicture) {
+  CoverageRenderer* gl = shared_gl().renderer.get();
+  if (gl == nullptr) GTEST_SKIP() << "there is no GL here: " << shared_gl().reasons;
+  expect_no_seams(*real_, *gl);
+  gl->forget(real_->layer->mesh().id);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layers, NeighbouringTilesTest, ::testing::ValuesIn(real_layer_names()),
+                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Layers, GlNeighbouringTilesTest, ::testing::ValuesIn(real_layer_names()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace trapeze::testing

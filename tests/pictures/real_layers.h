@@ -1,0 +1,41 @@
+// The real layers that pictures are tested on: every FlatGeobuf file of the folder that the
+// environment variable TRAPEZE_DATA names.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/layer.h"
+#include "core/web_mercator.h"
+#include "render/coverage.h"
+#include "tests/pictures/true_picture.h"
+
+namespace trapeze::testing {
+
+/// Stems of the file names, in alphabetical order; kNoData alone if there is no data.
+std::vector<std::string> real_layer_names();
+constexpr const char* kNoData = "no_data";
+
+struct RealLayer {
+  std::unique_ptr<Layer> layer;
+  TrueOutlines outlines;
+};
+
+/// Loaded when first asked for and kept until the process ends; null for kNoData. For one thread.
+const RealLayer* real_layer(const std::string& name);
+
+/// At most `count` different tiles, each around a vertex chosen by chance, which depends on the
+/// seed alone.
+std::vector<TileId> tiles_around_vertices(const RealLayer& real, int zoom, int count,
+                                          std::uint32_t seed);
+
+/// "12/3340/1811"
+std::string text_of(const TileId& tile);
+
+/// What the server draws of a layer if a request says nothing: a quarter of a pixel of tolerance,
+/// small polygons as dust.
+Layer::Selection default_selection(const View& view);
+
+}  // namespace trapeze::testing
