@@ -194,6 +194,25 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
         "x.png"},
        "fill takes a colour"},
       {{"check"}, "FILE"},
+      {{"export", fixture("rings.geojson"), "--output", "x.fgb"}, "--zoom"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3"}, "--output"},
+      {{"export", fixture("rings.geojson"), "--zoom", "25", "--output", "x.fgb"}, "0 to 24"},
+      {{"export", fixture("rings.geojson"), "--zoom", "-1", "--output", "x.fgb"}, "0 to 24"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--simplify=-1", "--output", "x.fgb"},
+       "--simplify takes"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--simplify=nan", "--output", "x.fgb"},
+       "--simplify"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--topology", "lax", "--output",
+        "x.fgb"},
+       "strict or fast"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--weights", "none", "--output",
+        "x.fgb"},
+       "effective-area"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--crs", "EPSG:25832", "--output",
+        "x.fgb"},
+       "EPSG:4326 or EPSG:3857"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
+      {{"export", fixture("nosuch.fgb"), "--zoom", "3", "--output", "x.fgb"}, "nosuch.fgb"},
       {{}, "Usage"},
       {{"sevre"}, "sevre"}};
   for (const auto& [arguments, says] : wrong) {
@@ -231,10 +250,33 @@ TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
   EXPECT_EQ(good.wait(), 0);
 }
 
+TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {
+  const std::string path = scratch_path("coarse.geojson");
+  std::filesystem::remove(path);
+  const std::vector<std::string> arguments = {
+      "export", fixture("rings.geojson"), "--zoom", "3", "--output", path};
+  Program program(arguments);
+  ASSERT_EQ(program.wait(), 0) << program.output();
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr(path + " (GeoJSON): 1 features with 2 polygons"),
+                    HasSubstr("12 of 12 vertices kept"), HasSubstr("0 features left out")));
+  EXPECT_THAT(read_file(path), AllOf(HasSubstr("trapeze_id"), HasSubstr("MultiPolygon")));
+  Program again(arguments);
+  EXPECT_EQ(again.wait(), 1);
+  EXPECT_THAT(again.output(), AllOf(HasSubstr(path), HasSubstr("--overwrite")));
+  std::vector<std::string> rough = arguments;
+  rough.insert(rough.end(), {"--overwrite", "--simplify", "10000"});
+  Program replaced(rough);
+  EXPECT_EQ(replaced.wait(), 0);
+  EXPECT_THAT(replaced.output(), HasSubstr("1 polygons; 4 of 12 vertices kept"));
+  std::filesystem::remove(path);
+}
+
 TEST(ProgramTest, HelpShowsExamples) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"serve", "--help"},
                                                     {"check", "--help"},
+                                                    {"export", "--help"},
                                                     {"render", "--help"}}) {
     Program program(arguments);
     EXPECT_EQ(program.wait(), 0);
