@@ -1,12 +1,10 @@
 #include "core/io/polygon_file.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
@@ -97,7 +95,7 @@ fs::path folder_of(const std::string& path) {
 std::string make_folder_beside(const std::string& path) {
   std::string name =
       (folder_of(path) / ("." + fs::path(path).stem().string() + "-unfinished-XXXXXX")).string();
-  if (mkdtemp(name.data()) == nullptr) fail_to_write(path, std::strerror(errno));
+  if (mkdtemp(name.data()) == nullptr) fail_to_write(path, std::generic_category().message(errno));
   return name;
 }
 
@@ -167,7 +165,7 @@ void PolygonFile::create(ExportCrs crs) {
   std::vector<std::string> names;
   for (const Field& field : attributes_.fields()) names.push_back(in_lower_case(field.name));
   const auto add_name = [&](const char* wanted) {
-    const std::string name = take_free_name(wanted, names);
+    std::string name = take_free_name(wanted, names);
     taken_names_.push_back(in_lower_case(name));
     return name;
   };
@@ -284,8 +282,8 @@ void PolygonFile::set_attributes(const OGRFeature& from, std::size_t layer_index
   }
 }
 
-// Some drivers do not notice that what they write does not arrive, for want of space or otherwise;
-// so the file is read again.
+// Not every driver notices that what it writes does not arrive (GeoJSON's does not), so the file is
+// read again.
 void PolygonFile::finish() {
   const GdalMessages messages;
   if (dataset_->TestCapability(ODsCTransactions) != 0) {
@@ -310,7 +308,9 @@ std::size_t PolygonFile::count_written() const {
   const char* const drivers[] = {format_.driver, nullptr};
   const GDALDatasetUniquePtr dataset(GDALDataset::Open(
       unfinished_.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, drivers));
-  require(dataset != nullptr && dataset->GetLayerCount() == 1, messages);
+  if (dataset == nullptr || dataset->GetLayerCount() != 1) {
+    fail("what was written cannot be read again; is the disk full? (" + messages.text() + ")");
+  }
   std::size_t count = 0;
   OGRLayer& layer = *dataset->GetLayer(0);
   while (OGRFeatureUniquePtr(layer.GetNextFeature()) != nullptr) ++count;
