@@ -3,13 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
+
+#include "core/fetch_ahead.h"
 
 namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffff;
+
+// How far ahead, in candidates, each step is taken: some hundred nanoseconds later it has come, and
+// what came is still in the nearest cache.
+constexpr std::size_t kCornerAhead = 24;
+constexpr std::size_t kEdgesAhead = 16;
+constexpr std::size_t kNodesAhead = 8;
+constexpr std::size_t kNeighboursAhead = 4;
 
 std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
                                            const std::array<VertexId, 3>& triangle) {
@@ -18,8 +28,7 @@ std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
   for (std::size_t i = 0; i < 3; ++i) {
     const Point a = graph.point(triangle[i]);
     const Point b = graph.point(triangle[(i + 1) % 3]);
-    const double length =
-        std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
+    const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
     if (length > greatest) longest = {triangle[i], triangle[(i + 1) % 3]};
     greatest = std::max(greatest, length);
   }
@@ -47,11 +56,12 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
     const auto ring_weights = ring_weights_.weigh(ring_, options.weights);
     for (std::size_t k = 0; k < ring_.size(); ++k) {
       weights_[ring_corners_[k]] = ring_weights[k];
-      if (std::isfinite(ring_weights[k])) order_.push_back(ring_corners_[k]);
+      if (!std::isfinite(ring_weights[k])) continue;
+      const CornerId corner = ring_corners_[k];
+      order_.push_back({ring_weights[k], graph.corner(corner).vertex, corner});
     }
   }
-  std::sort(order_.begin(), order_.end(),
-            [this](CornerId a, CornerId b) { return goes_before(a, b); });
+  std::sort(order_.begin(), order_.end());
   position_ = 0;
   epsilon_ = 0;
   retries_.clear();
@@ -62,25 +72,30 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
   counts_ = {};
 }
 
-bool PriorityStack::goes_before(CornerId a, CornerId b) const {
-  if (weights_[a] != weights_[b]) return weights_[a] < weights_[b];
-  const VertexId va = graph_->corner(a).vertex;
-  const VertexId vb = graph_->corner(b).vertex;
-  return va != vb ? va < vb : a < b;
-}
-
 std::optional<CornerId> PriorityStack::next_candidate() {
-  const auto later = [this](CornerId a, CornerId b) { return goes_before(b, a); };
   if (!retries_.empty()) {
-    std::pop_heap(retries_.begin(), retries_.end(), later);
-    const CornerId c = retries_.back();
+    std::pop_heap(retries_.begin(), retries_.end(), std::greater<>());
+    const CornerId c = retries_.back().corner;
     retries_.pop_back();
     return c;
   }
   if (position_ == order_.size()) return std::nullopt;
-  const CornerId c = order_[position_++];
-  epsilon_ = std::max(epsilon_, weights_[c]);
-  return c;
+  return pop();
+}
+
+CornerId PriorityStack::pop() {
+  const Candidate next = order_[position_++];
+  epsilon_ = std::max(epsilon_, next.weight);
+  if (position_ + kCornerAhead < order_.size()) {
+    const auto ahead = [this](std::size_t distance) { return order_[position_ + distance]; };
+    fetch(graph_->corners(), ahead(kCornerAhead).corner);
+    fetch(waiting_first_, ahead(kCornerAhead).vertex);
+    fetch(state_, ahead(kCornerAhead).corner);
+    fetch_edges(*graph_, ahead(kEdgesAhead).corner);
+    fetch_nodes(*graph_, ahead(kNodesAhead).corner);
+    fetch_neighbours(*graph_, ahead(kNeighboursAhead).corner);
+  }
+  return next.corner;
 }
 
 std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, EditLog& log) {
@@ -99,8 +114,7 @@ std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, 
     const Corner gone = graph.corner(c);
     const VertexId prev = graph.corner(gone.prev).vertex;
     const VertexId next = graph.corner(gone.next).vertex;
-    if (decision.removal == Removal::loop)
-      last_side_ = longest_side(graph, {prev, gone.vertex, next});
+    if (decision.removal == Removal::loop) last_side_ = longest_side(graph, {prev, gone.vertex, next});
     generalization.remove(c, decision.removal);
     ++counts_.removals;
     counts_.touched += log.touched_nodes().size();
@@ -133,9 +147,8 @@ void PriorityStack::retry_waiting(VertexId gone) {
 void PriorityStack::retry_if_blocked(CornerId corner) {
   if (state_[corner] != State::blocked || !graph_->corner(corner).is_alive()) return;
   state_[corner] = State::queued;
-  retries_.push_back(corner);
-  std::push_heap(retries_.begin(), retries_.end(),
-                 [this](CornerId a, CornerId b) { return goes_before(b, a); });
+  retries_.push_back({weights_[corner], graph_->corner(corner).vertex, corner});
+  std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
 }
 
 AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options)

@@ -59,8 +59,16 @@ class PriorityStack {
   double weight(CornerId c) const { return weights_[c]; }
 
  private:
-  bool goes_before(CornerId a, CornerId b) const;
+  /// A corner with what it is ordered by, so that sorting looks nowhere else.
+  struct Candidate {
+    double weight;
+    VertexId vertex;
+    CornerId corner;
+    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  };
+
   std::optional<CornerId> next_candidate();
+  CornerId pop();
   void wait_for(CornerId corner, VertexId blocker);
   void retry_waiting(VertexId gone);
   void retry_if_blocked(CornerId corner);
@@ -68,7 +76,7 @@ class PriorityStack {
   const TrapezoidalGraph* graph_ = nullptr;
   GeneralizationOptions options_;
   Table<CornerId, double> weights_;
-  std::vector<CornerId> order_;
+  std::vector<Candidate> order_;
   std::size_t position_ = 0;
   double epsilon_ = 0;  // greatest weight popped
 
@@ -78,7 +86,7 @@ class PriorityStack {
     CornerId corner;
     std::uint32_t next;
   };
-  std::vector<CornerId> retries_;
+  std::vector<Candidate> retries_;
   Table<CornerId, State> state_;
   Table<VertexId, std::uint32_t> waiting_first_;
   std::vector<Waiting> waiting_;

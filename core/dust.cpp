@@ -45,20 +45,104 @@ void lay_out(const Grain& grain, std::vector<Mote>& motes) {
   }
 }
 
-Mote merged(const std::vector<Mote>& motes, std::size_t begin, std::size_t end, Level level) {
+Mote merged(const std::vector<Mote>& motes, Level level) {
   Mote sum{0, 0, 0, {level, kNeverDies}, true};
   double weight = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double w = std::abs(motes[i].area);
-    sum.x += w * motes[i].x;
-    sum.y += w * motes[i].y;
-    sum.area += motes[i].area;
+  for (const Mote& m : motes) {
+    const double w = std::abs(m.area);
+    sum.x += w * m.x;
+    sum.y += w * m.y;
+    sum.area += m.area;
     weight += w;
   }
   sum.x /= weight;
   sum.y /= weight;
   return sum;
 }
+
+/// The motes that are alive or yet to be born, in order of place, through the octaves.
+class Settling {
+ public:
+  explicit Settling(const std::vector<Grain>& grains) {
+    std::vector<Mote> motes;
+    for (const Grain& grain : grains) lay_out(grain, motes);
+    std::erase_if(motes, [](const Mote& m) { return m.area == 0; });
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    for (std::size_t i = 0; i < motes.size(); ++i) {
+      order.emplace_back(morton(motes[i].x, motes[i].y), static_cast<std::uint32_t>(i));
+    }
+    std::sort(order.begin(), order.end());
+    for (const auto& [code, i] : order) {
+      motes_.push_back(motes[i]);
+      codes_.push_back(code);
+    }
+  }
+
+  /// Of the motes born by now, those in one pixel of `level` become one.
+  void merge_pixels(Level level) {
+    const int bits = 2 * static_cast<int>(std::lround(std::log2(pixel_of_level(level))));
+    kept_ = 0;
+    for (std::size_t begin = 0; begin < motes_.size();) {
+      std::size_t end = begin;
+      while (end < motes_.size() && codes_[end] >> bits == codes_[begin] >> bits) ++end;
+      merge_pixel(begin, end, level);
+      begin = end;
+    }
+    motes_.resize(kept_);
+    codes_.resize(kept_);
+  }
+
+  std::vector<Mote> finish() {
+    for (const Mote& m : motes_) keep_if_seen(m);
+    return std::move(settled_);
+  }
+
+ private:
+  struct Placed {
+    Mote mote;
+    std::uint64_t code;
+  };
+
+  void merge_pixel(std::size_t begin, std::size_t end, Level level) {
+    born_.clear();
+    left_.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (motes_[i].lifespan.born <= level) {
+        born_.push_back(motes_[i]);
+      } else {
+        left_.push_back({motes_[i], codes_[i]});
+      }
+    }
+    if (born_.size() == 1) left_.push_back({born_.front(), codes_[begin]});
+    if (born_.size() > 1) {
+      left_.push_back({merged(born_, level), codes_[begin]});
+      if (left_.back().mote.area == 0) left_.pop_back();
+      for (Mote& m : born_) {
+        m.lifespan.dies = level;
+        keep_if_seen(m);
+      }
+    }
+    // There are no more than there were; inside of a pixel their order no longer matters.
+    for (const Placed& placed : left_) {
+      motes_[kept_] = placed.mote;
+      codes_[kept_++] = placed.code;
+    }
+  }
+
+  void keep_if_seen(const Mote& m) {
+    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestArea) {
+      settled_.push_back(m);
+    }
+  }
+
+  std::vector<Mote> motes_;
+  std::vector<std::uint64_t> codes_;
+  std::size_t kept_ = 0;
+  std::vector<Mote> settled_;
+  // Of the pixel at hand.
+  std::vector<Mote> born_;
+  std::vector<Placed> left_;
+};
 
 }  // namespace
 
@@ -67,71 +151,11 @@ double pixel_of_level(Level level) {
 }
 
 std::vector<Mote> settle(const std::vector<Grain>& grains) {
-  std::vector<Mote> motes;
-  for (const Grain& grain : grains) lay_out(grain, motes);
-  std::erase_if(motes, [](const Mote& m) { return m.area == 0; });
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  for (std::size_t i = 0; i < motes.size(); ++i) {
-    order.emplace_back(morton(motes[i].x, motes[i].y), static_cast<std::uint32_t>(i));
-  }
-  std::sort(order.begin(), order.end());
-
-  // Alive or yet unborn, in order of place; merging keeps the order.
-  std::vector<Mote> settled;
-  std::vector<Mote> now;
-  std::vector<std::uint64_t> codes;
-  for (const auto& [code, i] : order) {
-    now.push_back(motes[i]);
-    codes.push_back(code);
-  }
-  const auto keep = [&settled](const Mote& m) {
-    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestArea)
-      settled.push_back(m);
-  };
-  std::vector<Mote> born;
+  Settling settling(grains);
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
-    const int square =
-        2 * static_cast<int>(std::lround(std::log2(pixel_of_level(static_cast<Level>(level)))));
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < now.size();) {
-      std::size_t end = i;
-      born.clear();
-      const std::uint64_t cell = codes[i] >> square;
-      const std::uint64_t code = codes[i];
-      const std::size_t first_kept = kept;
-      for (; end < now.size() && codes[end] >> square == cell; ++end) {
-        if (now[end].lifespan.born <= level) {
-          born.push_back(now[end]);
-        } else {
-          now[kept] = now[end];
-          codes[kept++] = codes[end];
-        }
-      }
-      i = end;
-      if (born.empty()) continue;
-      // The one that stands for them goes before what is not born yet; both share the cell.
-      Mote one = born.front();
-      if (born.size() > 1) {
-        one = merged(born, 0, born.size(), static_cast<Level>(level));
-        for (Mote& m : born) {
-          m.lifespan.dies = static_cast<Level>(level);
-          keep(m);
-        }
-      }
-      if (one.area == 0) continue;
-      for (std::size_t k = kept; k > first_kept; --k) {
-        now[k] = now[k - 1];
-        codes[k] = codes[k - 1];
-      }
-      now[first_kept] = one;
-      codes[first_kept] = code;
-      ++kept;
-    }
-    now.resize(kept);
-    codes.resize(kept);
+    settling.merge_pixels(static_cast<Level>(level));
   }
-  for (const Mote& m : now) keep(m);
-  return settled;
+  return settling.finish();
 }
 
 }  // namespace trapeze

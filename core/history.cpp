@@ -15,6 +15,19 @@ bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshT
          y(a.bottom) == y(b.bottom);
 }
 
+/// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
+/// while the order in which they were touched is that of weights, all over the map.
+template <class IdType>
+void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& flags) {
+  constexpr std::size_t kFitsTheCache = 4096;
+  constexpr std::size_t kSparse = 16;
+  if (ids.size() < kFitsTheCache || ids.size() < flags.size() / kSparse) return;
+  ids.clear();
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[IdType(i)] != 0) ids.push_back(IdType(i));
+  }
+}
+
 }  // namespace
 
 void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
@@ -109,14 +122,16 @@ void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level)
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
+  order_if_many(touched_edges_, edge_is_touched_);
   for (const EdgeId e : touched_edges_) {
     edge_is_touched_[e] = 0;
     renew_edge(graph, e);
   }
   touched_edges_.clear();
-  for (std::size_t i = 0; i < touched_nodes_.size(); ++i) {
-    node_is_touched_[touched_nodes_[i]] = 0;
-    renew_node(graph, touched_nodes_[i], level);
+  order_if_many(touched_nodes_, node_is_touched_);
+  for (const NodeId n : touched_nodes_) {
+    node_is_touched_[n] = 0;
+    renew_node(graph, n, level);
   }
   touched_nodes_.clear();
 }

@@ -74,28 +74,17 @@ class SegmentTree {
   std::vector<std::vector<Box>> levels_;
 };
 
-/// Segments of rings follow each other on the map, so the order of the rings is kept within short
-/// runs, and the runs are ordered by place.
+/// What is near on the map comes near in the array, and so under the same boxes of the tree.
 void order_by_place(std::vector<Segment>& segments) {
-  constexpr std::size_t kRun = 8;
-  struct Run {
-    std::uint32_t place;
-    std::uint32_t begin;
-  };
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < segments.size(); i += kRun) {
-    runs.push_back({hilbert(segments[i].first), static_cast<std::uint32_t>(i)});
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+  places.reserve(segments.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    places.emplace_back(hilbert(segments[i].first), static_cast<std::uint32_t>(i));
   }
-  std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
-    return a.place != b.place ? a.place < b.place : a.begin < b.begin;
-  });
+  std::sort(places.begin(), places.end());
   std::vector<Segment> ordered;
   ordered.reserve(segments.size());
-  for (const Run& run : runs) {
-    const std::size_t end = std::min<std::size_t>(run.begin + kRun, segments.size());
-    ordered.insert(ordered.end(), segments.begin() + run.begin,
-                   segments.begin() + static_cast<std::ptrdiff_t>(end));
-  }
+  for (const auto& [place, i] : places) ordered.push_back(segments[i]);
   segments.swap(ordered);
 }
 

@@ -28,6 +28,18 @@ struct CheckArguments {
 };
 int run_check(const CheckArguments& arguments);
 
+struct ExportArguments {
+  std::string file;
+  int zoom = 0;
+  double simplify = 0.25;  // pixels, as tiles are drawn
+  std::string topology = "strict";
+  std::string weights = "douglas-peucker";
+  std::string crs = "EPSG:4326";
+  bool overwrite = false;
+  std::string output;
+};
+int run_export(const ExportArguments& arguments);
+
 struct RenderArguments {
   std::vector<std::string> files;  // bottom first
   std::string tile;                // Z/X/Y

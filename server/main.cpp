@@ -19,6 +19,8 @@ constexpr const char* kDescription =
     "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
     "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
     "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
+    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
+    "file\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
 
 constexpr const char* kServeFooter =
@@ -35,6 +37,14 @@ constexpr const char* kCheckFooter =
     "\nExample:\n"
     "  trapeze check countries.fgb buildings.shp\n\n"
     "The exit status is 1 if a file cannot be read; repaired and skipped features are only listed.";
+
+constexpr const char* kExportFooter =
+    "\nExamples:\n"
+    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg\n"
+    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n\n"
+    "The polygons are those that tiles of that zoom are drawn from; attributes are kept, and the\n"
+    "field trapeze_id holds the id of each feature in FILE. What is too small to be left at that\n"
+    "tolerance is left out and counted. With --topology strict all polygons are valid.";
 
 constexpr const char* kRenderFooter =
     "\nExamples:\n"
@@ -76,6 +86,40 @@ void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   check->add_option("FILE", arguments.files, "Files of polygons")->required();
 }
 
+void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("export", "Write the polygons of a zoom into a file for other programs");
+  command->footer(kExportFooter);
+  command->add_option("FILE", arguments.file, "A file of polygons")->required();
+  command->add_option("--zoom", arguments.zoom, "The zoom whose tiles show these polygons, 0 to 24")
+      ->required()
+      ->type_name("Z");
+  command
+      ->add_option("--simplify", arguments.simplify,
+                   "Tolerance in pixels, 0.25 if not set, as tiles are drawn; 0 removes nothing")
+      ->type_name("PX");
+  command
+      ->add_option("--topology", arguments.topology,
+                   "strict (if not set) or fast: without the test that keeps polygons from "
+                   "crossing themselves; what crosses is noded")
+      ->type_name("NAME");
+  command
+      ->add_option("--weights", arguments.weights,
+                   "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
+                   "effective-area")
+      ->type_name("NAME");
+  command
+      ->add_option("--crs", arguments.crs,
+                   "EPSG:4326 (degrees, if not set) or EPSG:3857 (metres, the map as it is drawn)")
+      ->type_name("NAME");
+  command->add_flag("--overwrite", arguments.overwrite, "Replace OUT if it exists");
+  command
+      ->add_option("--output", arguments.output,
+                   "The file to write: .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson (GeoJSON)")
+      ->required()
+      ->type_name("OUT");
+}
+
 void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
   CLI::App* render = app.add_subcommand("render", "Draw one tile into a file");
   render->footer(kRenderFooter);
@@ -105,9 +149,11 @@ int run(int argc, char** argv) {
   app.fallthrough();
   trapeze::ServeArguments serve;
   trapeze::CheckArguments check;
+  trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
   add_serve(app, serve);
   add_check(app, check);
+  add_export(app, to_export);
   add_render(app, render);
   try {
     app.parse(argc, argv);
@@ -121,6 +167,7 @@ int run(int argc, char** argv) {
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
   if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
   if (app.got_subcommand("check")) return trapeze::run_check(check);
+  if (app.got_subcommand("export")) return trapeze::run_export(to_export);
   return trapeze::run_render(render);
 }
 

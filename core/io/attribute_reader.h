@@ -21,6 +21,8 @@ class AttributeReader {
   void add_layer(const OGRFeatureDefn& definition);
 
   const std::vector<Field>& fields() const { return fields_; }
+  /// For each field of a layer, its number in fields().
+  const std::vector<std::size_t>& fields_of(std::size_t layer) const { return field_of_[layer]; }
 
   /// The values of one feature of a layer, one for each of fields(), null where the layer lacks
   /// the field. They look at memory of the feature and of this reader, until the next call.

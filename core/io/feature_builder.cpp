@@ -13,33 +13,18 @@ void BuildTally::remark(std::size_t order, std::int64_t id, std::string words) {
   if (remarks.size() < kMaxRemarks) remarks.push_back({order, {id, std::move(words)}});
 }
 
-FeatureBuilder::FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options,
-                               const GeneralizationOptions& generalization)
-    : layers_(layers), options_(options), readers_(layers.size()), builder_(generalization) {}
-
 void FeatureBuilder::build(const FeatureJob& job) {
-  reader_of(job.layer_index).read(*job.geometry, feature_);
-  tally_.polygons += feature_.polygons;
-  tally_.rings += feature_.source_rings;
-  tally_.source_vertices += feature_.vertices;
-  if (feature_.has_wrong_units) {
-    throw SourceError("names no coordinate reference system, and its coordinates are not degrees");
-  }
-  if (!feature_.failure.empty()) {
-    tally_.skip(job.order, job.id, feature_.failure);
-  } else if (feature_.rings.empty()) {
+  FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
+  tally_.polygons += feature.polygons;
+  tally_.rings += feature.source_rings;
+  tally_.source_vertices += feature.vertices;
+  if (!feature.failure.empty()) {
+    tally_.skip(job.order, job.id, feature.failure);
+  } else if (feature.rings.empty()) {
     ++tally_.empty;
   } else {
-    count(job, builder_.add(job.row, feature_.rings));
+    count(job, builder_.add(job.row, feature.rings));
   }
-}
-
-RingReader& FeatureBuilder::reader_of(std::size_t layer_index) {
-  std::unique_ptr<RingReader>& reader = readers_[layer_index];
-  if (reader == nullptr) {
-    reader = std::make_unique<RingReader>(layers_[layer_index].crs, options_);
-  }
-  return *reader;
 }
 
 void FeatureBuilder::count(const FeatureJob& job, const BuildOutcome& outcome) {

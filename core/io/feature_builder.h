@@ -11,7 +11,7 @@
 
 #include "core/io/feature_source.h"
 #include "core/io/load_layer.h"
-#include "core/io/ring_reader.h"
+#include "core/io/source_ring_reader.h"
 #include "core/layer_builder.h"
 
 namespace trapeze {
@@ -54,9 +54,9 @@ struct BuildTally {
 /// Belongs to one thread. Gets its jobs in ascending order.
 class FeatureBuilder {
  public:
-  /// `layers` must outlive the builder.
-  FeatureBuilder(const std::vector<SourceLayer>& layers, RingReader::Options options,
-                 const GeneralizationOptions& generalization);
+  /// `source` must outlive the builder.
+  FeatureBuilder(const FeatureSource& source, const GeneralizationOptions& generalization)
+      : reader_(source), builder_(generalization) {}
 
   /// Builds the graph of one feature. Throws SourceError if the whole source cannot be
   /// understood: it names no CRS and is not in degrees, or there is no way from its CRS.
@@ -66,13 +66,9 @@ class FeatureBuilder {
   LayerBuilder take_builder() { return std::move(builder_); }
 
  private:
-  RingReader& reader_of(std::size_t layer_index);
   void count(const FeatureJob& job, const BuildOutcome& outcome);
 
-  const std::vector<SourceLayer>& layers_;
-  RingReader::Options options_;
-  std::vector<std::unique_ptr<RingReader>> readers_;  // by layer, made when first needed
-  FeatureRings feature_;                              // memory kept between jobs
+  SourceRingReader reader_;
   LayerBuilder builder_;
   BuildTally tally_;
 };

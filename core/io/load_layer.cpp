@@ -5,7 +5,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-
 #include <thread>
 #include <utility>
 
@@ -29,10 +28,10 @@ constexpr unsigned kMaxThreads = 256;
 // Builds batches, on threads of its own or, if there is to be only one thread, at once.
 class BuilderPool {
  public:
-  BuilderPool(unsigned threads, const std::vector<SourceLayer>& layers, RingReader::Options options,
+  BuilderPool(unsigned threads, const FeatureSource& source,
               const GeneralizationOptions& generalization)
       : queue_(kWaitingBatchesPerBuilder * threads) {
-    for (unsigned i = 0; i < threads; ++i) builders_.emplace_back(layers, options, generalization);
+    for (unsigned i = 0; i < threads; ++i) builders_.emplace_back(source, generalization);
     if (threads == 1) return;
     for (FeatureBuilder& builder : builders_) {
       threads_.emplace_back([this, &builder] { work(builder); });
@@ -214,8 +213,7 @@ unsigned thread_count(const LoadOptions& options) {
 LoadedLayer load(FeatureSource& source, const LoadOptions& options,
                  std::chrono::steady_clock::time_point start) {
   LoadedLayer loaded;
-  BuilderPool pool(thread_count(options), source.layers(),
-                   {.shells_are_clockwise = has_clockwise_shells(source.driver())}, options.generalization);
+  BuilderPool pool(thread_count(options), source, options.generalization);
   Loader loader(source, options, pool);
   loader.read_all();
   loaded.report.read_seconds = seconds_since(start);

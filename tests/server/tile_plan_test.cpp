@@ -11,6 +11,11 @@
 namespace trapeze {
 namespace {
 
+auto fills(std::size_t layer, Rgba fill) {
+  return ::testing::AllOf(::testing::Field(&LayerPaint::layer, layer),
+                          ::testing::Field(&LayerPaint::fill, fill));
+}
+
 class TilePlanTest : public ::testing::Test {
  protected:
   TilePlan plan(const std::string& target) const {
@@ -29,16 +34,16 @@ class TilePlanTest : public ::testing::Test {
 
 TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
   const TilePlan plan = this->plan("rings,west/0/0/0.png");
-  EXPECT_THAT(plan.layers, ::testing::ElementsAre(LayerPaint{0, {255, 0, 0, 255}, usual_level(0)},
-                                                  LayerPaint{1, {0, 0, 255, 128}, usual_level(0)}));
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {255, 0, 0, 255}), fills(1, {0, 0, 255, 128})));
   EXPECT_EQ(plan.background, kTransparent);
 }
 
 TEST_F(TilePlanTest, TheRequestGoesBeforeTheConfiguration) {
   const TilePlan plan =
       this->plan("rings,west/0/0/0.png?fill=lime&west.fill-opacity=1&background=ffff0080");
-  EXPECT_THAT(plan.layers, ::testing::ElementsAre(LayerPaint{0, {0, 255, 0, 255}, usual_level(0)},
-                                                  LayerPaint{1, {0, 255, 0, 255}, usual_level(0)}));
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {0, 255, 0, 255}), fills(1, {0, 255, 0, 255})));
   EXPECT_EQ(plan.background, (Rgba{255, 255, 0, 128}));
 }
 

@@ -1,0 +1,255 @@
+#include "core/io/export_layer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "core/graph_builder.h"
+#include "core/io/feature_source.h"
+#include "core/io/open_source.h"
+#include "core/io/polygon_file.h"
+#include "core/io/polygon_geometry.h"
+#include "core/io/source_ring_reader.h"
+#include "core/polygons.h"
+
+namespace trapeze {
+namespace {
+
+// As much as is read before it is adapted on all cores and written: enough that waiting for the
+// last of each round costs little, little enough to hold.
+constexpr std::size_t kRoundBytes = std::size_t{1} << 25;
+constexpr std::size_t kRoundFeatures = 16384;
+constexpr unsigned kMaxThreads = 256;
+
+/// A polygon feature of the source and what becomes of it.
+struct Job {
+  OGRFeatureUniquePtr feature;  // without its geometry
+  std::size_t layer_index = 0;
+  std::unique_ptr<OGRGeometry> geometry;
+
+  enum class Outcome { written, too_small, empty, skipped };
+  Outcome outcome = Outcome::empty;
+  std::string reason;  // for skipping it
+  PolygonGeometry result;
+  std::size_t polygons = 0;
+  std::size_t rings = 0;
+  std::size_t vertices = 0;
+  std::size_t all_vertices = 0;
+  std::size_t held = 0;
+  bool crosses = false;
+};
+
+/// Does jobs; one a thread.
+class Exporter {
+ public:
+  Exporter(const FeatureSource& source, const ExportOptions& options)
+      : reader_(source), options_(options) {}
+
+  void run(Job& job) {
+    FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
+    job.geometry.reset();
+    if (!feature.failure.empty()) return skip(job, feature.failure);
+    const BuildOutcome built = builder_.build(feature.rings, graph_);
+    if (!built.failure.empty()) return skip(job, built.failure);
+    if (built.built) adapt(job);
+  }
+
+ private:
+  static void skip(Job& job, const std::string& reason) {
+    job.outcome = Job::Outcome::skipped;
+    job.reason = reason;
+  }
+
+  void adapt(Job& job) {
+    job.all_vertices = graph_.corners().size();
+    AdaptableGraph adaptable(std::move(graph_), options_.generalization);
+    graph_ = TrapezoidalGraph();
+    adaptable.adapt_to(options_.epsilon);
+    const Polygons polygons = polygons_of(adaptable.graph());
+    if (!polygons.failure.empty()) return skip(job, polygons.failure);
+    job.outcome = Job::Outcome::too_small;
+    if (polygons.empty()) return;
+    job.outcome = Job::Outcome::written;
+    job.held = count_held(adaptable);
+    job.crosses = polygons.is_noded;
+    job.polygons = polygons.size();
+    job.rings = polygons.rings.size();
+    job.vertices = polygons.rings.points.size();
+    job.result = geometry_of(polygons, options_.crs);
+  }
+
+  std::size_t count_held(const AdaptableGraph& adaptable) const {
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < adaptable.graph().corners().size(); ++i) {
+      const CornerId c(i);
+      const bool is_left = adaptable.graph().corner(c).is_alive();
+      held += is_left && adaptable.stack().weight(c) < options_.epsilon ? 1 : 0;
+    }
+    return held;
+  }
+
+  SourceRingReader reader_;
+  const ExportOptions& options_;
+  GraphBuilder builder_;
+  TrapezoidalGraph graph_;
+};
+
+/// Does rounds of jobs on several threads; each job's result depends on the job alone.
+class ExporterPool {
+ public:
+  ExporterPool(const FeatureSource& source, const ExportOptions& options) {
+    const unsigned wanted =
+        options.threads != 0 ? options.threads : std::thread::hardware_concurrency();
+    for (unsigned i = 0; i < std::clamp(wanted, 1u, kMaxThreads); ++i) {
+      exporters_.emplace_back(source, options);
+    }
+  }
+
+  /// Rethrows what stopped a job.
+  void run(std::vector<Job>& jobs) {
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&](Exporter& exporter) {
+      try {
+        for (std::size_t i = next++; i < jobs.size(); i = next++) exporter.run(jobs[i]);
+      } catch (...) {
+        next = jobs.size();
+        const std::lock_guard lock(mutex);
+        failure = std::current_exception();
+      }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t i = 1; i < exporters_.size() && i < jobs.size(); ++i) {
+      threads.emplace_back(work, std::ref(exporters_[i]));
+    }
+    work(exporters_.front());
+    for (std::thread& thread : threads) thread.join();
+    if (failure != nullptr) std::rethrow_exception(failure);
+  }
+
+ private:
+  std::vector<Exporter> exporters_;
+};
+
+/// Reads, has the jobs done, and writes, one round after another.
+class Export {
+ public:
+  Export(FeatureSource& source, PolygonFile& file, const ExportOptions& options)
+      : source_(source), file_(file), options_(options), pool_(source, options) {}
+
+  ExportReport run() {
+    report_.driver = file_.driver();
+    report_.features = report_.other_geometry = source_.passed_over();
+    SourceFeature next;
+    while (source_.next(next)) {
+      take(next);
+      if (bytes_ >= kRoundBytes || jobs_.size() >= kRoundFeatures) finish_round();
+    }
+    finish_round();
+    file_.finish();
+    if (options_.progress) options_.progress(1);
+    return std::move(report_);
+  }
+
+ private:
+  void take(SourceFeature& next) {
+    ++report_.features;
+    if (next.layer == nullptr) {
+      ++report_.other_geometry;
+      return;
+    }
+    std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
+    if (geometry != nullptr && has_polygons(*geometry)) {
+      bytes_ += geometry->WkbSize();
+      Job& job = jobs_.emplace_back();
+      job.feature = std::move(next.feature);
+      job.layer_index = next.layer_index;
+      job.geometry = std::move(geometry);
+    } else if (geometry == nullptr && !next.failure.empty()) {
+      ++report_.skipped;
+      report_.notes.push_back({next.feature->GetFID(), next.failure});
+    } else {
+      ++report_.other_geometry;
+    }
+  }
+
+  void finish_round() {
+    pool_.run(jobs_);
+    for (Job& job : jobs_) count(job);
+    jobs_.clear();
+    bytes_ = 0;
+    if (options_.progress) options_.progress(source_.progress());
+  }
+
+  void count(Job& job) {
+    report_.all_vertices += job.all_vertices;
+    switch (job.outcome) {
+      case Job::Outcome::too_small:
+        ++report_.too_small;
+        return;
+      case Job::Outcome::empty:
+        ++report_.empty;
+        return;
+      case Job::Outcome::skipped:
+        ++report_.skipped;
+        report_.notes.push_back({job.feature->GetFID(), job.reason});
+        return;
+      case Job::Outcome::written:
+        write(job);
+        return;
+    }
+  }
+
+  void write(Job& job) {
+    ++report_.written;
+    report_.polygons += job.polygons;
+    report_.rings += job.rings;
+    report_.vertices += job.vertices;
+    report_.held += job.held;
+    report_.crossed += job.crosses ? 1 : 0;
+    report_.subdivided += job.result.subdivided;
+    report_.unchecked += job.result.unchecked;
+    if (job.result.is_invalid) {
+      ++report_.invalid;
+      report_.notes.push_back({job.feature->GetFID(), "is not valid in degrees"});
+    }
+    file_.write(*job.feature, job.layer_index, std::move(job.result.geometry));
+  }
+
+  FeatureSource& source_;
+  PolygonFile& file_;
+  const ExportOptions& options_;
+  ExporterPool pool_;
+  std::vector<Job> jobs_;
+  std::size_t bytes_ = 0;
+  ExportReport report_;
+};
+
+}  // namespace
+
+std::optional<ExportCrs> export_crs_from_name(std::string_view name) {
+  if (name == "EPSG:4326") return ExportCrs::degrees;
+  if (name == "EPSG:3857") return ExportCrs::web_mercator;
+  return std::nullopt;
+}
+
+ExportReport export_layer(const std::string& source, const std::string& output,
+                          const ExportOptions& options) {
+  PolygonFile::check_path(output, source, options.overwrite);
+  FeatureSource features(source);
+  PolygonFile file(output, features, options.crs);
+  try {
+    return Export(features, file, options).run();
+  } catch (const SourceError& error) {
+    throw std::runtime_error(source + ": " + error.what());
+  }
+}
+
+}  // namespace trapeze
