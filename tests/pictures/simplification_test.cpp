@@ -25,7 +25,7 @@ struct Bounds {
   double share;  // of the pixels that are plainly different
 };
 constexpr Bounds kDetailed{1.0, 0.0005};
-// The means are lower here, at most 0.65, but where neighbours share borders that are simplified
+// The means are lower here, at most 0.6, but where neighbours share borders that are simplified
 // each for itself, small gaps open: of counties of two pixels 0.1 % of all pixels are off.
 constexpr Bounds kOverview{0.8, 0.0012};
 // The truth is sampled too, so that even what is not simplified is a little off.

@@ -5,8 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "render/png.h"
+#include "server/config.h"
 #include "tests/server/sample_site.h"
 
 namespace trapeze {
@@ -149,6 +153,111 @@ TEST_F(SiteTest, ErrorsAreProblemsThatNameTheParameter) {
   EXPECT_EQ(json["parameter"], "rings.fill");
   EXPECT_EQ(json["value"], "reddish");
   EXPECT_THAT(json["takes"].get<std::string>(), HasSubstr("a colour"));
+}
+
+TEST_F(SiteTest, GeneralizationsThatAreNoneAreRefusedWithWhatIsAllowed) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"simplify=-1", "a number from 0 to 64"},
+      {"simplify=nan", "a number from 0 to 64"},
+      {"simplify=1e9", "a number from 0 to 64"},
+      {"small=tiny", "one of drop, dust, keep"},
+      {"topology=none", "one of fast, strict"},
+      {"debug=everything", "some of mesh, tile, vertices, separated by commas"}};
+  for (const auto& [query, takes] : wrong) {
+    const auto response = get("/tiles/rings/0/0/0.png?" + query);
+    EXPECT_EQ(response.status, 400) << query;
+    const auto json = nlohmann::json::parse(*response.body);
+    EXPECT_EQ(json["parameter"], query.substr(0, query.find('='))) << query;
+    EXPECT_EQ(json["value"], query.substr(query.find('=') + 1)) << query;
+    EXPECT_EQ(json["takes"], takes) << query;
+  }
+}
+
+TEST_F(SiteTest, ALargeToleranceLeavesOutWhatIsSmallerAndNoneLeavesOutNothing) {
+  const Picture exact = picture_of(get("/tiles/rings/0/0/0.png?simplify=0"));
+  EXPECT_EQ(exact.at(128, 100).a, 0) << "the hole";
+  EXPECT_EQ(exact.at(128, 128), kRed) << "the island";
+  // A square goes as soon as half of its diagonal is within the tolerance: 23 pixels of the island,
+  // 45 of the hole, 91 of the whole.
+  const Picture coarse = picture_of(get("/tiles/rings/0/0/0.png?simplify=64&small=drop"));
+  EXPECT_EQ(coarse.at(128, 100), kRed) << "the hole is filled";
+  EXPECT_EQ(coarse.at(128, 128), kRed);
+  EXPECT_EQ(coarse.at(63, 128).a, 0);
+  EXPECT_EQ(coarse.at(64, 128), kRed);
+  const Picture between = picture_of(get("/tiles/rings/0/0/0.png?simplify=32&small=drop"));
+  EXPECT_EQ(between.at(128, 100).a, 0) << "the hole";
+  EXPECT_EQ(between.at(128, 128).a, 0) << "the island has gone";
+}
+
+TEST_F(SiteTest, ThePolygonsThatAreLeftLookTheSameWithoutTheTopologyTest) {
+  EXPECT_EQ(*get("/tiles/rings/0/0/0.png?topology=fast").body,
+            *get("/tiles/rings/0/0/0.png?topology=strict").body);
+}
+
+/// The opacities of the tile of zoom 0 with the speck, which covers a sixteenth of one pixel.
+class SpeckTest : public SiteTest {
+ protected:
+  SpeckTest() {
+    auto layers = layers_of_files({testing::fixture("speck.geojson")});
+    layers[0].style.fill = kRed;
+    sample_.data().set(Dataset::load(layers));
+  }
+  Picture draw(const std::string& query) {
+    return picture_of(get("/tiles/speck/0/0/0.png?" + query));
+  }
+  static int opacity(const Picture& picture) {
+    int sum = 0;
+    for (int row = 0; row < 256; ++row) {
+      for (int column = 0; column < 256; ++column) sum += picture.at(column, row).a;
+    }
+    return sum;
+  }
+};
+
+TEST_F(SpeckTest, DustKeepsItsAreaWhereItWas) {
+  for (const char* query : {"", "small=dust", "simplify=0", "simplify=16"}) {
+    const Picture picture = draw(query);
+    EXPECT_NEAR(picture.at(128, 128).a, 16, 1) << query;
+    EXPECT_EQ(opacity(picture), picture.at(128, 128).a) << query;
+  }
+}
+
+TEST_F(SpeckTest, DropLeavesItOutUnlessEveryVertexIsDrawn) {
+  EXPECT_EQ(opacity(draw("small=drop")), 0);
+  EXPECT_NEAR(opacity(draw("small=drop&simplify=0")), 16, 1);
+}
+
+TEST_F(SpeckTest, KeepDrawsItAWholePixelLarge) {
+  const Picture picture = draw("small=keep");
+  EXPECT_GE(picture.at(128, 128).a, 250);
+  EXPECT_NEAR(opacity(picture), 255, 5);
+}
+
+TEST_F(SiteTest, TheBorderOfATileIsDrawnOnRequest) {
+  const Picture plain = picture_of(get("/tiles/rings/0/0/0.png"));
+  const Picture marked = picture_of(get("/tiles/rings/0/0/0.png?debug=tile"));
+  EXPECT_EQ(plain.at(0, 0).a, 0);
+  for (const int i : {0, 1, 100, 200, 254, 255}) {
+    EXPECT_EQ(marked.at(i, 255).a, 255) << i;
+    EXPECT_EQ(marked.at(255, i).a, 255) << i;
+    EXPECT_EQ(marked.at(0, i).a, 255) << i;
+  }
+  EXPECT_EQ(marked.at(100, 100), plain.at(100, 100));
+  EXPECT_EQ(marked.at(80, 80), plain.at(80, 80));
+  EXPECT_NE(*get("/tiles/rings/5/0/0.png?debug=tile").body,
+            *get("/tiles/rings/5/0/1.png?debug=tile").body)
+      << "each has its numbers";
+}
+
+TEST_F(SiteTest, VerticesAndTrapezoidsAreDrawnOnRequest) {
+  const Picture vertices = picture_of(get("/tiles/rings/0/0/0.png?debug=vertices"));
+  EXPECT_NE(vertices.at(64, 64), kRed);
+  EXPECT_EQ(vertices.at(64, 64), vertices.at(192, 192)) << "two corners of the square";
+  EXPECT_EQ(vertices.at(70, 128), kRed) << "away from the vertices";
+  const Picture mesh = picture_of(get("/tiles/rings/0/0/0.png?debug=mesh&fill-opacity=0"));
+  EXPECT_GT(mesh.at(64, 128).a, 0) << "the west side";
+  EXPECT_GT(mesh.at(80, 96).a, 0) << "a trapezoid ends where the hole begins";
+  EXPECT_EQ(mesh.at(80, 80).a, 0);
 }
 
 TEST_F(SiteTest, OtherMethodsAreRefusedAndOptionsAnswered) {

@@ -83,5 +83,59 @@ TEST(StyleParametersTest, AParameterGivenTwiceIsAProblem) {
   EXPECT_EQ(problem_of("lakes.fill=red&fill=blue&lakes.fill=red").parameter, "lakes.fill");
 }
 
+TEST(StyleParametersTest, TheSameToleranceHasOneText) {
+  EXPECT_EQ(canonical("simplify=0.50"), "simplify=0.5");
+  EXPECT_EQ(canonical("simplify=5e-1"), "simplify=0.5");
+  EXPECT_EQ(canonical("simplify=-0"), "simplify=0");
+  EXPECT_EQ(canonical("simplify=64"), "simplify=64");
+  EXPECT_NE(canonical("simplify=0"), canonical(""));
+}
+
+TEST(StyleParametersTest, ListsOfWordsHaveOneOrderAndNoRepetition) {
+  const std::string all = canonical("debug=mesh,tile,vertices");
+  EXPECT_EQ(canonical("debug=vertices,mesh,tile"), all);
+  EXPECT_EQ(canonical("debug=tile,vertices,mesh,tile,tile"), all);
+  EXPECT_EQ(canonical(all), all);
+  EXPECT_EQ(canonical("debug=tile"), "debug=tile");
+}
+
+TEST(StyleParametersTest, GeneralizationIsSetForAllLayersOrForOne) {
+  const std::string text =
+      canonical("roads.topology=fast&small=drop&lakes.simplify=2&lakes.small=keep");
+  EXPECT_EQ(text, "small=drop&lakes.simplify=2&lakes.small=keep&roads.topology=fast");
+  EXPECT_EQ(canonical(text), text);
+  const auto parsed = parse(text);
+  const auto& query = std::get<StyleQuery>(parsed);
+  EXPECT_EQ(query.value_for("lakes", ParameterId::simplify), ParameterValue(2.0));
+  EXPECT_EQ(query.value_for("roads", ParameterId::simplify), std::nullopt);
+  EXPECT_EQ(query.value_for("lakes", ParameterId::small), ParameterValue("keep"));
+  EXPECT_EQ(query.value_for("roads", ParameterId::small), ParameterValue("drop"));
+  EXPECT_EQ(query.value_for("roads", ParameterId::topology), ParameterValue("fast"));
+  EXPECT_EQ(canonical("lakes.debug=tile"), "") << "marks are drawn over the whole tile";
+}
+
+TEST(StyleParametersTest, WrongGeneralizationsAreProblemsThatSayWhatIsAllowed) {
+  for (const char* value : {"", "-1", "-0.001", "nan", "NaN", "-nan", "inf", "1e9", "64.001", "0x1",
+                            "1px", " 1", "0,5", "1e999", "none", "%2B1"}) {
+    const Problem problem = problem_of(std::string("lakes.simplify=") + value);
+    EXPECT_EQ(problem.status, 400) << value;
+    EXPECT_EQ(problem.parameter, "lakes.simplify");
+    EXPECT_EQ(problem.takes, "a number from 0 to 64");
+  }
+  for (const char* value : {"", "dusty", "DUST", "dust,drop", "drop dust keep", " "}) {
+    EXPECT_EQ(problem_of(std::string("small=") + value).takes, "one of drop, dust, keep") << value;
+  }
+  for (const char* value : {"", "Fast", "strict,fast", "none", "fast strict"}) {
+    EXPECT_EQ(problem_of(std::string("topology=") + value).takes, "one of fast, strict") << value;
+  }
+  for (const char* value :
+       {"", ",", "tile,", ",tile", "tile,,mesh", "tile%20mesh", "all", "mesh;"}) {
+    EXPECT_EQ(problem_of(std::string("debug=") + value).takes,
+              "some of mesh, tile, vertices, separated by commas")
+        << value;
+  }
+  EXPECT_EQ(problem_of("simplify=1&simplify=1").takes, "a number from 0 to 64, once");
+}
+
 }  // namespace
 }  // namespace trapeze

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "tests/server/sample_site.h"
 
 namespace trapeze {
@@ -20,22 +24,26 @@ class TilePlanTest : public ::testing::Test {
     return std::get<TilePlan>(planned);
   }
   std::string tag(const std::string& target) const { return plan(target).entity_tag(); }
+  /// The level of the default tolerance in tiles of 256 pixels.
+  static Level usual_level(int zoom) {
+    return nearest_level(static_cast<double>(TileId{zoom, 0, 0}.side()) / 256 / 4);
+  }
 
   const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
 };
 
 TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
   const TilePlan plan = this->plan("rings,west/0/0/0.png");
-  EXPECT_THAT(plan.layers, ::testing::ElementsAre(fills(0, {255, 0, 0, 255}),
-                                                  fills(1, {0, 0, 255, 128})));
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {255, 0, 0, 255}), fills(1, {0, 0, 255, 128})));
   EXPECT_EQ(plan.background, kTransparent);
 }
 
 TEST_F(TilePlanTest, TheRequestGoesBeforeTheConfiguration) {
   const TilePlan plan =
       this->plan("rings,west/0/0/0.png?fill=lime&west.fill-opacity=1&background=ffff0080");
-  EXPECT_THAT(plan.layers, ::testing::ElementsAre(fills(0, {0, 255, 0, 255}),
-                                                  fills(1, {0, 255, 0, 255})));
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {0, 255, 0, 255}), fills(1, {0, 255, 0, 255})));
   EXPECT_EQ(plan.background, (Rgba{255, 255, 0, 128}));
 }
 
@@ -91,6 +99,67 @@ TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
   const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
   EXPECT_EQ(plan("rings/10/0/0.png").layers[0].level, nearest_level(pixel / 4));
   EXPECT_EQ(plan("rings/10/0/0@2x.png").layers[0].level, nearest_level(pixel / 8));
+}
+
+TEST_F(TilePlanTest, ARequestedToleranceIsInOutputPixels) {
+  const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
+  EXPECT_EQ(plan("rings/10/0/0.png?simplify=0").layers[0].level, 0);
+  EXPECT_EQ(plan("rings/10/0/0.png?simplify=3").layers[0].level, nearest_level(3 * pixel));
+  EXPECT_EQ(plan("rings/10/0/0@2x.png?simplify=3").layers[0].level, nearest_level(1.5 * pixel));
+}
+
+TEST_F(TilePlanTest, DustIsTakenTogetherWithinPixelsWhateverTheTolerance) {
+  for (const char* query : {"", "?simplify=0", "?simplify=64"}) {
+    const TilePlan plan = this->plan(std::string("rings/10/0/0@2x.png") + query);
+    EXPECT_EQ(plan.pixel_level(), this->plan("rings/10/0/0@2x.png").layers[0].level) << query;
+  }
+}
+
+TEST_F(TilePlanTest, EveryLayerMayBeGeneralizedInItsOwnWay) {
+  const TilePlan plan = this->plan(
+      "rings,west/3/0/0.png?small=drop&west.small=keep&rings.topology=fast&"
+      "west.simplify=0");
+  EXPECT_THAT(
+      plan.layers,
+      ::testing::ElementsAre(
+          LayerPaint{0, {255, 0, 0, 255}, usual_level(3), Topology::fast, SmallPolygons::drop},
+          LayerPaint{1, {0, 0, 255, 128}, 0, Topology::strict, SmallPolygons::keep}));
+}
+
+TEST_F(TilePlanTest, TheSameGeneralizationHasTheSameTagHoweverWritten) {
+  const std::string same = tag("rings/3/4/4.png");
+  for (const char* query :
+       {"simplify=0.25", "simplify=0.2500001", "small=dust", "topology=strict",
+        "rings.small=dust&small=drop", "topology=strict&simplify=2.5e-1", "west.simplify=9"}) {
+    EXPECT_EQ(tag(std::string("rings/3/4/4.png?") + query), same) << query;
+  }
+  EXPECT_EQ(tag("rings/3/4/4.png?debug=tile,mesh"), tag("rings/3/4/4.png?debug=mesh,tile,mesh"));
+}
+
+TEST_F(TilePlanTest, EveryGeneralizationAndEveryMarkHasItsOwnTag) {
+  std::set<std::string> tags;
+  const std::vector<std::string> queries = {"",
+                                            "simplify=0",
+                                            "simplify=1",
+                                            "simplify=64",
+                                            "small=drop",
+                                            "small=keep",
+                                            "debug=mesh",
+                                            "debug=tile",
+                                            "debug=vertices",
+                                            "debug=mesh,tile",
+                                            "debug=mesh,tile,vertices",
+                                            "topology=fast",
+                                            "topology=fast&small=drop"};
+  for (const std::string& query : queries) tags.insert(tag("rings/3/4/4.png?" + query));
+  EXPECT_EQ(tags.size(), queries.size());
+}
+
+TEST_F(TilePlanTest, AnInvisibleLayerIsKeptForItsMarks) {
+  EXPECT_EQ(plan("rings/0/0/0.png?fill-opacity=0").layers.size(), 0u);
+  const TilePlan plan = this->plan("rings/0/0/0.png?fill-opacity=0&debug=vertices,tile");
+  EXPECT_EQ(plan.layers.size(), 1u);
+  EXPECT_EQ(plan.debug, (DebugMarks{false, true, true}));
 }
 
 }  // namespace
