@@ -24,36 +24,6 @@ double triangle_area(Point a, Point b, Point c) {
   return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
 }
 
-/// A segment prepared for the distances of many points. It is taken from its upper end, so that the
-/// result does not depend on the direction of the ring.
-class DistanceFrom {
- public:
-  DistanceFrom(Point a, Point b) : a_(is_above(a, b) ? a : b), b_(is_above(a, b) ? b : a) {
-    dx_ = static_cast<double>(b_.x) - a_.x;
-    dy_ = static_cast<double>(b_.y) - a_.y;
-    squared_length_ = dx_ * dx_ + dy_ * dy_;
-    inverse_ = squared_length_ > 0 ? 1 / squared_length_ : 0;
-  }
-
-  double squared(Point p) const {
-    const double px = static_cast<double>(p.x) - a_.x;
-    const double py = static_cast<double>(p.y) - a_.y;
-    const double along = px * dx_ + py * dy_;
-    if (along <= 0) return px * px + py * py;
-    if (along >= squared_length_) {
-      const double qx = static_cast<double>(p.x) - b_.x;
-      const double qy = static_cast<double>(p.y) - b_.y;
-      return qx * qx + qy * qy;
-    }
-    const double across = dx_ * py - dy_ * px;
-    return across * across * inverse_;
-  }
-
- private:
-  Point a_, b_;
-  double dx_, dy_, squared_length_, inverse_;
-};
-
 }  // namespace
 
 std::optional<WeightRule> weight_rule_from_name(std::string_view name) {
@@ -63,13 +33,9 @@ std::optional<WeightRule> weight_rule_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of(WeightRule rule) {
-  return kNames[static_cast<std::size_t>(rule)].first;
-}
+std::string_view name_of(WeightRule rule) { return kNames[static_cast<std::size_t>(rule)].first; }
 
-double squared_distance(Point p, Point a, Point b) {
-  return DistanceFrom(a, b).squared(p);
-}
+double squared_distance(Point p, Point a, Point b) { return SegmentDistance(a, b).squared(p); }
 
 std::span<const double> VertexWeights::weigh(std::span<const Point> ring, WeightRule rule) {
   weights_.assign(ring.size(), kInfinite);
@@ -81,8 +47,8 @@ std::span<const double> VertexWeights::weigh(std::span<const Point> ring, Weight
   return weights_;
 }
 
-/// The uppermost vertex and the one farthest from it: a choice that any starting point and
-/// direction agree on.
+/// The uppermost vertex and the one farthest from it: a choice that any starting point and direction
+/// agree on.
 VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) const {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -102,11 +68,10 @@ VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) co
   return anchors;
 }
 
-// Binary recursive partitioning, iteratively. Of equally distant vertices the one nearest the
-// middle of its piece splits it: a comb of equal teeth is halved and not peeled tooth by tooth.
+// Binary recursive partitioning, iteratively.
 void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_parents) {
   const std::size_t n = ring.size();
-  const auto wrapped = [n](std::size_t i) { return i < n ? i : i - n; };
+  farthest_.assign(ring);
   const Anchors anchors = anchors_of(ring);
   const std::size_t a = anchors.first;
   const std::size_t b = anchors.second;
@@ -118,27 +83,14 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
     const Piece piece = pieces_.back();
     pieces_.pop_back();
     if (piece.end - piece.begin < 2) continue;
-    const DistanceFrom distance(ring[wrapped(piece.begin)], ring[wrapped(piece.end)]);
-    double farthest = -1;
-    std::size_t split = piece.begin + 1;
-    const auto off_middle = [&](std::size_t i) { return std::max(i - piece.begin, piece.end - i); };
-    for (std::size_t i = piece.begin + 1; i < piece.end; ++i) {
-      const double squared = distance.squared(ring[wrapped(i)]);
-      if (squared < farthest) continue;
-      if (squared > farthest || off_middle(i) < off_middle(split) ||
-          (off_middle(i) == off_middle(split) &&
-           is_above(ring[wrapped(i)], ring[wrapped(split)]))) {
-        farthest = squared;
-        split = i;
-      }
-    }
-    const std::size_t v = wrapped(split);
-    double weight = std::sqrt(farthest);
+    const FarthestVertex::Found split = farthest_.find(piece.begin, piece.end);
+    const std::size_t v = split.vertex < n ? split.vertex : split.vertex - n;
+    double weight = std::sqrt(split.squared);
     if (!raise_parents && piece.parent != kNone) weight = std::min(weight, weights_[piece.parent]);
     weights_[v] = weight;
     if (raise_parents) splits_.emplace_back(v, piece.parent);
-    pieces_.push_back({piece.begin, split, v});
-    pieces_.push_back({split, piece.end, v});
+    pieces_.push_back({piece.begin, split.vertex, v});
+    pieces_.push_back({split.vertex, piece.end, v});
   }
   for (std::size_t i = splits_.size(); i > 0; --i) {
     const auto [v, parent] = splits_[i - 1];

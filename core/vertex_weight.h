@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/farthest_vertex.h"
 #include "core/grid.h"
 
 namespace trapeze {
@@ -55,6 +56,7 @@ class VertexWeights {
     std::size_t end;
     std::size_t parent;
   };
+  FarthestVertex farthest_;
   std::vector<double> weights_;
   std::vector<Piece> pieces_;
   std::vector<std::pair<std::size_t, std::size_t>> splits_;  // vertex and its parent, parents first
