@@ -57,12 +57,21 @@ function pixels_of_colour(page, name, [r, g, b]) {
   }, [name, r, g, b]);
 }
 
+/** Waits until the map has come to rest: the address has not changed for a while. */
+async function map_at_rest(page) {
+  for (let last = null, hash = await hash_of(page); hash !== last; hash = await hash_of(page)) {
+    last = hash;
+    await page.waitForTimeout(600);
+  }
+}
+
 /** The other tiles that are shown after `action`. */
 async function new_tiles_after(page, action) {
   const before_it = new Set(await shown_tiles(page));
   const hash = await hash_of(page);
   await action();
   await page.waitForFunction((old) => location.hash !== old, hash);
+  await map_at_rest(page);
   await tiles_drawn(page);
   return (await shown_tiles(page)).filter((url) => !before_it.has(url));
 }
