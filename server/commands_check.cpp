@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "server/commands.h"
@@ -8,6 +9,16 @@
 
 namespace trapeze {
 namespace {
+
+/// Versions of trapezoids over all tolerances, and the dust that small polygons leave.
+void print_history(const Layer& layer, const LoadReport& report) {
+  const Layer::Size size = layer.size();
+  const double vertices = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
+  fmt::print("  trapezoids            {} versions, {:.2f} per vertex\n", size.trapezoids,
+             static_cast<double>(size.trapezoids) / vertices);
+  fmt::print("  dust                  {} motes, {:.2f} per vertex\n", size.motes,
+             static_cast<double>(size.motes) / vertices);
+}
 
 void print_memory(const Layer& layer, const LoadReport& report) {
   const std::size_t graphs = layer.memory();
@@ -35,7 +46,7 @@ void print_report(const LoadReport& report, const Layer& layer) {
   fmt::print("  rings                 {} ({} collapsed)\n", report.rings, report.collapsed_rings);
   fmt::print("  vertices              {} ({} in the source)\n", report.vertices,
              report.source_vertices);
-  fmt::print("  trapezoids            {}\n", layer.mesh().trapezoids.size());
+  print_history(layer, report);
   print_memory(layer, report);
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
              report.read_seconds);
