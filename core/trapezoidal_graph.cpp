@@ -6,33 +6,66 @@
 namespace trapeze {
 namespace {
 
-constexpr LinkKind pseudo(Direction d) {
-  return d == kUp ? LinkKind::pseudo_division : LinkKind::pseudo_join;
+/// The parts of the plane, inside and outside: nodes that can be reached from each other by links.
+struct Parts {
+  struct Part {
+    NodeId start;           // the one with the topmost top
+    NodeId end;             // the one with the bottommost bottom
+    bool at_frame = false;  // the outside around everything
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> part_of;  // by node
+};
+
+Parts parts_of(const TrapezoidalGraph& g) {
+  constexpr std::uint32_t kNoPart = 0xffffffff;
+  Parts found;
+  found.part_of.assign(g.nodes().size(), kNoPart);
+  std::vector<NodeId> reached;
+  for (std::size_t i = 0; i < g.nodes().size(); ++i) {
+    if (!g.node(NodeId(i)).is_alive() || found.part_of[i] != kNoPart) continue;
+    const auto number = static_cast<std::uint32_t>(found.parts.size());
+    Parts::Part part{NodeId(i), NodeId(i)};
+    const auto reach = [&](NodeId n) {
+      if (found.part_of[n.value] != kNoPart) return;
+      found.part_of[n.value] = number;
+      reached.push_back(n);
+    };
+    reach(NodeId(i));
+    while (!reached.empty()) {
+      const NodeId n = reached.back();
+      reached.pop_back();
+      const Node& node = g.node(n);
+      if (node.end[kUp] < g.node(part.start).end[kUp]) part.start = n;
+      if (node.end[kDown] > g.node(part.end).end[kDown]) part.end = n;
+      part.at_frame = part.at_frame || g.is_frame(node.edge[kLeft]);
+      for (const auto& links : node.link) {
+        for (const NodeId next : links) {
+          if (!next.is_none()) reach(next);
+        }
+      }
+    }
+    found.parts.push_back(part);
+  }
+  return found;
 }
 
-/// Follows outside nodes from the tip of an island in direction `d` to the end of the hole around
-/// it, and returns the inside node beyond; none if the outside is not a hole but reaches the frame.
-NodeId beyond_hole(const TrapezoidalGraph& g, NodeId tip, Direction d) {
-  // The outside node left of the island's leftmost edge at its tip.
-  NodeId n = g.edge(g.node(tip).edge[kLeft]).extreme[kLeft][d];
-  for (;;) {
-    const Node& node = g.node(n);
-    if (g.is_frame(node.edge[kLeft]) || g.is_frame(node.edge[kRight])) return NodeId();
-    const auto next = g.neighbours(n, d);
-    if (next.count == 0) break;
-    n = next.node[0];
-  }
-  // n is a tip of the hole: its edges meet, and left of them is the inside, which goes on beyond.
-  const NodeId beside = g.edge(g.node(n).edge[kLeft]).extreme[kLeft][d];
+/// The inside node above (d: up) or below the tip of a hole; where the hole touches the boundary
+/// there, the one beside it.
+NodeId beyond_tip(const TrapezoidalGraph& g, NodeId tip, Direction d) {
+  const NodeId beside = g.edge(g.node(tip).edge[kLeft]).extreme[kLeft][d];
   const NodeId beyond = g.node(beside).link[kLeft][d];
   return beyond.is_none() ? beside : beyond;
 }
 
-double x_at(const TrapezoidalGraph& g, EdgeId e, double y) {
+/// Where an edge meets the level of a vertex that it spans. A level edge is passed through at once in
+/// sweep order: it is met at the vertex itself.
+double x_at(const TrapezoidalGraph& g, EdgeId e, VertexId level) {
   const Point a = g.point(g.edge(e).end[kUp]);
   const Point b = g.point(g.edge(e).end[kDown]);
-  if (a.y == b.y) return a.x;
-  return a.x + (static_cast<double>(b.x) - a.x) * ((y - a.y) / (static_cast<double>(b.y) - a.y));
+  const Point p = g.point(level);
+  if (a.y == b.y) return p.x;
+  return a.x + (static_cast<double>(b.x) - a.x) * ((static_cast<double>(p.y) - a.y) / (static_cast<double>(b.y) - a.y));
 }
 
 }  // namespace
@@ -64,7 +97,7 @@ std::vector<Link> TrapezoidalGraph::links() const {
     const Neighbours below = neighbours(n, kDown);
     for (int i = 0; i < below.count; ++i) {
       const NodeId lower = below.node[static_cast<std::size_t>(i)];
-      const LinkKind kind = below.count == 2                    ? LinkKind::division
+      const LinkKind kind = below.count == 2                     ? LinkKind::division
                             : neighbours(lower, kUp).count == 2 ? LinkKind::join
                                                                 : LinkKind::connection;
       found.push_back({n, lower, kind});
@@ -75,36 +108,16 @@ std::vector<Link> TrapezoidalGraph::links() const {
 }
 
 std::vector<Link> TrapezoidalGraph::pseudo_links() const {
-  // Connected parts of the inside; each but those at the outermost level hangs in a hole.
-  const std::vector<NodeId> inside = inside_nodes();
-  std::vector<bool> seen(nodes_.size(), false);
+  const Parts all = parts_of(*this);
   std::vector<Link> found;
-  std::vector<NodeId> part;
-  for (const NodeId first : inside) {
-    if (seen[first.value]) continue;
-    part.assign(1, first);
-    seen[first.value] = true;
-    NodeId start = first;
-    NodeId end = first;
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const NodeId n = part[i];
-      if (nodes_[n].end[kUp] < nodes_[start].end[kUp]) start = n;
-      if (nodes_[n].end[kDown] > nodes_[end].end[kDown]) end = n;
-      for (const Direction d : {kUp, kDown}) {
-        const Neighbours next = neighbours(n, d);
-        for (int k = 0; k < next.count; ++k) {
-          const NodeId m = next.node[static_cast<std::size_t>(k)];
-          if (!seen[m.value]) {
-            seen[m.value] = true;
-            part.push_back(m);
-          }
-        }
-      }
-    }
-    const NodeId above = beyond_hole(*this, start, kUp);
-    const NodeId below = beyond_hole(*this, end, kDown);
-    if (!above.is_none()) found.push_back({above, start, pseudo(kUp)});
-    if (!below.is_none()) found.push_back({end, below, pseudo(kDown)});
+  for (const Parts::Part& part : all.parts) {
+    if (!is_inside(part.start)) continue;
+    // What is left of the topmost vertex of an inside part is what surrounds it.
+    const NodeId beside = edges_[nodes_[part.start].edge[kLeft]].extreme[kLeft][kUp];
+    const Parts::Part& around = all.parts[all.part_of[beside.value]];
+    if (around.at_frame) continue;
+    found.push_back({beyond_tip(*this, around.start, kUp), part.start, LinkKind::pseudo_division});
+    found.push_back({part.end, beyond_tip(*this, around.end, kDown), LinkKind::pseudo_join});
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -113,7 +126,7 @@ std::vector<Link> TrapezoidalGraph::pseudo_links() const {
 Connectedness TrapezoidalGraph::connectedness(NodeId n) const {
   const bool up = neighbours(n, kUp).count > 0;
   const bool down = neighbours(n, kDown).count > 0;
-  return up && down   ? Connectedness::two_sided
+  return up && down ? Connectedness::two_sided
          : up || down ? Connectedness::one_sided
                       : Connectedness::isolated;
 }
@@ -170,8 +183,7 @@ Int128 TrapezoidalGraph::doubled_area() const {
       const Point l = vertices_[edges_[e].end[kDown]];
       const Int128 dx = std::int64_t{l.x} - u.x;
       const Int128 dy = std::int64_t{l.y} - u.y;
-      const Int128 piece =
-          (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
+      const Int128 piece = (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
       numerator[e.value] += side == kRight ? piece : -piece;
     }
   }
@@ -190,12 +202,11 @@ std::size_t TrapezoidalGraph::memory() const {
          nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(Corner);
 }
 
-std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph,
-                                   const std::vector<NodeId>& chain) {
+std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vector<NodeId>& chain) {
   std::vector<StripPoint> strip;
   const auto add_level = [&](const Node& node, Direction d) {
     const double y = graph.point(node.end[d]).y;
-    for (const Side side : {kLeft, kRight}) strip.push_back({x_at(graph, node.edge[side], y), y});
+    for (const Side side : {kLeft, kRight}) strip.push_back({x_at(graph, node.edge[side], node.end[d]), y});
   };
   if (chain.empty()) return strip;
   add_level(graph.node(chain.front()), kUp);
