@@ -79,7 +79,7 @@ FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   Search search{SegmentDistance(at(begin), at(end)), begin, end, {begin + 1, -1}};
   if (end - begin <= kFew || looked_at_ < kPatience * ring_.size()) {
     looked_at_ += end - begin;
-    for (std::size_t i = begin + 1; i < end; ++i) consider(i, search);
+    look_at_all(begin + 1, end, search);
     return search.best;
   }
   if (!has_tree_) build_tree();
@@ -89,16 +89,21 @@ FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   return search.best;
 }
 
-void FarthestVertex::consider(std::size_t i, Search& search) const {
-  const double squared = search.distance.squared(at(i));
+/// The vertices [begin, end) of the piece.
+void FarthestVertex::look_at_all(std::size_t begin, std::size_t end, Search& search) const {
   Found& best = search.best;
-  if (squared < best.squared) return;
-  if (squared == best.squared) {
-    const std::size_t off = search.off_middle(i);
-    const std::size_t best_off = search.off_middle(best.vertex);
-    if (off > best_off || (off == best_off && !is_above(at(i), at(best.vertex)))) return;
+  const std::size_t n = ring_.size();
+  for (std::size_t i = begin; i < end; ++i) {
+    const double squared = search.distance.squared(ring_[i < n ? i : i - n]);
+    if (squared < best.squared) continue;
+    if (squared > best.squared || wins_tie(i, search)) best = {i, squared};
   }
-  best = {i, squared};
+}
+
+bool FarthestVertex::wins_tie(std::size_t i, const Search& search) const {
+  const std::size_t off = search.off_middle(i);
+  const std::size_t best_off = search.off_middle(search.best.vertex);
+  return off != best_off ? off < best_off : is_above(at(i), at(search.best.vertex));
 }
 
 void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_t lap,
@@ -129,9 +134,8 @@ void FarthestVertex::descend(std::size_t row, std::size_t index, double bound,
   if (bound < search.best.squared || bound < 0) return;
   if (row == 0) {
     const std::size_t end = std::min((index + 1) * kLeaf, search.range_end);
-    for (std::size_t i = std::max(index * kLeaf, search.range_begin); i < end; ++i) {
-      consider(i + search.lap, search);
-    }
+    const std::size_t begin = std::max(index * kLeaf, search.range_begin);
+    look_at_all(begin + search.lap, end + search.lap, search);
     return;
   }
   const std::size_t left = 2 * index;

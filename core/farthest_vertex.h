@@ -87,7 +87,8 @@ class FarthestVertex {
   Point at(std::size_t i) const { return ring_[i < ring_.size() ? i : i - ring_.size()]; }
   void build_tree();
   void append_hull(Row& row);
-  void consider(std::size_t i, Search& search) const;
+  void look_at_all(std::size_t begin, std::size_t end, Search& search) const;
+  bool wins_tie(std::size_t i, const Search& search) const;
   void search_range(std::size_t begin, std::size_t end, std::size_t lap, Search& search) const;
   void descend(std::size_t row, std::size_t index, double bound, Search& search) const;
   double bound_of(std::size_t row, std::size_t index, const Search& search) const;
