@@ -154,7 +154,7 @@ Polygons buildings() {
 
 void add_families() {
   for (const PolygonFamily& family : kPolygonFamilies) {
-    for (std::size_t n = 1000; n <= family.largest; n *= 10) {
+    for (std::size_t n = 1000; n <= 1000000; n *= 10) {
       const std::string name = std::string(family.name) + "/" + std::to_string(n);
       add_stages(name, [&family, n] { return Polygons{family.make(n)}; });
     }

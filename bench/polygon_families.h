@@ -229,7 +229,6 @@ inline Rings battlement(std::size_t vertices) {
 struct PolygonFamily {
   std::string_view name;
   Rings (*make)(std::size_t vertices);
-  std::size_t largest = 1000000;  // for benchmarks that are to end today
 };
 
 constexpr std::array<PolygonFamily, 9> kPolygonFamilies{{
@@ -237,7 +236,7 @@ constexpr std::array<PolygonFamily, 9> kPolygonFamilies{{
     {"long_edges", long_edges},
     {"comb", comb},
     {"sorted_comb", sorted_comb},
-    {"spiral", spiral, 100000},
+    {"spiral", spiral},
     {"grid_of_holes", grid_of_holes},
     {"zigzag", zigzag},
     {"staircase", staircase},

@@ -1,6 +1,7 @@
 #include "core/farthest_vertex.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trapeze {
 
@@ -19,28 +20,69 @@ struct FarthestVertex::Search {
 
 void FarthestVertex::assign(std::span<const Point> ring) {
   ring_ = ring;
-  if (ring.size() <= kFew) return;
-  std::size_t count = (ring.size() + kLeaf - 1) / kLeaf;
-  std::size_t row = 0;
-  for (;; ++row) {
-    if (rows_.size() == row) rows_.emplace_back();
-    rows_[row].assign(count, Box{});
-    if (count == 1) break;
-    count = (count + 1) / 2;
-  }
-  rows_.resize(row + 1);
-  for (std::size_t i = 0; i < ring.size(); ++i) rows_[0][i / kLeaf].include(ring[i]);
-  for (std::size_t r = 1; r < rows_.size(); ++r) {
-    for (std::size_t i = 0; i < rows_[r - 1].size(); ++i) rows_[r][i / 2].include(rows_[r - 1][i]);
-  }
+  looked_at_ = 0;
+  has_tree_ = false;
 }
 
-FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) const {
+void FarthestVertex::build_tree() {
+  const std::span<const Point> ring = ring_;
+  std::size_t row = 0;
+  for (std::size_t count = (ring.size() + kLeaf - 1) / kLeaf;; count = (count + 1) / 2, ++row) {
+    if (rows_.size() == row) rows_.emplace_back();
+    Row& hulls = rows_[row];
+    hulls.corners.clear();
+    hulls.ends.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      points_.clear();
+      const auto take = [this](std::span<const Point> more) {
+        points_.insert(points_.end(), more.begin(), more.end());
+      };
+      if (row == 0) {
+        take(ring.subspan(i * kLeaf, std::min(kLeaf, ring.size() - i * kLeaf)));
+      } else {
+        take(rows_[row - 1][2 * i]);
+        if (2 * i + 1 < rows_[row - 1].size()) take(rows_[row - 1][2 * i + 1]);
+      }
+      append_hull(hulls);
+    }
+    if (count == 1) break;
+  }
+  rows_.resize(row + 1);
+  has_tree_ = true;
+}
+
+/// The hull of points_, which is put in order: its right side from top to bottom, then its left
+/// side from bottom to top (Andrew's monotone chain).
+void FarthestVertex::append_hull(Row& row) {
+  std::sort(points_.begin(), points_.end(), is_above);
+  points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+  std::vector<Point>& hull = row.corners;
+  const auto add_side = [&hull](auto begin, auto end) {
+    const std::size_t first = hull.size();
+    for (auto p = begin; p != end; ++p) {
+      while (hull.size() >= first + 2 && orientation(hull[hull.size() - 2], hull.back(), *p) <= 0)
+        hull.pop_back();
+      hull.push_back(*p);
+    }
+    hull.pop_back();  // the other side begins with it
+  };
+  if (points_.size() == 1) {
+    hull.push_back(points_.front());
+  } else {
+    add_side(points_.begin(), points_.end());
+    add_side(points_.rbegin(), points_.rend());
+  }
+  row.ends.push_back(static_cast<std::uint32_t>(hull.size()));
+}
+
+FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   Search search{SegmentDistance(at(begin), at(end)), begin, end, {begin + 1, -1}};
-  if (end - begin <= kFew) {
+  if (end - begin <= kFew || looked_at_ < kPatience * ring_.size()) {
+    looked_at_ += end - begin;
     for (std::size_t i = begin + 1; i < end; ++i) consider(i, search);
     return search.best;
   }
+  if (!has_tree_) build_tree();
   const std::size_t n = ring_.size();
   search_range(std::min(begin + 1, n), std::min(end, n), 0, search);
   search_range(std::max(begin + 1, n) - n, std::max(end, n) - n, n, search);
@@ -69,21 +111,17 @@ void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_
   descend(top, 0, bound_of(top, 0, search), search);
 }
 
-/// No vertex in the box is farther away, not even by rounding; negative if none is asked for. The
-/// distance is convex, so it is greatest at a corner, and it grows by a cell at least where the box
-/// does: that outweighs all rounding.
+/// No vertex in the hull is farther away, not even by rounding; negative if none is asked for. The
+/// distance is convex, so it is greatest at a corner.
 double FarthestVertex::bound_of(std::size_t row, std::size_t index, const Search& search) const {
   const std::size_t vertices = kLeaf << row;
   if (index * vertices >= search.range_end || (index + 1) * vertices <= search.range_begin)
     return -1;
-  const Box& b = rows_[row][index];
   double bound = 0;
-  for (const std::int32_t x : {b.min_x - 1, b.max_x + 1}) {
-    for (const std::int32_t y : {b.min_y - 1, b.max_y + 1}) {
-      bound = std::max(bound, search.distance.squared({x, y}));
-    }
-  }
-  return bound;
+  for (const Point p : rows_[row][index]) bound = std::max(bound, search.distance.squared(p));
+  // What rounding may add to a distance, twice over.
+  constexpr double kRounding = 4e-6;
+  return bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding;
 }
 
 void FarthestVertex::descend(std::size_t row, std::size_t index, double bound,

@@ -2,12 +2,14 @@
 // partitioning (paper, section 3.2) asks again and again.
 //
 // Looking at all vertices of every piece is quadratic where the farthest one always is next to an
-// end: a comb with each tooth longer than the one before, a spiral. So a tree of boxes over the
-// vertices is kept, and what lies in a box that is nowhere far enough is not looked at. The answer
-// is the same as that of looking at all, bit for bit.
+// end: a comb with each tooth longer than the one before, a spiral, a long straight staircase. So a
+// tree of convex hulls over the vertices is kept: no vertex is farther away than the farthest
+// corner of a hull around it, and what lies in a hull that is nowhere far enough is not looked at.
+// The answer is the same as that of looking at all, bit for bit.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -60,21 +62,41 @@ class FarthestVertex {
   /// indices run past the end of the ring and are taken modulo its length. Of equally distant ones
   /// it is the one nearest the middle of the piece, then the uppermost: a comb of equal teeth is
   /// halved and not peeled tooth by tooth. begin + 1 < end <= begin + length of the ring.
-  Found find(std::size_t begin, std::size_t end) const;
+  Found find(std::size_t begin, std::size_t end);
 
  private:
-  static constexpr std::size_t kLeaf = 16;        // vertices in a box of the lowest row
-  static constexpr std::size_t kFew = 8 * kLeaf;  // not worth a tree
+  static constexpr std::size_t kLeaf = 64;  // vertices in a hull of the lowest row
+  static constexpr std::size_t kFew = 512;  // not worth a tree
+  // How often each vertex of a ring is looked at before a tree is worth it: more than is usual even
+  // for a ring of millions, whose pieces come in halves more or less.
+  static constexpr std::size_t kPatience = 48;
+
+  /// Convex hulls one after another.
+  struct Row {
+    std::vector<Point> corners;
+    std::vector<std::uint32_t> ends;
+
+    std::size_t size() const { return ends.size(); }
+    std::span<const Point> operator[](std::size_t i) const {
+      const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+      return std::span<const Point>(corners).subspan(begin, ends[i] - begin);
+    }
+  };
 
   struct Search;
   Point at(std::size_t i) const { return ring_[i < ring_.size() ? i : i - ring_.size()]; }
+  void build_tree();
+  void append_hull(Row& row);
   void consider(std::size_t i, Search& search) const;
   void search_range(std::size_t begin, std::size_t end, std::size_t lap, Search& search) const;
   void descend(std::size_t row, std::size_t index, double bound, Search& search) const;
   double bound_of(std::size_t row, std::size_t index, const Search& search) const;
 
   std::span<const Point> ring_;
-  std::vector<std::vector<Box>> rows_;  // [0]: over vertices, kLeaf each; each next over pairs
+  std::size_t looked_at_ = 0;  // vertices, since the ring was assigned
+  bool has_tree_ = false;
+  std::vector<Row> rows_;  // [0]: around kLeaf vertices each; each next around pairs
+  std::vector<Point> points_;
 };
 
 }  // namespace trapeze

@@ -33,7 +33,9 @@ void expect_same_on_random_pieces(const std::vector<Point>& ring, unsigned seed)
   FarthestVertex farthest;
   farthest.assign(ring);
   std::mt19937 random(seed);
-  for (int piece = 0; piece < 100; ++piece) {
+  // Enough of them for the tree to come into use: in the first hundred or so all vertices are
+  // looked at.
+  for (int piece = 0; piece < 300; ++piece) {
     const std::size_t begin = random() % ring.size();
     const std::size_t end = begin + 2 + random() % (ring.size() - 1);
     const auto found = farthest.find(begin, end);
@@ -75,13 +77,15 @@ TEST(FarthestVertex, OfEqualTeethTheOneInTheMiddleIsChosen) {
 
 TEST(FarthestVertex, ForgetsTheRingBefore) {
   FarthestVertex farthest;
-  const Rings large = wiggly_star(5000);
-  farthest.assign(large[0]);
-  const Rings smaller = comb(500);
-  farthest.assign(smaller[0]);
-  const auto found = farthest.find(3, 450);
-  const auto wanted = by_looking_at_all({smaller[0].begin(), smaller[0].end()}, 3, 450);
-  EXPECT_EQ(found.vertex, wanted.vertex);
+  for (const Rings& rings : {wiggly_star(5000), comb(2000), spiral(3000)}) {
+    farthest.assign(rings[0]);
+    const auto wanted = by_looking_at_all({rings[0].begin(), rings[0].end()}, 3, 1950);
+    for (int again = 0; again < 200; ++again) {
+      const auto found = farthest.find(3, 1950);
+      ASSERT_EQ(found.vertex, wanted.vertex);
+      ASSERT_EQ(found.squared, wanted.squared);
+    }
+  }
 }
 
 TEST(SegmentDistance, IsToTheSegmentAndNotToItsLine) {
