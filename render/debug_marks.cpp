@@ -136,8 +136,6 @@ constexpr std::array<std::uint8_t, kGlyphHeight> glyph(char c) {
       return {1, 1, 2, 4, 4};
     case 'x':
       return {0, 5, 2, 5, 0};
-    case '@':
-      return {7, 5, 7, 4, 7};
     default:
       return {0, 0, 0, 0, 0};
   }

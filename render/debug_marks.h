@@ -24,7 +24,7 @@ void mark_vertices(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
                    Rgba colour, Picture& picture);
 
 /// Draws a line along the border of the picture, and the text in its upper left corner: digits,
-/// slashes, '@', 'x' and spaces, five pixels high.
+/// slashes, 'x' and spaces, five pixels high.
 void mark_border(std::string_view text, Rgba colour, Picture& picture);
 
 }  // namespace trapeze

@@ -123,7 +123,7 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
   }
   if (!plan.debug.tile) return;
   std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);
-  if (plan.scale > 1) text += fmt::format("@{}x", plan.scale);
+  if (plan.scale > 1) text += fmt::format(" {}x", plan.scale);
   mark_border(text, kBorderColour, picture);
 }
 

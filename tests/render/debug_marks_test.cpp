@@ -227,7 +227,7 @@ TEST(DebugMarksTest, TheTextIsReadableOnAnyGround) {
 }
 
 TEST(DebugMarksTest, EveryCharacterOfATilesNumbersLooksDifferent) {
-  const std::string characters = "0123456789/@x ";
+  const std::string characters = "0123456789/x ";
   std::set<Rows> drawings;
   for (const char c : characters) {
     Picture picture = white_picture(20, 20);
@@ -240,7 +240,7 @@ TEST(DebugMarksTest, EveryCharacterOfATilesNumbersLooksDifferent) {
 TEST(DebugMarksTest, ATextLongerThanThePictureIsCutOff) {
   for (const int size : {1, 2, 7, 30}) {
     Picture picture = white_picture(size, size);
-    mark_border("22/4194303/4194303@4x", kBlack, picture);
+    mark_border("22/4194303/4194303 4x", kBlack, picture);
     EXPECT_EQ(picture.pixels.size(),
               static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     EXPECT_EQ(picture.at(0, 0), kBlack);
