@@ -200,9 +200,10 @@ class GrowthReporter : public benchmark::ConsoleReporter {
 
   void Finalize() override {
     ConsoleReporter::Finalize();
-    // From 10^3 to 10^6 vertices log n doubles, and what fitted the cache does no more; anything
-    // that grows with n or its root grows by 30 and more.
-    constexpr double kAllowed = 5;
+    // From 10^3 to 10^6 vertices log n doubles, and each step through a tree of all edges costs up to
+    // ten times more once the tree has outgrown the cache. What grows with n grows by 500 beyond log n,
+    // what grows with its root by 16.
+    constexpr double kAllowed = 12;
     std::printf(
         "\nns per vertex at the smallest and the largest size; \"growth\" is beyond log n\n");
     for (const auto& [name, by_size] : figures_) {
