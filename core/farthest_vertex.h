@@ -21,12 +21,13 @@ namespace trapeze {
 /// so that results do not depend on the direction of the ring.
 class SegmentDistance {
  public:
-  SegmentDistance(Point a, Point b) : a_(is_above(a, b) ? a : b), b_(is_above(a, b) ? b : a) {
-    dx_ = static_cast<double>(b_.x) - a_.x;
-    dy_ = static_cast<double>(b_.y) - a_.y;
-    squared_length_ = dx_ * dx_ + dy_ * dy_;
-    inverse_ = squared_length_ > 0 ? 1 / squared_length_ : 0;
-  }
+  SegmentDistance(Point a, Point b)
+      : a_(is_above(a, b) ? a : b),
+        b_(is_above(a, b) ? b : a),
+        dx_(static_cast<double>(b_.x) - a_.x),
+        dy_(static_cast<double>(b_.y) - a_.y),
+        squared_length_(dx_ * dx_ + dy_ * dy_),
+        inverse_(squared_length_ > 0 ? 1 / squared_length_ : 0) {}
 
   /// In cells squared; off by less than a millionth of a cell in the distance.
   double squared(Point p) const {

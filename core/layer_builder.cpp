@@ -238,6 +238,7 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   auto layer = std::make_unique<Layer::Contents>();
   if (!builders.empty()) layer->options = builders.front().state_->options;
   std::vector<const Stock*> stocks;
+  stocks.reserve(builders.size());
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
   const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), *layer);
   for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);

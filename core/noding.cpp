@@ -41,7 +41,7 @@ class SegmentTree {
 
   std::size_t leaf_count() const { return segments_.empty() ? 0 : levels_.front().size(); }
   const Box& leaf_box(std::size_t leaf) const { return levels_.front()[leaf]; }
-  std::size_t leaf_begin(std::size_t leaf) const { return leaf * kFanout; }
+  static std::size_t leaf_begin(std::size_t leaf) { return leaf * kFanout; }
   std::size_t leaf_end(std::size_t leaf) const {
     return std::min((leaf + 1) * kFanout, segments_.size());
   }
@@ -175,11 +175,11 @@ std::vector<Point> hot_cells(const std::vector<Segment>& segments, const Segment
   // A leaf at a time: its segments are near each other and have the same neighbours.
   for (std::size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
     tree.query(tree.leaf_box(leaf), leaf, [&](std::size_t other) {
-      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+      for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
         const Box box = box_of(segments[i]);
         if (!box.intersects(tree.leaf_box(other))) continue;
-        for (std::size_t k = std::max(i + 1, tree.leaf_begin(other)); k < tree.leaf_end(other);
-             ++k) {
+        for (std::size_t k = std::max(i + 1, SegmentTree::leaf_begin(other));
+             k < tree.leaf_end(other); ++k) {
           if (box_of(segments[k]).intersects(box)) add_meetings(segments[i], segments[k], hot);
         }
       }
@@ -205,7 +205,7 @@ std::vector<Pass> find_passes(const std::vector<Segment>& segments, const Segmen
     // it.
     const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
     tree.query(around, 0, [&](std::size_t leaf) {
-      for (std::size_t i = tree.leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
+      for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
         if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
       }
     });
