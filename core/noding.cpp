@@ -185,10 +185,10 @@ std::vector<Point> hot_cells(const std::vector<Segment>& segments, const Segment
       }
     });
   }
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (cells == HotCells::crossings_and_vertices) {
-      hot.push_back(segments[i].first);
-      hot.push_back(segments[i].second);
+  if (cells == HotCells::crossings_and_vertices) {
+    for (const Segment& segment : segments) {
+      hot.push_back(segment.first);
+      hot.push_back(segment.second);
     }
   }
   std::sort(hot.begin(), hot.end(), is_above);
