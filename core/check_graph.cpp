@@ -220,18 +220,4 @@ std::vector<PlainTrapezoid> plain_trapezoids(const TrapezoidalGraph& g) {
   return found;
 }
 
-Rings rings_of(const TrapezoidalGraph& g) {
-  Rings rings;
-  std::vector<bool> seen(g.corners().size(), false);
-  for (std::size_t i = 0; i < g.corners().size(); ++i) {
-    if (!g.corner(CornerId(i)).is_alive() || seen[i]) continue;
-    for (CornerId c(i); !seen[c.value]; c = g.corner(c).next) {
-      seen[c.value] = true;
-      rings.points.push_back(g.point(g.corner(c).vertex));
-    }
-    rings.close_ring();
-  }
-  return rings;
-}
-
 }  // namespace trapeze

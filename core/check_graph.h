@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/rings.h"
 #include "core/trapezoidal_graph.h"
 
 namespace trapeze {
@@ -26,8 +25,5 @@ struct PlainTrapezoid {
 /// All trapezoids of a graph in a canonical order: two graphs are the same map exactly if these are
 /// equal (the map of a given set of rings is unique).
 std::vector<PlainTrapezoid> plain_trapezoids(const TrapezoidalGraph& graph);
-
-/// The loops of the boundary that are left, read from the corners.
-Rings rings_of(const TrapezoidalGraph& graph);
 
 }  // namespace trapeze

@@ -67,6 +67,7 @@ const Layer& Layer::without_topology_test() const {
     std::vector<LayerBuilder> builders;
     builders.push_back(std::move(builder));
     without_test_ = LayerBuilder::join(builders, FeatureTable());
+    has_without_test_ = true;
   });
   return *without_test_;
 }
@@ -89,7 +90,7 @@ Layer::Size Layer::size() const {
 
 std::size_t Layer::memory() const {
   const Contents& c = *contents_;
-  const std::size_t beside = without_test_ ? without_test_->memory() : 0;
+  const std::size_t beside = has_without_test_ ? without_test_->memory() : 0;
   return beside + c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
          c.trapezoids.capacity() * sizeof(MeshTrapezoid) +
          c.lifespans.capacity() * sizeof(Lifespan) +

@@ -3,6 +3,7 @@
 // Thread-safety: immutable to the eye; any number of threads may read.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -91,6 +92,7 @@ class Layer {
   std::unique_ptr<const Contents> contents_;
   mutable std::once_flag without_test_built_;
   mutable std::unique_ptr<const Layer> without_test_;
+  mutable std::atomic<bool> has_without_test_ = false;  // set after it, for those who do not wait
 };
 
 }  // namespace trapeze

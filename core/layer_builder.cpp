@@ -5,7 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "core/check_graph.h"
 #include "core/dust.h"
 #include "core/history.h"
 #include "core/layer_contents.h"
@@ -170,12 +169,8 @@ void append_mote(const Mote& mote, Layer::Contents& layer) {
   const std::int32_t y0 = cell(mote.y - height / 2);
   const std::int32_t x1 = cell(x0 + width);
   const std::int32_t y1 = cell(y0 + height);
-  const auto v = static_cast<std::uint32_t>(layer.vertices.size());
-  const auto e = static_cast<std::uint32_t>(layer.edges.size());
-  layer.vertices.insert(layer.vertices.end(), {{x0, y0}, {x0, y1}, {x1, y0}, {x1, y1}});
-  layer.edges.insert(layer.edges.end(), {{v, v + 1}, {v + 2, v + 3}});
-  layer.trapezoids.push_back(mote.area > 0 ? MeshTrapezoid{v, v + 3, e, e + 1}
-                                           : MeshTrapezoid{v, v + 3, e + 1, e});
+  append_box({x0, y0, x1, y1}, layer.vertices, layer.edges, layer.trapezoids);
+  if (mote.area < 0) std::swap(layer.trapezoids.back().left, layer.trapezoids.back().right);
   layer.lifespans.push_back(mote.lifespan);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/check_graph.h"
 #include "core/graph_builder.h"
 
 namespace trapeze {

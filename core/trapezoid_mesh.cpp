@@ -9,7 +9,8 @@ std::uint64_t new_mesh_id() {
   return ++last;
 }
 
-void BoxMesh::add(const Box& box) {
+void append_box(const Box& box, std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
+                std::vector<MeshTrapezoid>& trapezoids) {
   const auto v = static_cast<std::uint32_t>(vertices.size());
   const auto e = static_cast<std::uint32_t>(edges.size());
   vertices.insert(vertices.end(), {{box.min_x, box.min_y},

@@ -48,14 +48,9 @@ struct MeshView {
 /// An id that no mesh of this process has had; never 0. Thread-safe.
 std::uint64_t new_mesh_id();
 
-/// A mesh of rectangles, a trapezoid each.
-struct BoxMesh {
-  std::vector<Point> vertices;
-  std::vector<MeshEdge> edges;
-  std::vector<MeshTrapezoid> trapezoids;
-
-  void add(const Box& box);
-};
+/// Appends a rectangle to the arrays of a mesh: four vertices, two edges, one trapezoid.
+void append_box(const Box& box, std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
+                std::vector<MeshTrapezoid>& trapezoids);
 
 /// Trapezoids first, first + 1, ..., first + count - 1 of a mesh.
 struct TrapezoidRange {

@@ -214,4 +214,18 @@ std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vec
   return strip;
 }
 
+Rings rings_of(const TrapezoidalGraph& g) {
+  Rings rings;
+  std::vector<bool> seen(g.corners().size(), false);
+  for (std::size_t i = 0; i < g.corners().size(); ++i) {
+    if (!g.corner(CornerId(i)).is_alive() || seen[i]) continue;
+    for (CornerId c(i); !seen[c.value]; c = g.corner(c).next) {
+      seen[c.value] = true;
+      rings.points.push_back(g.point(g.corner(c).vertex));
+    }
+    rings.close_ring();
+  }
+  return rings;
+}
+
 }  // namespace trapeze

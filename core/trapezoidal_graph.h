@@ -26,6 +26,7 @@
 
 #include "core/grid.h"
 #include "core/ids.h"
+#include "core/rings.h"
 
 namespace trapeze {
 
@@ -166,6 +167,9 @@ struct StripPoint {
   double x = 0;
   double y = 0;
 };
+
+/// The loops of the boundary that are left, read from the corners.
+Rings rings_of(const TrapezoidalGraph& graph);
 
 /// A trapezoidal chain as a quad strip: left and right point of the top of the first node, then
 /// left and right point of the bottom of every node.

@@ -103,11 +103,15 @@ std::optional<PaintedTile> TilePainter::paint(const TilePlan& plan, Deadline dea
 /// Draws the ranges, and the places of small polygons widened to whole pixels. Their mesh is new
 /// for every picture; there are no more of them than pixels.
 void TilePainter::draw_with_places(const Layer& layer, const View& view, Coverage& out) {
-  BoxMesh boxes;
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
   const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
-  for (const Box& place : places_) boxes.add(widened(place, pixel));
-  const MeshView mesh{new_mesh_id(), boxes.vertices, boxes.edges, boxes.trapezoids};
-  const TrapezoidRange all{0, static_cast<std::uint32_t>(boxes.trapezoids.size())};
+  for (const Box& place : places_) {
+    append_box(widened(place, pixel), vertices, edges, trapezoids);
+  }
+  const MeshView mesh{new_mesh_id(), vertices, edges, trapezoids};
+  const TrapezoidRange all{0, static_cast<std::uint32_t>(trapezoids.size())};
   const std::array<MeshPart, 2> parts{MeshPart{layer.mesh(), ranges_}, MeshPart{mesh, {&all, 1}}};
   renderer_->draw(parts, view, out);
   renderer_->forget(mesh.id);
