@@ -46,15 +46,9 @@ Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
 }
 
 std::uint64_t order_key(const Box& box, Lifespan lifespan) {
-  const std::int64_t extent =
-      std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
-  // Two octaves of size to a class.
-  const auto size =
-      static_cast<std::uint64_t>(std::bit_width(static_cast<std::uint64_t>(extent)) / 2);
   const Point centre{static_cast<std::int32_t>((std::int64_t{box.min_x} + box.max_x) / 2),
                      static_cast<std::int32_t>((std::int64_t{box.min_y} + box.max_y) / 2)};
-  return (std::uint64_t{lifespan_class(lifespan.born)} << 45) |
-         (std::uint64_t{lifespan_class(lifespan.dies)} << 38) | (size << 32) | hilbert(centre);
+  return (std::uint64_t{lifespan_class(lifespan.dies)} << 32) | hilbert(centre);
 }
 
 MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,

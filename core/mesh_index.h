@@ -16,8 +16,10 @@ namespace trapeze {
 /// The smallest box around a trapezoid, rounded outwards to whole cells.
 Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid);
 
-/// Sorting by this key puts trapezoids that are drawn together next to each other: by classes of
-/// lifespan, then of size, then along a Hilbert curve.
+/// Sorting by this key puts trapezoids that are drawn together next to each other: by the octave of
+/// tolerance in which they die, then along a Hilbert curve. What lives long is large and sparse, so
+/// the octave stands for the size too; finer classes (of birth, of size) cost more in branches of
+/// the tree than they save.
 std::uint64_t order_key(const Box& box, Lifespan lifespan);
 
 /// Thread-safety: immutable, any number of threads may read.
