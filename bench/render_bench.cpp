@@ -175,7 +175,12 @@ void compose_layers(benchmark::State& state) {
   const Coverage upper = sample_coverage(700);
   const std::vector<FilledLayer> all{{&lower, {200, 30, 30, 255}}, {&upper, {30, 30, 200, 128}}};
   const std::span<const FilledLayer> layers(all.data(), static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(compose(layers, 256, 256));
+  Composer composer;
+  Picture picture;
+  for (auto _ : state) {
+    composer.compose(layers, 256, 256, kTransparent, picture);
+    benchmark::DoNotOptimize(picture.indices.data());
+  }
 }
 BENCHMARK(compose_layers)->ArgName("layers")->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
@@ -184,10 +189,12 @@ void encode(benchmark::State& state) {
   const Coverage other = sample_coverage(33);
   const std::vector<FilledLayer> all{{&coverage, {200, 30, 30, 255}}, {&other, {30, 30, 200, 128}}};
   const std::span<const FilledLayer> layers(all.data(), static_cast<std::size_t>(state.range(1)));
-  const Picture picture = compose(layers, 256, 256);
+  Picture picture;
+  Composer().compose(layers, 256, 256, kTransparent, picture);
+  PngEncoder encoder;
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const auto png = encode_png(picture);
+    const std::string png = encoder.encode(picture);
     bytes = png.size();
     benchmark::DoNotOptimize(png.data());
   }

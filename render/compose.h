@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,13 +29,29 @@ struct Picture {
 /// A class of polygons with the colour that fills them, its opacity included. Looks at memory of
 /// the caller.
 struct FilledLayer {
-  const Coverage* coverage = nullptr;
+  const Coverage* coverage = nullptr;  // null: every pixel is wholly covered
   Rgba fill;
 };
 
-/// Paints the layers, the first one lowest, over the background. All coverages are width x height.
-/// The picture is indexed if at most one layer shows at all, or if no more than 256 colours result.
-Picture compose(std::span<const FilledLayer> layers, int width, int height,
-                Rgba background = kTransparent);
+/// Paints pictures one after the other, in memory that it keeps.
+///
+/// Thread-safety: one thread at a time.
+class Composer {
+ public:
+  Composer();
+  ~Composer();
+  Composer(Composer&&) noexcept;
+  Composer& operator=(Composer&&) noexcept;
+
+  /// Paints the layers, the first one lowest, over the background. The picture becomes width x
+  /// height, both at least 1; so large are all coverages (std::invalid_argument if not). It is
+  /// indexed if no more than 256 colours result.
+  void compose(std::span<const FilledLayer> layers, int width, int height, Rgba background,
+               Picture& picture);
+
+ private:
+  class Canvas;
+  std::unique_ptr<Canvas> canvas_;
+};
 
 }  // namespace trapeze

@@ -2,20 +2,38 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <memory>
+#include <string>
+#include <string_view>
 
 #include "render/compose.h"
 
 namespace trapeze {
 
-/// Encodes an indexed picture with the smallest palette (1, 2, 4 or 8 bits a pixel, opacities in
-/// tRNS), any other as RGB if it is opaque and else as RGBA. No pixel changes, except that wholly
-/// transparent ones may lose their hidden colour. Fast rather than small: no row filters, lowest
-/// level of compression. Throws std::runtime_error if libpng fails.
-std::vector<std::uint8_t> encode_png(const Picture& picture);
+struct PngJob;
+
+/// Encodes pictures one after the other, in memory that it keeps.
+///
+/// An indexed picture gets the smallest palette (1, 2, 4 or 8 bits a pixel, opacities in tRNS), any
+/// other is RGB if it is opaque and else RGBA. No pixel changes, except that wholly transparent
+/// ones may lose their hidden colour. Rows are not filtered: flat colours make runs as they are.
+///
+/// Thread-safety: one thread at a time.
+class PngEncoder {
+ public:
+  PngEncoder();
+  ~PngEncoder();
+  PngEncoder(PngEncoder&&) noexcept;
+  PngEncoder& operator=(PngEncoder&&) noexcept;
+
+  /// Throws std::runtime_error if the picture has no pixels or libpng fails.
+  std::string encode(const Picture& picture);
+
+ private:
+  std::unique_ptr<PngJob> job_;
+};
 
 /// Decodes any PNG to a picture of colours. Throws std::runtime_error, saying why, if it cannot.
-Picture decode_png(std::span<const std::uint8_t> bytes);
+Picture decode_png(std::string_view bytes);
 
 }  // namespace trapeze

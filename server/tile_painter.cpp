@@ -86,16 +86,14 @@ std::optional<PaintedTile> TilePainter::paint(const TilePlan& plan, Deadline dea
     }
     filled.push_back({&coverage, paint.fill});
   }
-  Picture picture;
   {
     const Stopwatch stopwatch(tile.times.compose_ms);
-    picture = compose(filled, view.width, view.height, plan.background);
-    if (plan.debug.any()) mark(plan, view, picture);
+    composer_.compose(filled, view.width, view.height, plan.background, picture_);
+    if (plan.debug.any()) mark(plan, view, picture_);
   }
   {
     const Stopwatch stopwatch(tile.times.encode_ms);
-    const auto png = encode_png(picture);
-    tile.png.assign(png.begin(), png.end());
+    tile.png = encoder_.encode(picture_);
   }
   return tile;
 }

@@ -11,6 +11,7 @@
 
 #include "render/compose.h"
 #include "render/coverage.h"
+#include "render/png.h"
 #include "server/tile_plan.h"
 
 namespace trapeze {
@@ -44,8 +45,11 @@ class TilePainter {
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<CoverageRenderer> renderer_;
+  Composer composer_;
+  PngEncoder encoder_;
   // Kept from tile to tile only for their memory.
   std::vector<Coverage> coverages_;
+  Picture picture_;
   std::vector<TrapezoidRange> ranges_;
   std::vector<Box> places_;
 };

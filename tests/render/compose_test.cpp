@@ -11,6 +11,13 @@
 namespace trapeze {
 namespace {
 
+Picture compose(std::span<const FilledLayer> layers, int width, int height,
+                Rgba background = kTransparent) {
+  Picture picture;
+  Composer().compose(layers, width, height, background, picture);
+  return picture;
+}
+
 Coverage coverage_of(int width, int height, const std::vector<int>& levels) {
   Coverage coverage(width, height);
   for (int row = 0; row < height; ++row) {

@@ -4,16 +4,17 @@
 
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace trapeze {
 namespace {
 
 // As a viewer reads them from the header: bits a sample, and 3 palette, 2 RGB, 6 RGBA.
-int bits_of(const std::vector<std::uint8_t>& png) {
+int bits_of(const std::string& png) {
   return png.at(24);
 }
-int colour_type_of(const std::vector<std::uint8_t>& png) {
+int colour_type_of(const std::string& png) {
   return png.at(25);
 }
 
@@ -25,6 +26,12 @@ void expect_equal(const Picture& expected, const Picture& actual) {
       ASSERT_EQ(actual.at(column, row), expected.at(column, row)) << column << ", " << row;
     }
   }
+}
+
+Picture constant(int side, Rgba colour) {
+  Picture picture;
+  Composer().compose({}, side, side, colour, picture);
+  return picture;
 }
 
 Picture indexed(int width, int height, std::size_t colours, std::mt19937& random) {
@@ -52,7 +59,7 @@ TEST(PngTest, IndexedPicturesComeBackWithTheFewestBits) {
   for (const auto& [colours, bits] : cases) {
     for (const int width : {256, 255, 37}) {
       const Picture picture = indexed(width, 19, colours, random);
-      const auto png = encode_png(picture);
+      const auto png = PngEncoder().encode(picture);
       EXPECT_EQ(colour_type_of(png), 3);
       EXPECT_EQ(bits_of(png), bits) << colours;
       expect_equal(picture, decode_png(png));
@@ -63,7 +70,7 @@ TEST(PngTest, IndexedPicturesComeBackWithTheFewestBits) {
 TEST(PngTest, ColoursThatNoPixelHasAreNotStored) {
   Picture picture{2, 1, std::vector<Rgba>(256, Rgba{1, 2, 3, 255}), {200, 255}, {}};
   picture.palette[200] = {9, 8, 7, 6};
-  const auto png = encode_png(picture);
+  const auto png = PngEncoder().encode(picture);
   EXPECT_EQ(bits_of(png), 1);
   expect_equal(picture, decode_png(png));
 }
@@ -78,7 +85,7 @@ TEST(PngTest, ColourPicturesComeBackWithAndWithoutOpacity) {
       const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
       picture.pixels.push_back({byte(), byte(), byte(), is_opaque ? std::uint8_t{255} : byte()});
     }
-    const auto png = encode_png(picture);
+    const auto png = PngEncoder().encode(picture);
     EXPECT_EQ(colour_type_of(png), is_opaque ? 2 : 6);
     expect_equal(picture, decode_png(png));
   }
@@ -86,19 +93,31 @@ TEST(PngTest, ColourPicturesComeBackWithAndWithoutOpacity) {
 
 TEST(PngTest, AConstantTileIsTiny) {
   for (const Rgba colour : {kTransparent, Rgba{10, 20, 30, 255}}) {
-    EXPECT_LT(encode_png(compose({}, 256, 256, colour)).size(), 200u);
+    EXPECT_LT(PngEncoder().encode(constant(256, colour)).size(), 200u);
+  }
+}
+
+TEST(PngTest, OneEncoderKeepsPicturesApart) {
+  std::mt19937 random(5);
+  PngEncoder encoder;
+  for (const int width : {300, 20, 256}) {
+    const Picture indexed_picture = indexed(width, 40, 200, random);
+    expect_equal(indexed_picture, decode_png(encoder.encode(indexed_picture)));
+    Picture coloured{width, 3, {}, {}, {}};
+    coloured.pixels.assign(static_cast<std::size_t>(width) * 3, Rgba{1, 2, 3, 4});
+    expect_equal(coloured, decode_png(encoder.encode(coloured)));
+    EXPECT_EQ(encoder.encode(coloured), PngEncoder().encode(coloured));
   }
 }
 
 TEST(PngTest, RefusesWhatCannotBeEncoded) {
-  EXPECT_THROW(encode_png(Picture{}), std::runtime_error);
+  EXPECT_THROW(PngEncoder().encode(Picture{}), std::runtime_error);
 }
 
 TEST(PngTest, RefusesWhatIsNoPng) {
   EXPECT_THROW(decode_png({}), std::runtime_error);
-  const std::vector<std::uint8_t> text{'h', 'e', 'l', 'l', 'o', ' ', 'w', 'o', 'r', 'l', 'd'};
-  EXPECT_THROW(decode_png(text), std::runtime_error);
-  std::vector<std::uint8_t> cut = encode_png(compose({}, 64, 64, {1, 2, 3, 255}));
+  EXPECT_THROW(decode_png("hello world"), std::runtime_error);
+  std::string cut = PngEncoder().encode(constant(64, {1, 2, 3, 255}));
   cut.resize(cut.size() / 2);
   EXPECT_THROW(decode_png(cut), std::runtime_error);
 }

@@ -231,8 +231,7 @@ TEST(ProgramTest, RendersOneTileIntoAFile) {
   ASSERT_EQ(program.wait(), 0) << program.output();
   const std::string bytes = read_file(path);
   std::filesystem::remove(path);
-  const Picture picture =
-      decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  const Picture picture = decode_png(bytes);
   ASSERT_EQ(picture.width, 512);
   EXPECT_EQ(picture.at(10, 10), (Rgba{0, 0, 255, 255}));
   EXPECT_EQ(picture.at(140, 140), (Rgba{255, 0, 0, 255}));

@@ -22,8 +22,7 @@ constexpr Rgba kRed{255, 0, 0, 255};
 constexpr Rgba kBlueHalf{0, 0, 255, 128};
 
 Picture picture_of(const HttpResponse& response) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(response.body->data());
-  return decode_png({bytes, response.body->size()});
+  return decode_png(*response.body);
 }
 
 class SiteTest : public ::testing::Test {

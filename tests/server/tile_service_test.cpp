@@ -153,8 +153,7 @@ TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const TileAnswer answer = answers[i].get_future().get();
     ASSERT_EQ(answer.outcome, TileOutcome::drawn);
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(answer.png->data());
-    const Picture picture = decode_png({bytes, answer.png->size()});
+    const Picture picture = decode_png(*answer.png);
     EXPECT_EQ(picture.at(80, 80), (Rgba{static_cast<std::uint8_t>(i * 4), 0, 0, 255}));
   }
 }
