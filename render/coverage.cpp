@@ -1,7 +1,9 @@
 #include "render/coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace trapeze {
@@ -64,13 +66,30 @@ bool Coverage::is_all(std::uint8_t level) const {
                      [level](std::uint8_t p) { return p == level; });
 }
 
-// Written so that compilers turn it into vector instructions: it is run on every pixel.
-void to_levels(std::span<const float> sums, std::uint8_t* levels) {
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    float share = sums[i] > 0.0f ? sums[i] : 0.0f;
-    share = share < 1.0f ? share : 1.0f;
-    levels[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+namespace {
+
+std::uint8_t to_level(float sum) {
+  const float share = std::min(std::max(sum, 0.0f), 1.0f);
+  return static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+}
+
+}  // namespace
+
+// Looks at eight pixels at once: between the boundaries of polygons nothing changes.
+void sum_to_levels(std::span<const float> differences, std::uint8_t* levels) {
+  constexpr std::size_t kBlock = 8;
+  float sum = 0;
+  std::size_t i = 0;
+  for (; i + kBlock <= differences.size(); i += kBlock) {
+    std::array<std::uint64_t, kBlock / 2> pairs;
+    std::memcpy(pairs.data(), differences.data() + i, sizeof pairs);
+    if ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0) {
+      std::memset(levels + i, to_level(sum), kBlock);
+      continue;
+    }
+    for (std::size_t k = i; k < i + kBlock; ++k) levels[k] = to_level(sum += differences[k]);
   }
+  for (; i < differences.size(); ++i) levels[i] = to_level(sum += differences[i]);
 }
 
 }  // namespace trapeze

@@ -71,13 +71,21 @@ class Coverage {
   std::vector<std::uint8_t> pixels_;
 };
 
-/// The rounding at the end: sums of areas, 1 a whole pixel, to as many levels of coverage.
-void to_levels(std::span<const float> sums, std::uint8_t* levels);
+/// The end of a row: from differences of covered area between each pixel and the one west of it, 1
+/// a whole pixel, to as many levels of coverage, rounded once.
+void sum_to_levels(std::span<const float> differences, std::uint8_t* levels);
 
 /// Some trapezoids of one mesh; looks at memory of the caller. The ranges lie within the mesh.
 struct MeshPart {
   MeshView mesh;
   std::span<const TrapezoidRange> ranges;
+};
+
+/// A coverage to be drawn; looks at memory of the caller.
+struct CoverageTask {
+  std::span<const MeshPart> parts;  // drawn as if they were one mesh
+  View view;
+  Coverage* out = nullptr;  // is resized to the view
 };
 
 /// Draws coverages. All implementations agree within 2/255 in every pixel.
@@ -88,16 +96,25 @@ class CoverageRenderer {
  public:
   virtual ~CoverageRenderer() = default;
 
-  /// Draws all parts into one coverage, as if they were one mesh; `out` is resized to the view.
-  /// Throws std::invalid_argument for an impossible view and std::runtime_error if the device
-  /// fails (out of memory, context lost); `out` is then unspecified, the renderer stays usable.
-  virtual void draw(std::span<const MeshPart> parts, const View& view, Coverage& out) = 0;
+  /// Draws each task, with no regard to the others: what a coverage looks like does not depend on
+  /// the company in which it is drawn. Throws std::invalid_argument for an impossible view and
+  /// std::runtime_error if the device fails (out of memory, context lost); coverages are then
+  /// unspecified, the renderer stays usable.
+  virtual void draw(std::span<const CoverageTask> tasks) = 0;
+
+  void draw(std::span<const MeshPart> parts, const View& view, Coverage& out) {
+    const CoverageTask task{parts, view, &out};
+    draw(std::span<const CoverageTask>(&task, 1));
+  }
 
   void draw(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
             Coverage& out) {
     const MeshPart part{mesh, ranges};
     draw(std::span<const MeshPart>(&part, 1), view, out);
   }
+
+  /// Whether several tasks at once take less time than one after the other.
+  virtual bool gains_by_company() const { return false; }
 
   /// Lets go of whatever is kept for the mesh of that id (uploads). Call it when a mesh goes away.
   virtual void forget([[maybe_unused]] std::uint64_t mesh_id) {}

@@ -1,8 +1,12 @@
 #include "render/gl_mesh_store.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "core/mesh_index.h"
 
 namespace trapeze {
 namespace {
@@ -23,6 +27,15 @@ void write(const MeshView& mesh, const MeshTrapezoid& trapezoid, std::int32_t* o
     put_point(mesh.edges[side].upper);
     put_point(mesh.edges[side].lower);
   }
+}
+
+std::uint8_t size_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
+  const Box box = box_of(mesh, trapezoid);
+  if (box.min_y == box.max_y) return GlMeshStore::kNoSize;
+  const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
+  const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
+  return static_cast<std::uint8_t>(
+      std::bit_width(static_cast<std::uint64_t>(std::max(width, height))));
 }
 
 }  // namespace
@@ -52,14 +65,15 @@ GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshV
       first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
   const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
 
-  const ChunkPointer chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
+  const std::shared_ptr<Chunk> chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
     const std::lock_guard lock(graveyard->mutex);
-    graveyard->chunks.push_back(*dead);
+    graveyard->buffers.push_back(dead->buffer);
+    graveyard->textures.push_back(dead->texture);
     delete dead;
   });
-  auto& names = const_cast<Chunk&>(*chunk);  // nobody else has it yet
-  gl.GenBuffers(1, &names.buffer);
-  gl.BindBuffer(GL_TEXTURE_BUFFER, names.buffer);
+  chunk->sizes.reserve(trapezoids.size());
+  gl.GenBuffers(1, &chunk->buffer);
+  gl.BindBuffer(GL_TEXTURE_BUFFER, chunk->buffer);
   gl.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STATIC_DRAW);
   auto* integers = static_cast<std::int32_t*>(
       gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
@@ -73,15 +87,16 @@ GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshV
   }
   for (std::size_t i = 0; i < trapezoids.size(); ++i) {
     write(mesh, trapezoids[i], integers + i * kIntegersPerTrapezoid);
+    chunk->sizes.push_back(size_of(mesh, trapezoids[i]));
   }
-  const bool intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
-  gl.GenTextures(1, &names.texture);
-  gl.BindTexture(GL_TEXTURE_BUFFER, names.texture);
-  gl.TexBuffer(GL_TEXTURE_BUFFER, GL_RG32I, names.buffer);
+  const bool is_intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
+  gl.GenTextures(1, &chunk->texture);
+  gl.BindTexture(GL_TEXTURE_BUFFER, chunk->texture);
+  gl.TexBuffer(GL_TEXTURE_BUFFER, GL_RG32I, chunk->buffer);
   gl.BindBuffer(GL_TEXTURE_BUFFER, 0);
   // Other contexts of the group see what is finished here once they bind it.
   gl.Finish();
-  if (!intact || gl.GetError() != GL_NO_ERROR) {
+  if (!is_intact || gl.GetError() != GL_NO_ERROR) {
     throw std::runtime_error("uploading trapezoids to the GL device failed");
   }
   return chunk;
@@ -93,15 +108,15 @@ void GlMeshStore::forget(std::uint64_t mesh_id) {
 }
 
 void GlMeshStore::delete_forgotten(const GlFunctions& gl) {
-  std::vector<Chunk> dead;
+  std::vector<GLuint> buffers;
+  std::vector<GLuint> textures;
   {
     const std::lock_guard lock(graveyard_->mutex);
-    dead.swap(graveyard_->chunks);
+    buffers.swap(graveyard_->buffers);
+    textures.swap(graveyard_->textures);
   }
-  for (const Chunk& chunk : dead) {
-    gl.DeleteTextures(1, &chunk.texture);
-    gl.DeleteBuffers(1, &chunk.buffer);
-  }
+  gl.DeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
+  gl.DeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
 }
 
 }  // namespace trapeze

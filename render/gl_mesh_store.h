@@ -25,9 +25,13 @@ class GlMeshStore {
  public:
   static constexpr int kTexelsPerTrapezoid = 5;  // of two 32-bit integers each
 
+  /// What is never drawn, having no height, has this size.
+  static constexpr std::uint8_t kNoSize = 0xff;
+
   struct Chunk {
     GLuint buffer = 0;
-    GLuint texture = 0;  // a buffer texture, GL_RG32I
+    GLuint texture = 0;               // a buffer texture, GL_RG32I
+    std::vector<std::uint8_t> sizes;  // by trapezoid: bits of the longer side of its box, in cells
   };
   using ChunkPointer = std::shared_ptr<const Chunk>;
 
@@ -47,10 +51,11 @@ class GlMeshStore {
   void delete_forgotten(const GlFunctions& gl);
 
  private:
-  // Chunks that nobody holds any more, until a thread with a context comes by.
+  // Names of chunks that nobody holds any more, until a thread with a context comes by.
   struct Graveyard {
     std::mutex mutex;
-    std::vector<Chunk> chunks;
+    std::vector<GLuint> buffers;
+    std::vector<GLuint> textures;
   };
 
   ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;

@@ -1,152 +1,40 @@
 #include "render/gl_renderer.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "render/gl_shaders.h"
 
 namespace trapeze {
 namespace {
 
-// Vertices are four to a trapezoid, and a run of that many has 16-bit indices.
-constexpr std::uint32_t kQuadsPerRun = 16384;
-constexpr std::uint32_t kIndicesPerQuad = 6;
-constexpr std::uint32_t kVerticesPerQuad = 4;
+constexpr std::uint32_t kVerticesPerTrapezoid = 8;  // of sides
 
-// Coordinates named "local" are pixels counted from the corner of a whole pixel beside the
-// trapezoid, so that single precision is relative to the trapezoid and not to the picture.
-constexpr const char* kVertexShader = R"(#version 430 core
-layout(binding = 0) uniform isamplerBuffer trapezoids;
-uniform dvec2 origin;           // of the picture, in cells
-uniform double pixels_per_cell;
-uniform dvec2 size;             // of the picture, in pixels
+// Trapezoids that measure less are drawn as points: beyond it, a square has more pixels than the
+// strips along two sides are worth.
+constexpr double kPointPixels = 16;
+constexpr int kLargestPoint = 20;  // with neighbours, and cut to whole pixels
 
-// A side is the line through (x, y), going `slope` pixels east for each one south.
-flat out vec4 left_side;   // x, y, slope, and the trapezoid's top; local
-flat out vec4 right_side;  // x, y, slope, and the trapezoid's bottom; local
-flat out vec3 corner;      // where local coordinates begin, and the sign of the area
+// Pictures below this size on a side have no room for points.
+constexpr int kSmallestWithPoints = 32;
 
-const float kFarOff = 4096.0;  // pixels beyond the picture where a slanted quad is given up
-
-struct Side {
-  double x_top;
-  double x_bottom;
-  double slope;
-};
-
-Side cut(ivec2 upper, ivec2 lower, double top, double bottom) {
-  dvec2 from = dvec2(upper);
-  dvec2 along = dvec2(lower) - from;
-  double slope = along.x / along.y;
-  dvec2 start = (from - origin) * pixels_per_cell;
-  return Side(start.x + (top - start.y) * slope, start.x + (bottom - start.y) * slope, slope);
+// Heights of targets are rounded up to this many pictures, so that few different ones are needed.
+constexpr std::size_t kMostInPass = 64;
+std::size_t rounded_pictures(std::size_t count) {
+  if (count <= 4) return count;
+  const std::size_t step = std::bit_floor(count) / 4;
+  return (count + step - 1) / step * step;
 }
 
-// The same line seen from a point in the picture. A side that passes the picture is replaced by a
-// vertical line beyond its border, which covers the same pixels.
-vec3 anchored(Side side, double top, double bottom, dvec2 begin) {
-  double x = clamp(side.x_top, -1.0LF, size.x + 1.0LF);
-  double y = top;
-  double slope = side.slope;
-  if (x != side.x_top) {
-    double down = (x - side.x_top) / slope;
-    if (down >= 0.0LF && down <= bottom - top) {
-      y += down;
-    } else {
-      slope = 0.0LF;
-    }
-  }
-  return vec3(x - begin.x, y - begin.y, slope);
+// Trapezoids of at most this size, as the mesh store has it, are drawn as points.
+std::uint8_t largest_point_size(const View& view) {
+  if (std::min(view.width, view.height) < kSmallestWithPoints) return 0;
+  const double cells = std::max(1.0, kPointPixels * view.cells_per_pixel);
+  return static_cast<std::uint8_t>(std::floor(std::log2(cells)));
 }
-
-// The quad keeps half a pixel and half a row's slant away from the sides, so that it holds the
-// centre of every pixel touched; a little more makes up for the grid of the rasterizer. `outward`
-// is -1 for the left and 1 for the right side. Returns x where the quad begins and where it ends.
-// Towards a point of the trapezoid the sides of the quad may cross; in the middles of all rows,
-// where it counts, they have not crossed yet, and beyond nothing is covered.
-vec2 quad_side(Side side, double top, double bottom, double rows, float outward) {
-  vec2 x = vec2(side.x_top, side.x_bottom);
-  float widest = outward > 0.0 ? max(x.x, x.y) : min(x.x, x.y);
-  float width = float(size.x);
-  bool is_slanted = rows > 2.0LF && all(greaterThan(x, vec2(-kFarOff))) &&
-                    all(lessThan(x, vec2(width + kFarOff)));
-  if (!is_slanted) return vec2(clamp(widest + outward * 0.51, -1.0, width + 1.0));
-  float slope = float(side.slope);
-  float margin = 0.51 + 0.5 * abs(slope);
-  vec2 overhang = vec2(floor(top) - top, ceil(bottom) - bottom) * slope;
-  return x + overhang + outward * margin;
-}
-
-void main() {
-  int first = (gl_VertexID >> 2) * 5;
-  ivec2 levels = texelFetch(trapezoids, first).xy;
-  double top = max((double(levels.x) - origin.y) * pixels_per_cell, 0.0LF);
-  double bottom = min((double(levels.y) - origin.y) * pixels_per_cell, size.y);
-  gl_Position = vec4(-2.0, -2.0, 0.0, 1.0);
-  left_side = right_side = vec4(0.0);
-  corner = vec3(0.0);
-  if (top >= bottom) return;
-
-  Side left = cut(texelFetch(trapezoids, first + 1).xy, texelFetch(trapezoids, first + 2).xy,
-                  top, bottom);
-  Side right = cut(texelFetch(trapezoids, first + 3).xy, texelFetch(trapezoids, first + 4).xy,
-                   top, bottom);
-  // Where left and right have changed places, the area counts negative.
-  float sign = 1.0;
-  if (left.x_top + left.x_bottom > right.x_top + right.x_bottom) {
-    Side west = right;
-    right = left;
-    left = west;
-    sign = -1.0;
-  }
-  if (max(right.x_top, right.x_bottom) <= 0.0LF || min(left.x_top, left.x_bottom) >= size.x) return;
-
-  dvec2 begin = floor(dvec2(clamp(left.x_top, 0.0LF, size.x), top));
-  corner = vec3(begin, sign);
-  left_side = vec4(anchored(left, top, bottom, begin), top - begin.y);
-  right_side = vec4(anchored(right, top, bottom, begin), bottom - begin.y);
-
-  bool is_lower = (gl_VertexID & 2) != 0;
-  bool is_right = (gl_VertexID & 1) != 0;
-  double rows = ceil(bottom) - begin.y;
-  vec2 x = is_right ? quad_side(right, top, bottom, rows, 1.0)
-                    : quad_side(left, top, bottom, rows, -1.0);
-  vec2 position = vec2(is_lower ? x.y : x.x, is_lower ? ceil(bottom) : begin.y);
-  gl_Position = vec4(position / vec2(size) * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
-
-constexpr const char* kFragmentShader = R"(#version 430 core
-flat in vec4 left_side;
-flat in vec4 right_side;
-flat in vec3 corner;
-out float covered;
-
-// The mean of clamp(u, 0, 1) for u going evenly from `a` to `b`.
-float mean_clamped(float a, float b) {
-  float low = min(a, b);
-  float high = max(a, b);
-  float span = high - low;
-  // Below this the quotient loses more digits than the bend of the clamp is worth.
-  if (span < 1e-3) return clamp(0.5 * (low + high), 0.0, 1.0);
-  float from = clamp(low, 0.0, 1.0);
-  float to = clamp(high, 0.0, 1.0);
-  return (0.5 * (to - from) * (to + from) + max(high, 1.0) - max(low, 1.0)) / span;
-}
-
-// How much of the pixel's width lies left of the side, on average between two heights.
-float left_of(vec4 side, float pixel_x, float from_y, float to_y) {
-  return mean_clamped(side.x + (from_y - side.y) * side.z - pixel_x,
-                      side.x + (to_y - side.y) * side.z - pixel_x);
-}
-
-void main() {
-  vec2 pixel = gl_FragCoord.xy - 0.5 - corner.xy;
-  float from_y = max(pixel.y, left_side.w);
-  float to_y = min(pixel.y + 1.0, right_side.w);
-  float width = left_of(right_side, pixel.x, from_y, to_y) -
-                left_of(left_side, pixel.x, from_y, to_y);
-  covered = corner.z * max(to_y - from_y, 0.0) * max(width, 0.0);
-}
-)";
 
 GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
   const GLuint shader = gl.CreateShader(type);
@@ -192,9 +80,14 @@ GlRenderer::GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMes
     : context_(std::move(context)), store_(std::move(store)), gl_(context_->gl()) {
   const CurrentContext current(*context_);
   gl_.GetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &longest_side_);
+  std::array<GLint, 2> point_sizes{};
+  gl_.GetIntegerv(GL_POINT_SIZE_RANGE, point_sizes.data());
+  can_draw_points_ = point_sizes[1] >= kLargestPoint;
   try {
-    make_program();
-    make_quad_indices();
+    point_program_ = make_program(point_vertex_shader(), point_fragment_shader());
+    side_program_ = make_program(side_vertex_shader(), side_fragment_shader());
+    make_vertex_array();
+    gl_.Enable(GL_PROGRAM_POINT_SIZE);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_ONE, GL_ONE);
     throw_on_gl_error(gl_, "setting the renderer up");
@@ -218,49 +111,43 @@ std::string_view GlRenderer::name() const {
   return context_->info().candidate.path == ContextPath::osmesa ? "osmesa" : "egl";
 }
 
-void GlRenderer::make_program() {
-  const GLuint vertex_shader = compile(gl_, GL_VERTEX_SHADER, kVertexShader);
+GlRenderer::Program GlRenderer::make_program(const std::string& vertex_source,
+                                             const std::string& fragment_source) {
+  const GLuint vertex_shader = compile(gl_, GL_VERTEX_SHADER, vertex_source.c_str());
   GLuint fragment_shader = 0;
   try {
-    fragment_shader = compile(gl_, GL_FRAGMENT_SHADER, kFragmentShader);
+    fragment_shader = compile(gl_, GL_FRAGMENT_SHADER, fragment_source.c_str());
   } catch (...) {
     gl_.DeleteShader(vertex_shader);
     throw;
   }
-  program_ = gl_.CreateProgram();
-  gl_.AttachShader(program_, vertex_shader);
-  gl_.AttachShader(program_, fragment_shader);
-  gl_.LinkProgram(program_);
+  Program program;
+  program.name = gl_.CreateProgram();
+  gl_.AttachShader(program.name, vertex_shader);
+  gl_.AttachShader(program.name, fragment_shader);
+  gl_.LinkProgram(program.name);
   gl_.DeleteShader(vertex_shader);
   gl_.DeleteShader(fragment_shader);
   GLint linked = GL_FALSE;
-  gl_.GetProgramiv(program_, GL_LINK_STATUS, &linked);
+  gl_.GetProgramiv(program.name, GL_LINK_STATUS, &linked);
   if (linked != GL_TRUE) {
     std::array<char, 1024> log{};
-    gl_.GetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    gl_.GetProgramInfoLog(program.name, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    gl_.DeleteProgram(program.name);
     throw std::runtime_error(std::string("the GL device rejects the program: ") + log.data());
   }
-  origin_location_ = gl_.GetUniformLocation(program_, "origin");
-  pixels_per_cell_location_ = gl_.GetUniformLocation(program_, "pixels_per_cell");
-  size_location_ = gl_.GetUniformLocation(program_, "size");
-  gl_.UseProgram(program_);
+  program.origin = gl_.GetUniformLocation(program.name, "origin");
+  program.pixels_per_cell = gl_.GetUniformLocation(program.name, "pixels_per_cell");
+  program.size = gl_.GetUniformLocation(program.name, "size");
+  program.first_row = gl_.GetUniformLocation(program.name, "first_row");
+  return program;
 }
 
-void GlRenderer::make_quad_indices() {
-  std::vector<std::uint16_t> indices;
-  indices.reserve(std::size_t{kQuadsPerRun} * kIndicesPerQuad);
-  for (std::uint32_t quad = 0; quad < kQuadsPerRun; ++quad) {
-    for (const std::uint32_t vertex : {0u, 1u, 2u, 2u, 1u, 3u}) {
-      indices.push_back(static_cast<std::uint16_t>(quad * kVerticesPerQuad + vertex));
-    }
-  }
+void GlRenderer::make_vertex_array() {
   gl_.GenVertexArrays(1, &vertex_array_);
   gl_.BindVertexArray(vertex_array_);
-  gl_.GenBuffers(1, &quad_indices_);
-  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, quad_indices_);
-  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(indices.size() * sizeof(indices[0])), indices.data(),
-                 GL_STATIC_DRAW);
+  gl_.GenBuffers(1, &index_buffer_);
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
 }
 
 void GlRenderer::delete_objects() noexcept {
@@ -268,20 +155,40 @@ void GlRenderer::delete_objects() noexcept {
     gl_.DeleteFramebuffers(1, &target.framebuffer);
     gl_.DeleteRenderbuffers(1, &target.renderbuffer);
   }
-  gl_.DeleteBuffers(1, &quad_indices_);
+  gl_.DeleteBuffers(1, &index_buffer_);
   gl_.DeleteVertexArrays(1, &vertex_array_);
-  gl_.DeleteProgram(program_);
+  gl_.DeleteProgram(point_program_.name);
+  gl_.DeleteProgram(side_program_.name);
 }
 
-void GlRenderer::draw(std::span<const MeshPart> parts, const View& view, Coverage& out) {
-  view.check();
+void GlRenderer::draw(std::span<const CoverageTask> tasks) {
+  for (const CoverageTask& task : tasks) task.view.check();
   const CurrentContext current(*context_);
   store_->delete_forgotten(gl_);
-  bind_target(view.width, view.height);
-  set_view(view);
-  for (const MeshPart& part : parts) draw_part(part);
-  out.resize(view.width, view.height);
-  read_back(out);
+  while (!tasks.empty()) {
+    const View& view = tasks.front().view;
+    const auto fitting = static_cast<std::size_t>(std::max(1, longest_side_ / view.height));
+    std::size_t count = 1;
+    while (count < std::min({tasks.size(), fitting, kMostInPass}) &&
+           tasks[count].view.width == view.width && tasks[count].view.height == view.height) {
+      ++count;
+    }
+    draw_pass(tasks.first(count));
+    tasks = tasks.subspan(count);
+  }
+}
+
+void GlRenderer::draw_pass(std::span<const CoverageTask> tasks) {
+  const View& view = tasks.front().view;
+  const auto rows = static_cast<int>(rounded_pictures(tasks.size())) * view.height;
+  bind_target(view.width, std::min(rows, std::max(longest_side_, view.height)));
+  collect(tasks);
+  upload_indices();
+  draw_batches(tasks, point_program_, point_batches_, GL_POINTS, 0);
+  draw_batches(tasks, side_program_, side_batches_, GL_TRIANGLES, point_indices_.size());
+  read_back(tasks);
+  point_batches_.clear();
+  side_batches_.clear();
   throw_on_gl_error(gl_, "drawing");
 }
 
@@ -296,7 +203,6 @@ void GlRenderer::bind_target(int width, int height) {
     next_target_ = (next_target_ + 1) % targets_.size();
     make_target(target, width, height);
   }
-  gl_.Viewport(0, 0, width, height);
   const std::array<float, 4> nothing{};
   gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
 }
@@ -324,51 +230,112 @@ void GlRenderer::make_target(Target& target, int width, int height) {
   target.height = height;
 }
 
-void GlRenderer::set_view(const View& view) {
-  gl_.Uniform2d(origin_location_, static_cast<double>(view.origin_x),
-                static_cast<double>(view.origin_y));
-  gl_.Uniform1d(pixels_per_cell_location_, 1.0 / view.cells_per_pixel);
-  gl_.Uniform2d(size_location_, view.width, view.height);
-}
-
-// Cuts the ranges at the borders of chunks and into runs that the quad indices reach.
-void GlRenderer::draw_part(const MeshPart& part) {
-  std::uint32_t batch_chunk = 0;
-  for (const TrapezoidRange& range : part.ranges) {
-    std::uint32_t first = range.first;
-    std::uint32_t left = range.count;
-    while (left > 0) {
-      const std::uint32_t chunk = first / store_->chunk_size();
-      const std::uint32_t in_chunk = first % store_->chunk_size();
-      const std::uint32_t count = std::min({left, kQuadsPerRun, store_->chunk_size() - in_chunk});
-      if (chunk != batch_chunk) draw_batch(part.mesh, batch_chunk);
-      batch_chunk = chunk;
-      index_counts_.push_back(static_cast<GLsizei>(count * kIndicesPerQuad));
-      base_vertices_.push_back(static_cast<GLint>(in_chunk * kVerticesPerQuad));
-      first += count;
-      left -= count;
+// Fills indices and batches with what the tasks draw.
+void GlRenderer::collect(std::span<const CoverageTask> tasks) {
+  point_indices_.clear();
+  side_indices_.clear();
+  for (std::size_t task = 0; task < tasks.size(); ++task) {
+    const std::uint8_t largest_point = can_draw_points_ ? largest_point_size(tasks[task].view) : 0;
+    for (const MeshPart& part : tasks[task].parts) {
+      GlMeshStore::ChunkPointer chunk;
+      std::uint32_t chunk_number = 0;
+      for (TrapezoidRange range : part.ranges) {
+        while (range.count > 0) {
+          const std::uint32_t number = range.first / store_->chunk_size();
+          if (chunk == nullptr || number != chunk_number) {
+            end_batches(task, chunk);
+            chunk = store_->chunk(gl_, part.mesh, number);
+            chunk_number = number;
+          }
+          const std::uint32_t first = range.first % store_->chunk_size();
+          const std::uint32_t count = std::min(range.count, store_->chunk_size() - first);
+          collect_run(*chunk, first, count, largest_point);
+          range.first += count;
+          range.count -= count;
+        }
+      }
+      end_batches(task, chunk);
     }
   }
-  draw_batch(part.mesh, batch_chunk);
 }
 
-void GlRenderer::draw_batch(const MeshView& mesh, std::uint32_t chunk) {
-  if (index_counts_.empty()) return;
-  // If it is forgotten meanwhile, GL keeps what the commands given here still need.
-  const GlMeshStore::ChunkPointer trapezoids = store_->chunk(gl_, mesh, chunk);
-  gl_.BindTexture(GL_TEXTURE_BUFFER, trapezoids->texture);
-  index_offsets_.resize(std::max(index_offsets_.size(), index_counts_.size()), nullptr);
-  gl_.MultiDrawElementsBaseVertex(GL_TRIANGLES, index_counts_.data(), GL_UNSIGNED_SHORT,
-                                  index_offsets_.data(), static_cast<GLsizei>(index_counts_.size()),
-                                  base_vertices_.data());
-  index_counts_.clear();
-  base_vertices_.clear();
+void GlRenderer::collect_run(const GlMeshStore::Chunk& chunk, std::uint32_t first,
+                             std::uint32_t count, std::uint8_t largest_point) {
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const std::uint8_t size = chunk.sizes[i];
+    if (size <= largest_point) {
+      point_indices_.push_back(i);
+    } else if (size != GlMeshStore::kNoSize) {
+      const std::uint32_t vertex = i * kVerticesPerTrapezoid;
+      for (const std::uint32_t corner : {0u, 1u, 2u, 2u, 1u, 3u, 4u, 5u, 6u, 6u, 5u, 7u}) {
+        side_indices_.push_back(vertex + corner);
+      }
+    }
+  }
 }
 
-void GlRenderer::read_back(Coverage& out) {
-  sums_.resize(out.pixels().size());
-  gl_.ReadPixels(0, 0, out.width(), out.height(), GL_RED, GL_FLOAT, sums_.data());
-  to_levels(sums_, out.row_begin(0));
+// What was collected since the last ends is drawn from that chunk.
+void GlRenderer::end_batches(std::size_t task, const GlMeshStore::ChunkPointer& chunk) {
+  const auto end = [&](std::vector<Batch>& batches, std::size_t indices) {
+    const std::size_t first = batches.empty() ? 0 : batches.back().first + batches.back().count;
+    if (indices > first) batches.push_back({task, chunk, first, indices - first});
+  };
+  end(point_batches_, point_indices_.size());
+  end(side_batches_, side_indices_.size());
+}
+
+void GlRenderer::upload_indices() {
+  const auto bytes = [](std::size_t indices) {
+    return static_cast<GLsizeiptr>(indices * sizeof(std::uint32_t));
+  };
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, bytes(point_indices_.size() + side_indices_.size()),
+                 nullptr, GL_STREAM_DRAW);
+  gl_.BufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0, bytes(point_indices_.size()),
+                    point_indices_.data());
+  gl_.BufferSubData(GL_ELEMENT_ARRAY_BUFFER, bytes(point_indices_.size()),
+                    bytes(side_indices_.size()), side_indices_.data());
+}
+
+void GlRenderer::draw_batches(std::span<const CoverageTask> tasks, const Program& program,
+                              const std::vector<Batch>& batches, GLenum mode,
+                              std::size_t first_index) {
+  if (batches.empty()) return;
+  gl_.UseProgram(program.name);
+  std::size_t last_task = tasks.size();
+  for (const Batch& batch : batches) {
+    if (batch.task != last_task) set_task(program, tasks[batch.task].view, batch.task);
+    last_task = batch.task;
+    gl_.BindTexture(GL_TEXTURE_BUFFER, batch.chunk->texture);
+    const std::size_t offset = (first_index + batch.first) * sizeof(std::uint32_t);
+    gl_.DrawElements(mode, static_cast<GLsizei>(batch.count), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(offset));
+  }
+}
+
+void GlRenderer::set_task(const Program& program, const View& view, std::size_t task) {
+  const int first_row = static_cast<int>(task) * view.height;
+  gl_.Viewport(0, first_row, view.width, view.height);
+  gl_.Uniform2d(program.origin, static_cast<double>(view.origin_x),
+                static_cast<double>(view.origin_y));
+  gl_.Uniform1d(program.pixels_per_cell, 1.0 / view.cells_per_pixel);
+  gl_.Uniform2d(program.size, view.width, view.height);
+  gl_.Uniform1f(program.first_row, static_cast<float>(first_row));
+}
+
+void GlRenderer::read_back(std::span<const CoverageTask> tasks) {
+  const View& view = tasks.front().view;
+  const auto width = static_cast<std::size_t>(view.width);
+  const auto height = static_cast<std::size_t>(view.height);
+  differences_.resize(width * height * tasks.size());
+  gl_.ReadPixels(0, 0, view.width, view.height * static_cast<int>(tasks.size()), GL_RED, GL_FLOAT,
+                 differences_.data());
+  const float* row_begin = differences_.data();
+  for (const CoverageTask& task : tasks) {
+    task.out->resize(view.width, view.height);
+    for (int row = 0; row < view.height; ++row, row_begin += width) {
+      sum_to_levels({row_begin, width}, task.out->row_begin(row));
+    }
+  }
 }
 
 }  // namespace trapeze

@@ -1,15 +1,17 @@
-// Draws coverage with OpenGL: exact area, not multisampling.
+// Draws coverage with OpenGL: exact area, not multisampling. See gl_shaders.h for how.
 //
-// The vertex shader pulls the integers of its trapezoid, makes them relative to the picture and
-// cuts them to it in double precision, and emits a quad that touches every pixel the trapezoid
-// does. The fragment shader integrates the area of pixel and trapezoid in closed form; additive
-// blending sums the areas in 32-bit floats. (16 bits would not do: a city in a few pixels is tens
-// of thousands of addends below their resolution.) The sum becomes 8 bits once, after read-back.
+// Additive blending sums the differences of areas in 32-bit floats. (16 bits would not do: a city
+// in a few pixels is tens of thousands of addends below their resolution.) Sums become 8 bits once,
+// after read-back.
+//
+// Tasks that are drawn together share one target, one above the other: the fixed cost of a pass,
+// which is what a light tile costs, is paid once for all.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "render/coverage.h"
@@ -29,7 +31,8 @@ class GlRenderer final : public CoverageRenderer {
   GlRenderer& operator=(const GlRenderer&) = delete;
 
   using CoverageRenderer::draw;
-  void draw(std::span<const MeshPart> parts, const View& view, Coverage& out) override;
+  void draw(std::span<const CoverageTask> tasks) override;
+  bool gains_by_company() const override { return true; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
   std::string description() const override { return context_->info().text(); }
@@ -37,6 +40,14 @@ class GlRenderer final : public CoverageRenderer {
   GlContext& context() { return *context_; }
 
  private:
+  struct Program {
+    GLuint name = 0;
+    GLint origin = -1;
+    GLint pixels_per_cell = -1;
+    GLint size = -1;
+    GLint first_row = -1;
+  };
+
   // A framebuffer of 32-bit floats.
   struct Target {
     int width = 0;
@@ -45,35 +56,49 @@ class GlRenderer final : public CoverageRenderer {
     GLuint renderbuffer = 0;
   };
 
-  void make_program();
-  void make_quad_indices();
+  // Some of indices_, drawn by one call. All indices of points come before those of sides.
+  struct Batch {
+    std::size_t task = 0;  // in the pass
+    GlMeshStore::ChunkPointer chunk;
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+
+  Program make_program(const std::string& vertex_source, const std::string& fragment_source);
+  void make_vertex_array();
   void delete_objects() noexcept;
+  void draw_pass(std::span<const CoverageTask> tasks);
   void bind_target(int width, int height);
   void make_target(Target& target, int width, int height);
-  void set_view(const View& view);
-  void draw_part(const MeshPart& part);
-  void draw_batch(const MeshView& mesh, std::uint32_t chunk);
-  void read_back(Coverage& out);
+  void collect(std::span<const CoverageTask> tasks);
+  void collect_run(const GlMeshStore::Chunk& chunk, std::uint32_t first, std::uint32_t count,
+                   std::uint8_t largest_point);
+  void end_batches(std::size_t task, const GlMeshStore::ChunkPointer& chunk);
+  void upload_indices();
+  void draw_batches(std::span<const CoverageTask> tasks, const Program& program,
+                    const std::vector<Batch>& batches, GLenum mode, std::size_t first_index);
+  void set_task(const Program& program, const View& view, std::size_t task);
+  void read_back(std::span<const CoverageTask> tasks);
 
   std::unique_ptr<GlContext> context_;
   std::shared_ptr<GlMeshStore> store_;
   const GlFunctions& gl_;
-  GLint longest_side_ = 0;  // of a target, in pixels
+  GLint longest_side_ = 0;        // of a target, in pixels
+  bool can_draw_points_ = false;  // as large as they come here
 
-  GLuint program_ = 0;
-  GLint origin_location_ = -1;
-  GLint pixels_per_cell_location_ = -1;
-  GLint size_location_ = -1;
+  Program point_program_;
+  Program side_program_;
   GLuint vertex_array_ = 0;
-  GLuint quad_indices_ = 0;
-  std::array<Target, 4> targets_;  // of the sizes asked for last
+  GLuint index_buffer_ = 0;
+  std::array<Target, 8> targets_;  // of the sizes asked for last
   std::size_t next_target_ = 0;    // the one to give up for a new size
 
-  // Runs of trapezoids to be drawn from one chunk by one call.
-  std::vector<GLsizei> index_counts_;
-  std::vector<GLint> base_vertices_;
-  std::vector<const void*> index_offsets_;  // all null: every run begins at the first quad
-  std::vector<float> sums_;
+  // Of the pass being drawn.
+  std::vector<std::uint32_t> point_indices_;
+  std::vector<std::uint32_t> side_indices_;
+  std::vector<Batch> point_batches_;
+  std::vector<Batch> side_batches_;
+  std::vector<float> differences_;
 };
 
 }  // namespace trapeze

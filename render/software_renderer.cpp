@@ -34,37 +34,26 @@ struct SoftwareRenderer::Piece {
 
 namespace {
 
-constexpr int kRowsAtOnce = 4;
-
 // For 0 <= value, where it is cheaper than std::floor.
 int truncate(double value) {
   return static_cast<int>(value);
 }
 
-// Replaces differences by running sums in some rows, side by side: one sum alone would spend its
-// time waiting for the addition before.
-template <std::size_t kRows>
-void sum_rows(float* first_row, std::size_t stride, int first, int end) {
-  std::array<float, kRows> sums{};
-  for (int column = first; column < end; ++column) {
-    for (std::size_t row = 0; row < kRows; ++row) {
-      float& cell = first_row[row * stride + static_cast<std::size_t>(column)];
-      sums[row] += cell;
-      cell = sums[row];
-    }
-  }
-}
-
 }  // namespace
 
-void SoftwareRenderer::draw(std::span<const MeshPart> parts, const View& view, Coverage& out) {
+void SoftwareRenderer::draw(std::span<const CoverageTask> tasks) {
+  for (const CoverageTask& task : tasks) draw(task);
+}
+
+void SoftwareRenderer::draw(const CoverageTask& task) {
+  const View& view = task.view;
   view.check();
   prepare(view);
   const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
                     static_cast<double>(view.width), static_cast<double>(view.height)};
-  for (const MeshPart& part : parts) add(part, frame);
-  out.resize(view.width, view.height);
-  resolve(out);
+  for (const MeshPart& part : task.parts) add(part, frame);
+  task.out->resize(view.width, view.height);
+  resolve(*task.out);
 }
 
 std::string SoftwareRenderer::description() const {
@@ -204,33 +193,20 @@ void SoftwareRenderer::add_row(int row, double x_from, double x_to, double heigh
   }
 }
 
-void SoftwareRenderer::resolve(Coverage& out) {
-  int row = 0;
-  for (; row + kRowsAtOnce <= height_; row += kRowsAtOnce) resolve_rows<kRowsAtOnce>(row, out);
-  for (; row < height_; ++row) resolve_rows<1>(row, out);
-}
-
 // Sums rows up and leaves the differences cleared for the next picture.
-template <int kRows>
-void SoftwareRenderer::resolve_rows(int row, Coverage& out) {
-  Touched* touched = touched_.data() + row;
-  Touched any = touched[0];
-  for (int i = 1; i < kRows; ++i) {
-    any.first = std::min(any.first, touched[i].first);
-    any.last = std::max(any.last, touched[i].last);
-  }
-  std::uint8_t* pixels = out.row_begin(row);
-  std::memset(pixels, 0, static_cast<std::size_t>(width_) * kRows);
-  if (any.first > any.last) return;
-
-  // Beyond the column after the last touched one all edges are passed and nothing is covered.
-  const int end = std::min(any.last + 2, width_);
-  float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
-  sum_rows<kRows>(cells, stride_, any.first, end);
-  for (int i = 0; i < kRows; ++i, cells += stride_, pixels += width_) {
-    if (any.first < end) to_levels({cells + any.first, cells + end}, pixels + any.first);
-    std::fill(cells + any.first, cells + any.last + 2, 0.0f);
-    touched[i] = {width_, -1};
+void SoftwareRenderer::resolve(Coverage& out) {
+  for (int row = 0; row < height_; ++row) {
+    Touched& touched = touched_[static_cast<std::size_t>(row)];
+    std::uint8_t* levels = out.row_begin(row);
+    std::memset(levels, 0, static_cast<std::size_t>(width_));
+    if (touched.first > touched.last) continue;
+    // Beyond the column after the last touched one all edges are passed and nothing is covered.
+    const int end = std::min(touched.last + 2, width_);
+    float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
+    if (touched.first < end)
+      sum_to_levels({cells + touched.first, cells + end}, levels + touched.first);
+    std::fill(cells + touched.first, cells + touched.last + 2, 0.0f);
+    touched = {width_, -1};
   }
 }
 

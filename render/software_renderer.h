@@ -19,7 +19,7 @@ namespace trapeze {
 class SoftwareRenderer final : public CoverageRenderer {
  public:
   using CoverageRenderer::draw;
-  void draw(std::span<const MeshPart> parts, const View& view, Coverage& out) override;
+  void draw(std::span<const CoverageTask> tasks) override;
 
   std::string_view name() const override { return "software"; }
   std::string description() const override;
@@ -34,6 +34,7 @@ class SoftwareRenderer final : public CoverageRenderer {
     int last;
   };
 
+  void draw(const CoverageTask& task);
   void prepare(const View& view);
   void add(const MeshPart& part, const Frame& frame);
   void add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Frame& frame);
@@ -43,8 +44,6 @@ class SoftwareRenderer final : public CoverageRenderer {
   void add_piece(const Piece& piece, float sign);
   void add_row(int row, double x_from, double x_to, double height, float sign);
   void resolve(Coverage& out);
-  template <int kRows>
-  void resolve_rows(int row, Coverage& out);
 
   int width_ = 0;
   int height_ = 0;
