@@ -37,6 +37,13 @@ void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>&
   c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
 }
 
+bool Layer::fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const {
+  // Dust comes last, and may take coverage away.
+  const bool has_dust =
+      !ranges.empty() && ranges.back().first + ranges.back().count > contents_->feature_of.size();
+  return !has_dust && cover_box(contents_->view, ranges, selection.box);
+}
+
 void Layer::small_polygons(const Selection& selection, std::vector<Box>& places) const {
   places.clear();
   std::vector<TrapezoidRange> ranges;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,10 @@ class Layer {
   /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
   /// that stands for holes, left and right edge have changed places: its area is negative.
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
+  /// True only if the ranges that were selected cover the selection's box wholly, so that nothing
+  /// need be drawn to know it; may be false though they do.
+  bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
 
   /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
   /// in one pixel taken together.

@@ -1,6 +1,7 @@
 #include "core/mesh_index.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -26,6 +27,15 @@ Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, st
   return {std::min(x0, x1), std::max(x0, x1)};
 }
 
+/// Whether one side is beyond the box's west and the other beyond its east border, all the way
+/// between two levels.
+bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box, std::int32_t y0,
+           std::int32_t y1) {
+  const Interval left = x_range(mesh, mesh.edges[trapezoid.left], y0, y1);
+  const Interval right = x_range(mesh, mesh.edges[trapezoid.right], y0, y1);
+  return left.max + 1 <= box.min_x && right.min - 1 >= box.max_x;
+}
+
 /// An octave of levels to a class; the untouched and the undying are classes of their own.
 unsigned lifespan_class(Level level) {
   return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
@@ -43,6 +53,32 @@ Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
   };
   return {clamped(std::floor(std::min(left.min, right.min))), y0,
           clamped(std::ceil(std::max(left.max, right.max))), y1};
+}
+
+bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box) {
+  // A tile within a large polygon meets a few trapezoids; with more than this it has a boundary.
+  constexpr std::size_t kMaxTrapezoids = 48;
+  struct Rows {
+    std::int32_t begin;
+    std::int32_t end;
+  };
+  std::array<Rows, kMaxTrapezoids> spanned;
+  std::size_t count = 0;
+  for (const TrapezoidRange& range : ranges) {
+    if (count + range.count > kMaxTrapezoids) return false;
+    for (const MeshTrapezoid& trapezoid : mesh.trapezoids.subspan(range.first, range.count)) {
+      const std::int32_t y0 = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
+      const std::int32_t y1 = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
+      if (y0 < y1 && spans(mesh, trapezoid, box, y0, y1)) spanned[count++] = {y0, y1};
+    }
+  }
+  std::sort(spanned.begin(), spanned.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Rows& a, const Rows& b) { return a.begin < b.begin; });
+  std::int32_t covered_to = box.min_y;
+  for (std::size_t i = 0; i < count && spanned[i].begin <= covered_to; ++i) {
+    covered_to = std::max(covered_to, spanned[i].end);
+  }
+  return count > 0 && covered_to >= box.max_y;
 }
 
 std::uint64_t order_key(const Box& box, Lifespan lifespan) {

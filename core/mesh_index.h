@@ -16,6 +16,10 @@ namespace trapeze {
 /// The smallest box around a trapezoid, rounded outwards to whole cells.
 Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid);
 
+/// True only if the trapezoids cover the box wholly; may be false though they do. Looks at no more
+/// than a few dozen. None of them has negative area.
+bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box);
+
 /// Sorting by this key puts trapezoids that are drawn together next to each other: by the octave of
 /// tolerance in which they die, then along a Hilbert curve. What lives long is large and sparse, so
 /// the octave stands for the size too; finer classes (of birth, of size) cost more in branches of

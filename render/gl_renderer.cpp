@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/gl_shaders.h"
+#include "render/stopwatch.h"
 
 namespace trapeze {
 namespace {
@@ -161,7 +162,8 @@ void GlRenderer::delete_objects() noexcept {
   gl_.DeleteProgram(side_program_.name);
 }
 
-void GlRenderer::draw(std::span<const CoverageTask> tasks) {
+DrawTimes GlRenderer::draw(std::span<const CoverageTask> tasks) {
+  DrawTimes times;
   for (const CoverageTask& task : tasks) task.view.check();
   const CurrentContext current(*context_);
   store_->delete_forgotten(gl_);
@@ -173,23 +175,33 @@ void GlRenderer::draw(std::span<const CoverageTask> tasks) {
            tasks[count].view.width == view.width && tasks[count].view.height == view.height) {
       ++count;
     }
-    draw_pass(tasks.first(count));
+    draw_pass(tasks.first(count), times);
     tasks = tasks.subspan(count);
   }
+  return times;
 }
 
-void GlRenderer::draw_pass(std::span<const CoverageTask> tasks) {
+void GlRenderer::draw_pass(std::span<const CoverageTask> tasks, DrawTimes& times) {
   const View& view = tasks.front().view;
   const auto rows = static_cast<int>(rounded_pictures(tasks.size())) * view.height;
-  bind_target(view.width, std::min(rows, std::max(longest_side_, view.height)));
-  collect(tasks);
-  upload_indices();
-  draw_batches(tasks, point_program_, point_batches_, GL_POINTS, 0);
-  draw_batches(tasks, side_program_, side_batches_, GL_TRIANGLES, point_indices_.size());
-  read_back(tasks);
-  point_batches_.clear();
-  side_batches_.clear();
-  throw_on_gl_error(gl_, "drawing");
+  {
+    const Stopwatch stopwatch(times.draw_ms);
+    bind_target(view.width, std::min(rows, std::max(longest_side_, view.height)));
+    collect(tasks);
+    upload_indices();
+    draw_batches(tasks, point_program_, point_batches_, GL_POINTS, 0);
+    draw_batches(tasks, side_program_, side_batches_, GL_TRIANGLES, point_indices_.size());
+    point_batches_.clear();
+    side_batches_.clear();
+    gl_.Finish();
+  }
+  {
+    const Stopwatch stopwatch(times.read_ms);
+    read_back(tasks);
+    throw_on_gl_error(gl_, "drawing");
+  }
+  const Stopwatch stopwatch(times.resolve_ms);
+  resolve(tasks);
 }
 
 void GlRenderer::bind_target(int width, int height) {
@@ -329,8 +341,13 @@ void GlRenderer::read_back(std::span<const CoverageTask> tasks) {
   differences_.resize(width * height * tasks.size());
   gl_.ReadPixels(0, 0, view.width, view.height * static_cast<int>(tasks.size()), GL_RED, GL_FLOAT,
                  differences_.data());
+}
+
+void GlRenderer::resolve(std::span<const CoverageTask> tasks) const {
   const float* row_begin = differences_.data();
   for (const CoverageTask& task : tasks) {
+    const View& view = task.view;
+    const auto width = static_cast<std::size_t>(view.width);
     task.out->resize(view.width, view.height);
     for (int row = 0; row < view.height; ++row, row_begin += width) {
       sum_to_levels({row_begin, width}, task.out->row_begin(row));

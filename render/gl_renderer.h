@@ -31,7 +31,7 @@ class GlRenderer final : public CoverageRenderer {
   GlRenderer& operator=(const GlRenderer&) = delete;
 
   using CoverageRenderer::draw;
-  void draw(std::span<const CoverageTask> tasks) override;
+  DrawTimes draw(std::span<const CoverageTask> tasks) override;
   bool gains_by_company() const override { return true; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
@@ -67,7 +67,7 @@ class GlRenderer final : public CoverageRenderer {
   Program make_program(const std::string& vertex_source, const std::string& fragment_source);
   void make_vertex_array();
   void delete_objects() noexcept;
-  void draw_pass(std::span<const CoverageTask> tasks);
+  void draw_pass(std::span<const CoverageTask> tasks, DrawTimes& times);
   void bind_target(int width, int height);
   void make_target(Target& target, int width, int height);
   void collect(std::span<const CoverageTask> tasks);
@@ -79,6 +79,7 @@ class GlRenderer final : public CoverageRenderer {
                     const std::vector<Batch>& batches, GLenum mode, std::size_t first_index);
   void set_task(const Program& program, const View& view, std::size_t task);
   void read_back(std::span<const CoverageTask> tasks);
+  void resolve(std::span<const CoverageTask> tasks) const;
 
   std::unique_ptr<GlContext> context_;
   std::shared_ptr<GlMeshStore> store_;

@@ -1,5 +1,6 @@
 #include "render/make_renderer.h"
 
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -63,6 +64,9 @@ MadeRenderers make_renderers(const RendererOptions& options, int count) {
     return made;
   }
 
+  // Threads of llvmpipe's own would only be in the way of those that draw other pictures. It reads
+  // this once, when the first context is made.
+  if (count > 1) setenv("LP_NUM_THREADS", "0", 0);
   ContextSearch search = use_first_context({.egl = options.kind != RendererKind::osmesa,
                                             .osmesa = options.kind != RendererKind::egl,
                                             .device = options.device},

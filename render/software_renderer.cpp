@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/stopwatch.h"
+
 namespace trapeze {
 
 // Turns cells into pixels of the picture.
@@ -41,17 +43,23 @@ int truncate(double value) {
 
 }  // namespace
 
-void SoftwareRenderer::draw(std::span<const CoverageTask> tasks) {
-  for (const CoverageTask& task : tasks) draw(task);
+DrawTimes SoftwareRenderer::draw(std::span<const CoverageTask> tasks) {
+  DrawTimes times;
+  for (const CoverageTask& task : tasks) draw(task, times);
+  return times;
 }
 
-void SoftwareRenderer::draw(const CoverageTask& task) {
+void SoftwareRenderer::draw(const CoverageTask& task, DrawTimes& times) {
   const View& view = task.view;
   view.check();
   prepare(view);
   const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
                     static_cast<double>(view.width), static_cast<double>(view.height)};
-  for (const MeshPart& part : task.parts) add(part, frame);
+  {
+    const Stopwatch stopwatch(times.draw_ms);
+    for (const MeshPart& part : task.parts) add(part, frame);
+  }
+  const Stopwatch stopwatch(times.resolve_ms);
   task.out->resize(view.width, view.height);
   resolve(*task.out);
 }

@@ -19,7 +19,7 @@ namespace trapeze {
 class SoftwareRenderer final : public CoverageRenderer {
  public:
   using CoverageRenderer::draw;
-  void draw(std::span<const CoverageTask> tasks) override;
+  DrawTimes draw(std::span<const CoverageTask> tasks) override;
 
   std::string_view name() const override { return "software"; }
   std::string description() const override;
@@ -34,7 +34,7 @@ class SoftwareRenderer final : public CoverageRenderer {
     int last;
   };
 
-  void draw(const CoverageTask& task);
+  void draw(const CoverageTask& task, DrawTimes& times);
   void prepare(const View& view);
   void add(const MeshPart& part, const Frame& frame);
   void add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Frame& frame);

@@ -65,11 +65,15 @@ int run_render(const RenderArguments& arguments) {
   auto renderers = start_renderers({*kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()));
   const TilePlan plan = value_or_throw(plan_tile(request, Dataset::load(layers)));
-  const auto tile = painter.paint(plan, TilePainter::Deadline::max());
-  write_file(arguments.output, tile->png);
-  spdlog::info("{}: {} bytes; select {:.2f}, draw {:.2f}, compose {:.2f}, encode {:.2f} ms",
-               arguments.output, tile->png.size(), tile->times.select_ms, tile->times.draw_ms,
-               tile->times.compose_ms, tile->times.encode_ms);
+  const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
+  const PaintedTile tile = painter.paint({&job, 1}).front().value();
+  write_file(arguments.output, *tile.png);
+  const PaintTimes& times = tile.times;
+  spdlog::info(
+      "{}: {} bytes; select {:.2f}, draw {:.2f}, read {:.2f}, resolve {:.2f}, compose "
+      "{:.2f}, encode {:.2f} ms",
+      arguments.output, tile.png->size(), times.select_ms, times.draw_ms, times.read_ms,
+      times.resolve_ms, times.compose_ms, times.encode_ms);
   return 0;
 }
 

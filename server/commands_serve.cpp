@@ -17,6 +17,7 @@
 #include "server/site.h"
 #include "server/start_renderers.h"
 #include "server/static_files.h"
+#include "server/tile_cache.h"
 #include "server/tile_service.h"
 
 namespace trapeze {
@@ -125,9 +126,11 @@ int run_serve(const ServeArguments& arguments) {
   StaticFiles files = open_web_root(options.web_root);
 
   CurrentDataset data;
-  TileService tiles({options.queue, std::chrono::milliseconds(options.deadline_ms)},
+  TileCache cache(std::size_t{options.cache_mb} << 20);
+  TileService tiles({options.queue, std::chrono::milliseconds(options.deadline_ms), options.batch},
                     start_renderers(options.renderer, static_cast<int>(options.workers)));
-  const Site site(options.public_url, std::move(files), data, tiles);
+  const Site site({options.public_url, options.cache_control}, std::move(files), data, tiles,
+                  cache);
   HttpServerOptions http;
   http.address = options.address;
   http.port = options.port;

@@ -103,6 +103,13 @@ ServerConfig read_server(const std::string& path, const toml::table& table) {
   reader.read("workers", server.workers, 0, 256);
   reader.read("queue", server.queue, 1, 1'000'000);
   reader.read("deadline_ms", server.deadline_ms, 1, 600'000);
+  reader.read("batch", server.batch, 1, 64);
+  reader.read("cache_mb", server.cache_mb, 0, 1'000'000);
+  reader.read("cache_control", server.cache_control);
+  if (std::ranges::any_of(server.cache_control, [](char c) { return c < ' ' || c > '~'; })) {
+    reader.fail(*table.get("cache_control"),
+                "server.cache_control takes the value of a Cache-Control header");
+  }
   std::string renderer = "auto";
   reader.read("renderer", renderer);
   if (const auto kind = renderer_kind_from(renderer)) {

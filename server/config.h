@@ -38,6 +38,9 @@ struct ServerConfig {
   unsigned workers = 0;           // for drawing; 0: one a core
   std::size_t queue = 256;        // requests that may wait for a worker
   unsigned deadline_ms = 10'000;  // a request that waits longer is given up
+  unsigned batch = 8;             // tiles drawn in one pass, at most
+  unsigned cache_mb = 256;        // of memory for tiles that were drawn; 0: none are kept
+  std::string cache_control = "public, max-age=3600";  // of tiles
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
   std::string web_root;    // folder of the viewer, empty for none

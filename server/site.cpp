@@ -13,7 +13,6 @@ namespace trapeze {
 namespace {
 
 constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
-constexpr std::string_view kTileCaching = "public, max-age=3600";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
@@ -24,7 +23,7 @@ Problem still_loading() {
 void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Access-Control-Allow-Origin", "*");
   response.headers.emplace_back("Access-Control-Expose-Headers",
-                                "ETag, Retry-After, Server-Timing");
+                                "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache");
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
@@ -67,40 +66,53 @@ HttpResponse json_document(const HttpRequest& request, std::string json) {
 }
 
 std::string server_timing(const PaintTimes& times) {
-  return fmt::format("select;dur={:.3f}, draw;dur={:.3f}, compose;dur={:.3f}, encode;dur={:.3f}",
-                     times.select_ms, times.draw_ms, times.compose_ms, times.encode_ms);
+  return fmt::format(
+      "queue;dur={:.3f}, select;dur={:.3f}, draw;dur={:.3f}, read;dur={:.3f}, "
+      "resolve;dur={:.3f}, compose;dur={:.3f}, encode;dur={:.3f}",
+      times.queue_ms, times.select_ms, times.draw_ms, times.read_ms, times.resolve_ms,
+      times.compose_ms, times.encode_ms);
 }
 
-HttpResponse tile_headers(int status, const std::string& entity_tag) {
+HttpResponse tile_headers(int status, const std::string& entity_tag,
+                          const std::string& cache_control) {
   HttpResponse response;
   response.status = status;
-  response.headers = {{"ETag", entity_tag}, {"Cache-Control", std::string(kTileCaching)}};
+  response.headers = {{"ETag", entity_tag}, {"Cache-Control", cache_control}};
   return response;
 }
 
-HttpResponse tile_response(const TileAnswer& answer, const std::string& entity_tag) {
-  switch (answer.outcome) {
-    case TileOutcome::drawn:
-      break;
+HttpResponse tile_response(const TileCache::Tile& tile, const std::string& entity_tag,
+                           const std::string& cache_control, std::string_view from) {
+  auto response = tile_headers(200, entity_tag, cache_control);
+  response.headers.emplace_back("Content-Type", "image/png");
+  response.headers.emplace_back("X-Cache", from);
+  if (tile.hint != TileHint::none) {
+    response.headers.emplace_back("OATiles-hint", tile.hint == TileHint::empty ? "empty" : "full");
+  }
+  response.body = tile.png;
+  return response;
+}
+
+HttpResponse undrawn_response(TileOutcome outcome) {
+  switch (outcome) {
     case TileOutcome::saturated:
       return problem_response({503, "There is more to draw than can be drawn. Ask again."});
     case TileOutcome::late:
       return problem_response({504, "The tile was not drawn in time."});
-    case TileOutcome::failed:
+    default:
       return problem_response({500, "The tile could not be drawn."});
   }
-  auto response = tile_headers(200, entity_tag);
-  response.headers.emplace_back("Content-Type", "image/png");
-  response.headers.emplace_back("Server-Timing", server_timing(answer.times));
-  response.body = answer.png;
-  return response;
 }
 
 }  // namespace
 
-Site::Site(std::string public_url, StaticFiles files, const CurrentDataset& data,
-           TileService& tiles)
-    : public_url_(std::move(public_url)), files_(std::move(files)), data_(data), tiles_(tiles) {}
+Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
+           TileCache& cache)
+    : options_(std::move(options)),
+      files_(std::move(files)),
+      data_(data),
+      tiles_(tiles),
+      cache_(cache) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {
   const auto respond_to_all = [respond = std::move(respond)](HttpResponse response) {
@@ -201,17 +213,29 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
     return respond(problem_response(*problem));
   }
   auto& plan = std::get<TilePlan>(planned);
-  const std::string entity_tag = plan.entity_tag();
+  std::string key = plan.key();
+  const std::string entity_tag = entity_tag_of(key);
   if (matches_entity_tag(request.if_none_match, entity_tag)) {
-    return respond(tile_headers(304, entity_tag));
+    return respond(tile_headers(304, entity_tag, options_.cache_control));
   }
-  tiles_.submit(std::move(plan), [respond, entity_tag](const TileAnswer& answer) {
-    respond(tile_response(answer, entity_tag));
-  });
+  if (const auto kept = cache_.find(key); kept.png != nullptr) {
+    return respond(tile_response(kept, entity_tag, options_.cache_control, "HIT"));
+  }
+  // The last answers come while the service ends, when this site may be gone.
+  auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond, key,
+                      entity_tag](const TileAnswer& answer) {
+    if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
+    const TileCache::Tile drawn{answer.tile.png, answer.tile.hint};
+    cache.insert(key, drawn);
+    auto response = tile_response(drawn, entity_tag, cache_control, "MISS");
+    response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
+    respond(std::move(response));
+  };
+  tiles_.submit(std::move(plan), std::move(key), std::move(answer_with));
 }
 
 OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
-  if (!public_url_.empty()) return public_url_;
+  if (!options_.public_url.empty()) return options_.public_url;
   if (!is_valid_host(request.host)) {
     return Problem{400,
                    "The request needs a Host header with a host name or address, and a port "

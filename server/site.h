@@ -10,15 +10,23 @@
 #include "server/dataset.h"
 #include "server/http_message.h"
 #include "server/static_files.h"
+#include "server/tile_cache.h"
 #include "server/tile_service.h"
 
 namespace trapeze {
 
+struct SiteOptions {
+  /// What documents call this server, without a '/' at the end; empty: by the Host of each request.
+  std::string public_url;
+  /// What caches between here and the client may do with tiles.
+  std::string cache_control = "public, max-age=3600";
+};
+
 class Site {
  public:
-  /// `public_url` is what documents call this server, without a '/' at the end; empty: by the Host
-  /// of each request. `data` and `tiles` outlive the site.
-  Site(std::string public_url, StaticFiles files, const CurrentDataset& data, TileService& tiles);
+  /// `data`, `tiles` and `cache` outlive the site, and `cache` also `tiles`.
+  Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
+       TileCache& cache);
 
   /// Calls `respond` exactly once: within this call, or later from a worker of the tile service.
   void handle(const HttpRequest& request, Respond respond) const;
@@ -37,10 +45,11 @@ class Site {
   /// says nonsense.
   OrProblem<std::string> base_url(const HttpRequest& request) const;
 
-  const std::string public_url_;
+  const SiteOptions options_;
   const StaticFiles files_;
   const CurrentDataset& data_;
   TileService& tiles_;
+  TileCache& cache_;
 };
 
 }  // namespace trapeze

@@ -3,31 +3,16 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "render/debug_marks.h"
-#include "render/png.h"
+#include "render/stopwatch.h"
 
 namespace trapeze {
 namespace {
 
-/// Adds to `sum_ms` the time from its making to its end.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum_ms) : sum_ms_(sum_ms), begin_(TilePainter::Clock::now()) {}
-  ~Stopwatch() {
-    const auto duration = TilePainter::Clock::now() - begin_;
-    sum_ms_ += std::chrono::duration<double, std::milli>(duration).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_ms_;
-  const TilePainter::Clock::time_point begin_;
-};
+constexpr std::size_t kMaxConstants = 64;
 
 constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 150};
 constexpr Rgba kVertexColour{0xc0, 0x20, 0x20, 255};
@@ -59,69 +44,164 @@ Box widened(const Box& box, std::int64_t side) {
 TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer)
     : renderer_(std::move(renderer)) {}
 
-std::optional<PaintedTile> TilePainter::paint(const TilePlan& plan, Deadline deadline) {
-  PaintedTile tile;
-  const View view = View::of_tile(plan.tile, plan.scale);
-  const Box box = view.box();
-  if (coverages_.size() < plan.layers.size()) coverages_.resize(plan.layers.size());
-  std::vector<FilledLayer> filled;
-  for (const LayerPaint& paint : plan.layers) {
-    if (Clock::now() > deadline) return std::nullopt;
-    if (paint.fill.a == 0) continue;  // here for its marks only
-    const Layer& layer = painted_layer(plan, paint);
-    {
-      const Stopwatch stopwatch(tile.times.select_ms);
-      const Layer::Selection selection{box, paint.level, plan.pixel_level(), paint.small};
-      layer.select(selection, ranges_);
-      places_.clear();
-      if (paint.small == SmallPolygons::keep) layer.small_polygons(selection, places_);
-    }
-    if (ranges_.empty() && places_.empty()) continue;  // there is nothing of this layer here
-    const Stopwatch stopwatch(tile.times.draw_ms);
-    Coverage& coverage = coverages_[filled.size()];
-    if (places_.empty()) {
-      renderer_->draw(layer.mesh(), ranges_, view, coverage);
+std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
+  drawing_count_ = 0;
+  std::vector<Sketch> sketches;
+  for (const Job& job : jobs) {
+    if (Clock::now() > job.deadline) {
+      sketches.push_back({true, drawing_count_, drawing_count_, {}});
     } else {
-      draw_with_places(layer, view, coverage);
+      sketches.push_back(sketch(*job.plan));
     }
-    filled.push_back({&coverage, paint.fill});
   }
+  const DrawTimes drawn = draw(jobs, sketches);
+  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
+
+  std::vector<std::optional<PaintedTile>> tiles;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    Sketch& sketch = sketches[i];
+    if (sketch.is_late) {
+      tiles.emplace_back();
+      continue;
+    }
+    const auto has_task = [this](std::size_t drawing) { return !drawings_[drawing].is_full; };
+    double tasks = 0;
+    for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) tasks += has_task(k);
+    sketch.times.draw_ms = drawn.draw_ms * share * tasks;
+    sketch.times.read_ms = drawn.read_ms * share * tasks;
+    sketch.times.resolve_ms = drawn.resolve_ms * share * tasks;
+    tiles.push_back(finish(*jobs[i].plan, sketch));
+  }
+  return tiles;
+}
+
+// From the top down: what lies under an opaque layer that covers everything is not looked at.
+TilePainter::Sketch TilePainter::sketch(const TilePlan& plan) {
+  Sketch sketch;
+  sketch.first_drawing = drawing_count_;
+  const View view = View::of_tile(plan.tile, plan.scale);
+  const Stopwatch stopwatch(sketch.times.select_ms);
+  for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
+    if (paint->fill.a == 0) continue;  // here for its marks only
+    if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
+    Drawing& drawing = drawings_[drawing_count_];
+    if (!select(plan, *paint, view, drawing)) continue;
+    ++drawing_count_;
+    if (drawing.is_full && paint->fill.a == 255) break;
+  }
+  sketch.end_drawing = drawing_count_;
+  return sketch;
+}
+
+// False if there is nothing of the layer here.
+bool TilePainter::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
+                         Drawing& drawing) {
+  const Layer& layer = painted_layer(plan, paint);
+  const Layer::Selection selection{view.box(), paint.level, plan.pixel_level(), paint.small};
+  drawing.paint = &paint;
+  drawing.parts.clear();
+  drawing.all_places = {};
+  layer.select(selection, drawing.ranges);
+  drawing.is_full = layer.fill_box(selection, drawing.ranges);
+  if (drawing.is_full) return true;
+  if (!drawing.ranges.empty()) drawing.parts.push_back({layer.mesh(), drawing.ranges});
+  if (paint.small == SmallPolygons::keep) add_places(layer, selection, view, drawing);
+  return !drawing.parts.empty();
+}
+
+// There are no more of them than pixels.
+void TilePainter::add_places(const Layer& layer, const Layer::Selection& selection,
+                             const View& view, Drawing& drawing) {
+  layer.small_polygons(selection, places_);
+  if (places_.empty()) return;
+  drawing.place_vertices.clear();
+  drawing.place_edges.clear();
+  drawing.place_trapezoids.clear();
+  const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
+  for (const Box& place : places_) {
+    append_box(widened(place, pixel), drawing.place_vertices, drawing.place_edges,
+               drawing.place_trapezoids);
+  }
+  const MeshView mesh{new_mesh_id(), drawing.place_vertices, drawing.place_edges,
+                      drawing.place_trapezoids};
+  drawing.all_places = {0, static_cast<std::uint32_t>(drawing.place_trapezoids.size())};
+  drawing.parts.push_back({mesh, {&drawing.all_places, 1}});
+}
+
+DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<const Sketch> sketches) {
+  tasks_.clear();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const View view = View::of_tile(jobs[i].plan->tile, jobs[i].plan->scale);
+    for (std::size_t k = sketches[i].first_drawing; k < sketches[i].end_drawing; ++k) {
+      Drawing& drawing = drawings_[k];
+      if (!drawing.is_full) tasks_.push_back({drawing.parts, view, &drawing.coverage});
+    }
+  }
+  if (tasks_.empty()) return {};
+  const DrawTimes times = renderer_->draw(tasks_);
+  for (std::size_t k = 0; k < drawing_count_; ++k) {
+    const bool has_places = !drawings_[k].is_full && drawings_[k].all_places.count > 0;
+    if (has_places) renderer_->forget(drawings_[k].parts.back().mesh.id);
+  }
+  return times;
+}
+
+PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
+  PaintedTile tile{nullptr, TileHint::none, sketch.times};
+  const View view = View::of_tile(plan.tile, plan.scale);
+  bool is_constant = !plan.debug.any();
   {
     const Stopwatch stopwatch(tile.times.compose_ms);
-    composer_.compose(filled, view.width, view.height, plan.background, picture_);
+    filled_.clear();
+    for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
+      const Drawing& drawing = drawings_[k];
+      is_constant = is_constant && drawing.is_full;
+      filled_.push_back({drawing.is_full ? nullptr : &drawing.coverage, drawing.paint->fill});
+    }
+    const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
+    composer_.compose(filled_, side, side, plan.background, picture_);
     if (plan.debug.any()) mark(plan, view, picture_);
   }
-  {
-    const Stopwatch stopwatch(tile.times.encode_ms);
-    tile.png = encoder_.encode(picture_);
-  }
+  const Stopwatch stopwatch(tile.times.encode_ms);
+  if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
+  tile.png = is_constant ? constant_png(picture_.at(0, 0), view.width)
+                         : std::make_shared<const std::string>(encoder_.encode(picture_));
   return tile;
 }
 
-/// Draws the ranges, and the places of small polygons widened to whole pixels. Their mesh is new
-/// for every picture; there are no more of them than pixels.
-void TilePainter::draw_with_places(const Layer& layer, const View& view, Coverage& out) {
-  std::vector<Point> vertices;
-  std::vector<MeshEdge> edges;
-  std::vector<MeshTrapezoid> trapezoids;
-  const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
-  for (const Box& place : places_) {
-    append_box(widened(place, pixel), vertices, edges, trapezoids);
+// Of a tile of one colour.
+TileHint TilePainter::hint_of(const Sketch& sketch) const {
+  TileHint hint = TileHint::empty;
+  for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
+    const Drawing& drawing = drawings_[k];
+    if (drawing.is_full || drawing.coverage.is_all(255)) {
+      hint = TileHint::full;
+    } else if (!drawing.coverage.is_all(0)) {
+      return TileHint::none;
+    }
   }
-  const MeshView mesh{new_mesh_id(), vertices, edges, trapezoids};
-  const TrapezoidRange all{0, static_cast<std::uint32_t>(trapezoids.size())};
-  const std::array<MeshPart, 2> parts{MeshPart{layer.mesh(), ranges_}, MeshPart{mesh, {&all, 1}}};
-  renderer_->draw(parts, view, out);
-  renderer_->forget(mesh.id);
+  return hint;
+}
+
+std::shared_ptr<const std::string> TilePainter::constant_png(Rgba colour, int side) {
+  auto& png = constants_[{to_hex(colour), side}];
+  if (png != nullptr) return png;
+  Picture picture;
+  composer_.compose({}, side, side, colour, picture);
+  const auto made = std::make_shared<const std::string>(encoder_.encode(picture));
+  png = made;
+  if (constants_.size() > kMaxConstants) constants_.clear();
+  return made;
 }
 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
   spread_palette(picture);
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = painted_layer(plan, paint);
-    layer.select({view.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges_);
-    if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges_, view, kMeshColour, picture);
-    if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges_, view, kVertexColour, picture);
+    std::vector<TrapezoidRange> ranges;
+    layer.select({view.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
+    if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
+    if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
   }
   if (!plan.debug.tile) return;
   std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);

@@ -1,12 +1,17 @@
-// Draws one tile: selects trapezoids, draws coverages, composes colours, encodes the PNG.
+// Draws tiles: selects trapezoids, draws coverages, composes colours, encodes the PNG.
 //
 // Thread-safety: one thread at a time; every worker has its own.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/compose.h"
@@ -16,16 +21,27 @@
 
 namespace trapeze {
 
-/// Milliseconds that each step took.
+/// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
 struct PaintTimes {
+  double queue_ms = 0;  // until a worker began
   double select_ms = 0;
   double draw_ms = 0;
+  double read_ms = 0;
+  double resolve_ms = 0;
   double compose_ms = 0;
   double encode_ms = 0;
 };
 
+/// What a tile shows, at a glance.
+enum class TileHint : std::uint8_t {
+  none,
+  empty,  // nothing but the background
+  full,   // one colour, of polygons that cover it wholly
+};
+
 struct PaintedTile {
-  std::string png;
+  std::shared_ptr<const std::string> png;
+  TileHint hint = TileHint::none;
   PaintTimes times;
 };
 
@@ -34,24 +50,65 @@ class TilePainter {
   using Clock = std::chrono::steady_clock;
   using Deadline = Clock::time_point;
 
+  struct Job {
+    const TilePlan* plan = nullptr;
+    Deadline deadline;
+  };
+
   explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer);
 
-  /// Nothing if the deadline passed before a layer was begun. Throws what the renderer and the
-  /// encoder throw.
-  std::optional<PaintedTile> paint(const TilePlan& plan, Deadline deadline);
+  /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
+  /// Nothing for those whose deadline passed before they were begun. What a tile looks like does
+  /// not depend on the others. Throws what the renderer and the encoder throw.
+  std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
+
+  /// Whether painting several tiles at once takes less time than one after the other.
+  bool gains_by_company() const { return renderer_->gains_by_company(); }
 
  private:
-  void draw_with_places(const Layer& layer, const View& view, Coverage& out);
+  // One layer of one tile.
+  struct Drawing {
+    const LayerPaint* paint = nullptr;
+    bool is_full = false;  // covers the tile wholly and need not be drawn
+    std::vector<TrapezoidRange> ranges;
+    // Small polygons at the size of a pixel; their mesh is made for this picture.
+    std::vector<Point> place_vertices;
+    std::vector<MeshEdge> place_edges;
+    std::vector<MeshTrapezoid> place_trapezoids;
+    TrapezoidRange all_places;
+    std::vector<MeshPart> parts;
+    Coverage coverage;
+  };
+
+  // The drawings of one tile, and what became of it.
+  struct Sketch {
+    bool is_late = false;
+    std::size_t first_drawing = 0;
+    std::size_t end_drawing = 0;
+    PaintTimes times;
+  };
+
+  Sketch sketch(const TilePlan& plan);
+  bool select(const TilePlan& plan, const LayerPaint& paint, const View& view, Drawing& drawing);
+  void add_places(const Layer& layer, const Layer::Selection& selection, const View& view,
+                  Drawing& drawing);
+  DrawTimes draw(std::span<const Job> jobs, std::span<const Sketch> sketches);
+  PaintedTile finish(const TilePlan& plan, const Sketch& sketch);
+  TileHint hint_of(const Sketch& sketch) const;
+  std::shared_ptr<const std::string> constant_png(Rgba colour, int side);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<CoverageRenderer> renderer_;
   Composer composer_;
   PngEncoder encoder_;
+  std::map<std::pair<std::string, int>, std::shared_ptr<const std::string>> constants_;
   // Kept from tile to tile only for their memory.
-  std::vector<Coverage> coverages_;
-  Picture picture_;
-  std::vector<TrapezoidRange> ranges_;
+  std::deque<Drawing> drawings_;  // parts point into them
+  std::size_t drawing_count_ = 0;
+  std::vector<CoverageTask> tasks_;
+  std::vector<FilledLayer> filled_;
   std::vector<Box> places_;
+  Picture picture_;
 };
 
 }  // namespace trapeze

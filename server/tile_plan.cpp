@@ -89,10 +89,10 @@ std::string TilePlan::key() const {
   return key;
 }
 
-std::string TilePlan::entity_tag() const {
+std::string entity_tag_of(std::string_view key) {
   ContentHash hash;
   hash.add(build_id());
-  hash.add(key());
+  hash.add(key);
   return fmt::format("\"{:016x}\"", hash.value());
 }
 

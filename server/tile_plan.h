@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/layer.h"
@@ -51,10 +52,11 @@ struct TilePlan {
   /// Equal for plans that give the same picture with the same program, however the requests were
   /// written. Holds the revisions of the layers.
   std::string key() const;
-  /// The strong entity tag of the picture, in its quotes: from the key and the build, so that it is
-  /// known before anything is drawn.
-  std::string entity_tag() const;
 };
+
+/// The strong entity tag, in its quotes, of the picture of a plan with that key: from the key and
+/// the build, so that it is known before anything is drawn.
+std::string entity_tag_of(std::string_view key);
 
 /// The problem is 404 for a layer that is not in the dataset.
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -9,16 +10,16 @@ namespace trapeze {
 
 TileService::TileService(const TileServiceOptions& options,
                          std::vector<std::unique_ptr<CoverageRenderer>> renderers)
-    : options_(options), renderer_name_(renderers.front()->name()) {
+    : options_(options), renderer_name_(renderers.front()->name()), workers_(renderers.size()) {
   for (auto& renderer : renderers) {
     threads_.emplace_back(
         [this, painter = TilePainter(std::move(renderer))]() mutable { work(painter); });
   }
 }
 
-void TileService::submit(TilePlan plan, Callback callback) {
-  std::string key = plan.key();
-  const auto deadline = TilePainter::Clock::now() + options_.deadline;
+void TileService::submit(TilePlan plan, std::string key, Callback callback) {
+  const auto now = TilePainter::Clock::now();
+  const auto deadline = now + options_.deadline;
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = flights_.find(key); found != flights_.end() && !is_stopping_) {
@@ -30,6 +31,7 @@ void TileService::submit(TilePlan plan, Callback callback) {
       auto flight = std::make_shared<Flight>();
       flight->plan = std::move(plan);
       flight->key = std::move(key);
+      flight->submitted = now;
       flight->deadline = deadline;
       flight->callbacks.push_back(std::move(callback));
       flights_.emplace(flight->key, flight);
@@ -38,37 +40,72 @@ void TileService::submit(TilePlan plan, Callback callback) {
       return;
     }
   }
-  callback({TileOutcome::saturated, nullptr, {}});
+  callback({TileOutcome::saturated, {}});
 }
 
 void TileService::work(TilePainter& painter) {
-  while (const auto flight = take()) land(*flight, draw(painter, *flight));
+  const std::size_t most =
+      painter.gains_by_company() ? std::max<std::size_t>(options_.batch, 1) : 1;
+  while (true) {
+    const Flights flights = take(most);
+    if (flights.empty()) return;
+    draw(painter, flights);
+  }
 }
 
-std::shared_ptr<TileService::Flight> TileService::take() {
+TileService::Flights TileService::take(std::size_t most) {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty(); });
-  if (is_stopping_) return nullptr;
-  auto flight = std::move(queue_.front());
-  queue_.pop_front();
-  return flight;
+  Flights flights;
+  if (is_stopping_) return flights;
+  const std::size_t count = std::min(most, share_of_queue());
+  for (std::size_t i = 0; i < count; ++i) {
+    flights.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+  }
+  return flights;
 }
 
-TileAnswer TileService::draw(TilePainter& painter, Flight& flight) {
-  const auto deadline = [&] {
+std::size_t TileService::share_of_queue() const {
+  return (queue_.size() + workers_ - 1) / workers_;
+}
+
+// What goes wrong with several tiles is tried again with each alone, so that only the one that is
+// to blame fails.
+void TileService::draw(TilePainter& painter, const Flights& flights) {
+  std::vector<TileAnswer> answers = paint(painter, flights);
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    if (flights.size() > 1 && answers[i].outcome == TileOutcome::failed) {
+      answers[i] = paint(painter, {flights[i]}).front();
+    }
+    land(*flights[i], answers[i]);
+  }
+}
+
+std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& flights) {
+  std::vector<TilePainter::Job> jobs;
+  {
     const std::lock_guard lock(mutex_);
-    return flight.deadline;
-  }();
+    for (const auto& flight : flights) jobs.push_back({&flight->plan, flight->deadline});
+  }
+  const auto begin = TilePainter::Clock::now();
+  std::vector<TileAnswer> answers;
   // This is the boundary of a request: nothing that goes wrong in one may end the worker.
   try {
-    auto tile = painter.paint(flight.plan, deadline);
-    if (!tile) return {TileOutcome::late, nullptr, {}};
-    return {TileOutcome::drawn, std::make_shared<const std::string>(std::move(tile->png)),
-            tile->times};
+    for (auto& tile : painter.paint(jobs)) {
+      answers.push_back(tile ? TileAnswer{TileOutcome::drawn, std::move(*tile)}
+                             : TileAnswer{TileOutcome::late, {}});
+    }
   } catch (const std::exception& error) {
-    spdlog::error("tile {} cannot be drawn: {}", flight.key, error.what());
+    spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->key,
+                  flights.size() > 1 ? " or one drawn with it" : "", error.what());
+    answers.assign(flights.size(), TileAnswer{});
   }
-  return {};
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    const auto waited = begin - flights[i]->submitted;
+    answers[i].tile.times.queue_ms = std::chrono::duration<double, std::milli>(waited).count();
+  }
+  return answers;
 }
 
 void TileService::land(Flight& flight, const TileAnswer& answer) {
@@ -91,7 +128,7 @@ TileService::~TileService() {
   while (!queue_.empty()) {
     const auto flight = std::move(queue_.front());
     queue_.pop_front();
-    land(*flight, {TileOutcome::saturated, nullptr, {}});
+    land(*flight, {TileOutcome::saturated, {}});
   }
 }
 

@@ -15,7 +15,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "render/coverage.h"
 #include "server/tile_painter.h"
 #include "server/tile_plan.h"
 
@@ -23,7 +22,10 @@ namespace trapeze {
 
 struct TileServiceOptions {
   std::size_t queue = 256;                     // distinct tiles that may wait for a worker
-  std::chrono::milliseconds deadline{10'000};  // from submission to the end of drawing
+  std::chrono::milliseconds deadline{10'000};  // from submission to the beginning of drawing
+  // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
+  // waited for; but a tile waits until those of its pass are drawn too.
+  std::size_t batch = 8;
 };
 
 enum class TileOutcome {
@@ -35,8 +37,7 @@ enum class TileOutcome {
 
 struct TileAnswer {
   TileOutcome outcome = TileOutcome::failed;
-  std::shared_ptr<const std::string> png;  // null unless drawn
-  PaintTimes times;
+  PaintedTile tile;  // if drawn
 };
 
 class TileService {
@@ -52,8 +53,8 @@ class TileService {
   TileService& operator=(const TileService&) = delete;
 
   /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full.
-  /// Plans of equal key that are under way together are drawn once.
-  void submit(TilePlan plan, Callback callback);
+  /// `key` is the plan's; plans of equal key that are under way together are drawn once.
+  void submit(TilePlan plan, std::string key, Callback callback);
 
   /// One word for what draws.
   const std::string& renderer_name() const { return renderer_name_; }
@@ -62,18 +63,24 @@ class TileService {
   struct Flight {
     TilePlan plan;
     std::string key;
+    TilePainter::Clock::time_point submitted;
     TilePainter::Deadline deadline;  // of the last who asked
     std::vector<Callback> callbacks;
   };
+  using Flights = std::vector<std::shared_ptr<Flight>>;
 
   void work(TilePainter& painter);
-  /// The next flight to draw; null when the service stops.
-  std::shared_ptr<Flight> take();
-  TileAnswer draw(TilePainter& painter, Flight& flight);
+  /// The next flights to draw together, up to so many; none when the service stops.
+  Flights take(std::size_t most);
+  /// How many of those that wait one worker should take, so that all workers have some.
+  std::size_t share_of_queue() const;
+  void draw(TilePainter& painter, const Flights& flights);
+  std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   void land(Flight& flight, const TileAnswer& answer);
 
   const TileServiceOptions options_;
   const std::string renderer_name_;
+  const std::size_t workers_;
   std::vector<std::thread> threads_;
 
   std::mutex mutex_;  // guards all below

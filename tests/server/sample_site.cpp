@@ -34,7 +34,7 @@ std::shared_ptr<const Dataset> sample_dataset() {
 
 SampleSite::SampleSite(bool is_loaded, StaticFiles files, std::string public_url)
     : tiles_({}, software_renderers()),
-      site_(std::move(public_url), std::move(files), data_, tiles_) {
+      site_({.public_url = std::move(public_url)}, std::move(files), data_, tiles_, cache_) {
   if (is_loaded) data_.set(sample_dataset());
 }
 

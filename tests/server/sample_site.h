@@ -30,6 +30,7 @@ class SampleSite {
 
  private:
   CurrentDataset data_;
+  TileCache cache_{std::size_t{1} << 20};
   TileService tiles_;
   Site site_;
 };

@@ -110,8 +110,39 @@ TEST_F(SiteTest, TilesMayBeCachedAndTimed) {
   EXPECT_EQ(response.header("Cache-Control"), "public, max-age=3600");
   EXPECT_EQ(response.header("Access-Control-Allow-Origin"), "*");
   EXPECT_THAT(std::string(response.header("Server-Timing")),
-              ::testing::MatchesRegex("select;dur=[0-9.]+, draw;dur=[0-9.]+, "
+              ::testing::MatchesRegex("queue;dur=[0-9.]+, select;dur=[0-9.]+, draw;dur=[0-9.]+, "
+                                      "read;dur=[0-9.]+, resolve;dur=[0-9.]+, "
                                       "compose;dur=[0-9.]+, encode;dur=[0-9.]+"));
+}
+
+TEST_F(SiteTest, ATileIsDrawnOnceAndThenKept) {
+  const auto drawn = get("/tiles/rings/0/0/0.png");
+  EXPECT_EQ(drawn.header("X-Cache"), "MISS");
+  const auto kept = get("/tiles/rings/0/0/0.png?fill=f00");  // the same style, written otherwise
+  EXPECT_EQ(kept.header("X-Cache"), "HIT");
+  EXPECT_EQ(kept.body, drawn.body);
+  EXPECT_EQ(kept.header("ETag"), drawn.header("ETag"));
+  EXPECT_EQ(get("/tiles/rings/0/0/0.png?fill=f01").header("X-Cache"), "MISS");
+}
+
+TEST_F(SiteTest, EmptyAndFullTilesSaySo) {
+  const auto hint = [this](const std::string& target) {
+    const std::string first(get(target).header("OATiles-hint"));
+    EXPECT_EQ(get(target).header("OATiles-hint"), first) << "from the cache";
+    return first;
+  };
+  EXPECT_EQ(hint("/tiles/rings/0/0/0.png"), "");
+  EXPECT_EQ(hint("/tiles/rings/5/0/0.png"), "empty");
+  EXPECT_EQ(hint("/tiles/rings/5/9/9.png"), "full");
+  EXPECT_EQ(hint("/tiles/rings,west/5/9/9.png"), "full");
+  EXPECT_EQ(hint("/tiles/west,rings/5/31/31.png"), "empty");
+  EXPECT_EQ(hint("/tiles/rings/5/9/9.png?debug=tile"), "");
+  const auto translucent = get("/tiles/rings,west/5/9/9@2x.png?fill=red&west.fill-opacity=0.5");
+  EXPECT_EQ(translucent.header("OATiles-hint"), "full");
+  const Picture picture = picture_of(translucent);
+  EXPECT_EQ(picture.width, 512);
+  EXPECT_EQ(picture.at(0, 0), (Rgba{255, 0, 0, 255}));
+  EXPECT_EQ(picture_of(get("/tiles/rings,west/5/9/9.png")).at(255, 255), (Rgba{127, 0, 128, 255}));
 }
 
 TEST_F(SiteTest, ATagThatTheClientHasIsNotModified) {

@@ -23,7 +23,7 @@ class TilePlanTest : public ::testing::Test {
     auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
     return std::get<TilePlan>(planned);
   }
-  std::string tag(const std::string& target) const { return plan(target).entity_tag(); }
+  std::string tag(const std::string& target) const { return entity_tag_of(plan(target).key()); }
   /// The level of the default tolerance in tiles of 256 pixels.
   static Level usual_level(int zoom) {
     return nearest_level(static_cast<double>(TileId{zoom, 0, 0}.side()) / 256 / 4);
@@ -86,13 +86,13 @@ TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
   const auto again = testing::sample_dataset();
   EXPECT_EQ(again->generation(), dataset_->generation());
   TilePlan plan = this->plan("rings/0/0/0.png");
-  const std::string tag = plan.entity_tag();
+  const std::string tag = entity_tag_of(plan.key());
   plan.dataset = again;
-  EXPECT_EQ(plan.entity_tag(), tag);
+  EXPECT_EQ(entity_tag_of(plan.key()), tag);
   auto layers = layers_of_files({testing::fixture("west.geojson")});
   layers[0].name = "rings";  // the same name, other contents
   plan.dataset = Dataset::load(layers);
-  EXPECT_NE(plan.entity_tag(), tag);
+  EXPECT_NE(entity_tag_of(plan.key()), tag);
 }
 
 TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
