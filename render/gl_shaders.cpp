@@ -154,31 +154,34 @@ void main() {
 }
 )";
 
+// What lies east of a side covers, in a row in which the side is at x, all pixels east of it and a
+// part of the pixel that holds it. From one pixel to the next that differs by a tent: it rises from
+// nothing, where the side is a pixel west of the pixel's own place, to one and falls again. So the
+// difference is the mean of the tent over the rows' positions of the side: a difference of two
+// integrals.
 constexpr const char* kFragmentCommon = R"(#version 430 core
 out float difference;
 
-// How much of the width of a pixel, and of its western neighbour, lies left of a side on average:
-// x and y. In the first the side goes evenly from `a` to `b`, in units of its width.
-vec2 left_of(float a, float b) {
-  vec2 low = min(a, b) + vec2(0.0, 1.0);
-  vec2 high = max(a, b) + vec2(0.0, 1.0);
-  float span = high.x - low.x;
-  // Below this the quotient loses more digits than the bend of the clamp is worth.
-  if (span < 1e-3) return clamp(0.5 * (low + high), 0.0, 1.0);
-  vec2 from = clamp(low, 0.0, 1.0);
-  vec2 to = clamp(high, 0.0, 1.0);
-  return (0.5 * (to - from) * (to + from) + max(high, 1.0) - max(low, 1.0)) / span;
+// The integral of the tent from 0 to u. Before the first column there is nothing to differ from:
+// there what lies west of the picture counts as a whole.
+float tent_integral(float u, bool is_first) {
+  float within = clamp(u, -1.0, 1.0);
+  float integral = within - 0.5 * within * abs(within);
+  return is_first && u < 0.0 ? u : integral;
 }
 
-// Of the pixel whose corner is there, between two heights; all local.
-vec2 left_of(vec3 line, float pixel_x, float from_y, float to_y) {
-  return left_of(line.x + (from_y - line.y) * line.z - pixel_x,
-                 line.x + (to_y - line.y) * line.z - pixel_x);
-}
-
-// West of the first column there is nothing to differ from.
-float difference_of(vec2 covered) {
-  return gl_FragCoord.x < 1.0 ? covered.x : covered.x - covered.y;
+// Of the pixel whose corner is at x, between two heights of the side; all local.
+float difference_at(vec3 side, float x, float from_y, float to_y) {
+  float from = side.x + (from_y - side.y) * side.z - x;
+  float to = side.x + (to_y - side.y) * side.z - x;
+  bool is_first = gl_FragCoord.x < 1.0;
+  float span = to - from;
+  // There the quotient loses more digits than the bend of the tent is worth.
+  if (abs(span) < 1e-3) {
+    float middle = from + 0.5 * span;
+    return max(0.0, 1.0 - (is_first ? max(middle, 0.0) : abs(middle)));
+  }
+  return (tent_integral(to, is_first) - tent_integral(from, is_first)) / span;
 }
 )";
 
@@ -191,8 +194,7 @@ void main() {
   vec2 pixel = gl_FragCoord.xy - 0.5 - corner;
   float from_y = max(pixel.y, extent.x);
   float to_y = min(pixel.y + 1.0, extent.y);
-  vec2 right = 1.0 - left_of(side, pixel.x, from_y, to_y);
-  difference = extent.z * max(to_y - from_y, 0.0) * difference_of(right);
+  difference = extent.z * max(to_y - from_y, 0.0) * difference_at(side, pixel.x, from_y, to_y);
 }
 )";
 
@@ -205,9 +207,9 @@ void main() {
   vec2 pixel = gl_FragCoord.xy - 0.5 - corner.xy;
   float from_y = max(pixel.y, left_side.w);
   float to_y = min(pixel.y + 1.0, right_side.w);
-  vec2 width = left_of(right_side.xyz, pixel.x, from_y, to_y) -
-               left_of(left_side.xyz, pixel.x, from_y, to_y);
-  difference = corner.z * max(to_y - from_y, 0.0) * difference_of(max(width, 0.0));
+  difference = corner.z * max(to_y - from_y, 0.0) *
+               (difference_at(left_side.xyz, pixel.x, from_y, to_y) -
+                difference_at(right_side.xyz, pixel.x, from_y, to_y));
 }
 )";
 
