@@ -34,9 +34,9 @@ bool all_of(std::span<const T> items, const Holds& holds) {
   return result;
 }
 
-bool is_on_grid(Point p) {
+constexpr auto is_on_grid = [](Point p) {
   return (p.x >= kGridMin) & (p.x <= kGridMax) & (p.y >= kGridMin) & (p.y <= kGridMax);
-}
+};
 
 bool is_sorted_up_to(std::span<const std::uint32_t> ends, std::size_t end) {
   return std::ranges::is_sorted(ends) && (ends.empty() || ends.back() <= end);

@@ -17,8 +17,8 @@ namespace {
 // To be raised when another polygon or attribute is read from the same source.
 constexpr std::uint64_t kReadingVersion = 1;
 
-constexpr int kShapes = 24;
-constexpr int kVertices = 18;
+constexpr int kShapes = 12;
+constexpr int kVertices = 9;
 
 /// The same on every machine, unlike the distributions of the standard library.
 class Random {
@@ -37,7 +37,7 @@ class Random {
 /// Rings of any kind, from a few cells to a thousand kilometres, most of which cross themselves:
 /// operators, noding, blocked vertices, holes and dust all have a part in them.
 void draw_shape(Random& random, int shape, Rings& rings) {
-  const std::int32_t size = 4 << shape;
+  const std::int32_t size = 4 << (2 * shape);
   const Point middle{random.next(1 << 20), random.next(1 << 20)};
   for (int vertex = 0; vertex < kVertices; ++vertex) {
     rings.points.push_back({middle.x + random.next(size), middle.y + random.next(size)});
