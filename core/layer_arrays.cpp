@@ -35,7 +35,7 @@ bool all_of(std::span<const T> items, const Holds& holds) {
 }
 
 constexpr auto is_on_grid = [](Point p) {
-  return (p.x >= kGridMin) & (p.x <= kGridMax) & (p.y >= kGridMin) & (p.y <= kGridMax);
+  return p.x >= kGridMin && p.x <= kGridMax && p.y >= kGridMin && p.y <= kGridMax;
 };
 
 bool is_sorted_up_to(std::span<const std::uint32_t> ends, std::size_t end) {
@@ -48,9 +48,9 @@ bool lies_between_its_edges(const LayerArrays& a, const MeshTrapezoid& t) {
   const std::int32_t top = a.vertices[t.top].y;
   const std::int32_t bottom = a.vertices[t.bottom].y;
   const auto spans = [&](const MeshEdge& edge) {
-    return (a.vertices[edge.upper].y <= top) & (bottom <= a.vertices[edge.lower].y);
+    return a.vertices[edge.upper].y <= top && bottom <= a.vertices[edge.lower].y;
   };
-  return (top <= bottom) & spans(a.edges[t.left]) & spans(a.edges[t.right]);
+  return top <= bottom && spans(a.edges[t.left]) && spans(a.edges[t.right]);
 }
 
 void check_mesh(const LayerArrays& a) {
@@ -61,7 +61,7 @@ void check_mesh(const LayerArrays& a) {
   require(all_of(a.vertices, is_on_grid), "a vertex is not on the grid");
   require(
       all_of(a.edges,
-             [vertices](const MeshEdge& e) { return (e.upper < vertices) & (e.lower < vertices); }),
+             [vertices](const MeshEdge& e) { return e.upper < vertices && e.lower < vertices; }),
       "an end of an edge is not there");
   require(all_of(a.trapezoids,
                  [&](const MeshTrapezoid& t) {

@@ -4,6 +4,7 @@
 // Input: changes of seven bytes each to a file prepared from a few shapes: where (four bytes, taken
 // modulo its size), how (one byte: set one byte, or a word of four bytes to a small number, to one
 // from the end of the range, or to what stands there plus a little), and what (two bytes).
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -90,8 +91,24 @@ void apply_change(const std::uint8_t* change, std::span<std::byte> file) {
   std::memcpy(file.data() + word_at, &word, sizeof word);
 }
 
-/// Makes all checksums right that can be found, as a forger would.
-void mend_checksums(std::span<std::byte> file) {
+/// Makes checksums right and paddings zero, as a forger would, as far as the counts lead.
+void mend_sections(std::span<std::byte> directory, std::span<std::byte> sections) {
+  for (std::size_t at = 0; at < directory.size(); at += sizeof(DirectoryEntry)) {
+    DirectoryEntry entry;
+    std::memcpy(&entry, directory.data() + at, sizeof entry);
+    if (entry.item_size == 0 || entry.count > sections.size() / entry.item_size) return;
+    const std::size_t size = entry.count * entry.item_size;
+    const std::size_t padded =
+        (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+    if (padded > sections.size()) return;
+    entry.checksum = checksum(sections.first(size));
+    std::memcpy(directory.data() + at, &entry, sizeof entry);
+    std::ranges::fill(sections.subspan(size, padded - size), std::byte{});
+    sections = sections.subspan(padded);
+  }
+}
+
+void mend(std::span<std::byte> file) {
   PreparedHeader header;
   std::memcpy(&header, file.data(), sizeof header);
   header.magic = kPreparedMagic;
@@ -100,23 +117,12 @@ void mend_checksums(std::span<std::byte> file) {
   header.file_size = file.size();
   const std::span<std::byte> rest = file.subspan(sizeof header);
   if (header.section_count <= rest.size() / sizeof(DirectoryEntry)) {
-    std::size_t begin = sizeof header + header.section_count * sizeof(DirectoryEntry);
-    const auto align = [&begin] {
-      begin = (begin + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
-    };
-    align();
-    for (std::size_t i = 0; i < header.section_count; ++i) {
-      DirectoryEntry entry;
-      std::memcpy(&entry, rest.data() + i * sizeof entry, sizeof entry);
-      if (begin > file.size() || entry.item_size == 0 ||
-          entry.count > (file.size() - begin) / entry.item_size)
-        break;
-      entry.checksum = checksum(file.subspan(begin, entry.count * entry.item_size));
-      std::memcpy(rest.data() + i * sizeof entry, &entry, sizeof entry);
-      begin += entry.count * entry.item_size;
-      align();
-    }
-    header.directory_checksum = checksum(rest.first(header.section_count * sizeof(DirectoryEntry)));
+    const std::size_t size = header.section_count * sizeof(DirectoryEntry);
+    const std::size_t padded =
+        (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+    std::ranges::fill(rest.subspan(size, padded - size), std::byte{});
+    mend_sections(rest.first(size), rest.subspan(padded));
+    header.directory_checksum = checksum(rest.first(size));
   }
   header.header_checksum = checksum(std::as_bytes(std::span(&header, 1)).first(sizeof header - 8));
   std::memcpy(file.data(), &header, sizeof header);
@@ -163,7 +169,7 @@ void check(const std::uint8_t* data, std::size_t size) {
   for (std::size_t i = 0; i < kMaxChanges && (i + 1) * kBytesOfChange <= size; ++i) {
     apply_change(data + i * kBytesOfChange, file);
   }
-  mend_checksums(file);
+  mend(file);
   LoadedLayer loaded;
   try {
     loaded = layer_of_prepared_bytes(file, nullptr);
