@@ -19,17 +19,21 @@ class ByteWriter {
   template <typename Number>
   void add(Number number) {
     static_assert(std::is_integral_v<Number>);
-    const auto bytes = std::as_bytes(std::span(&number, 1));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    add_bytes(&number, sizeof number);
   }
   void add_text(std::string_view text) {
     add(std::uint64_t{text.size()});
-    const auto bytes = std::as_bytes(std::span(text));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    add_bytes(text.data(), text.size());
   }
   const std::vector<std::byte>& bytes() const { return bytes_; }
 
  private:
+  void add_bytes(const void* bytes, std::size_t size) {
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + size);
+    if (size > 0) std::memcpy(bytes_.data() + begin, bytes, size);
+  }
+
   std::vector<std::byte> bytes_;
 };
 
