@@ -140,6 +140,7 @@ void use(const Layer& layer) {
     const Layer::Selection selection{view.box(), static_cast<Level>(kLastLevel - 2 * zoom)};
     layer.select(selection, ranges);
     renderer.draw(layer.mesh(), ranges, view, coverage);
+    layer.fill_box(selection, ranges);
     layer.small_polygons(selection, places);
   }
   Rings rings;

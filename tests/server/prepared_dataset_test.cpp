@@ -52,9 +52,7 @@ class Comparison {
     const TilePlan built = std::get<TilePlan>(plan_tile(request, built_));
     const TilePlan prepared = std::get<TilePlan>(plan_tile(request, prepared_));
     EXPECT_EQ(prepared.entity_tag(), built.entity_tag()) << target;
-    EXPECT_EQ(painter_.paint(prepared, TilePainter::Deadline::max())->png,
-              painter_.paint(built, TilePainter::Deadline::max())->png)
-        << target;
+    EXPECT_EQ(*paint(prepared).png, *paint(built).png) << target;
   }
 
   /// A tile of every zoom, over the middle of a polygon.
@@ -72,6 +70,11 @@ class Comparison {
   }
 
  private:
+  PaintedTile paint(const TilePlan& plan) {
+    const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
+    return painter_.paint({&job, 1}).front().value();
+  }
+
   const std::shared_ptr<const Dataset> built_;
   const std::shared_ptr<const Dataset> prepared_;
   TilePainter painter_;
