@@ -1,5 +1,6 @@
 #include "core/feature_table.h"
 
+#include <algorithm>
 #include <bit>
 #include <functional>
 #include <stdexcept>
@@ -10,6 +11,7 @@ namespace {
 
 constexpr std::uint32_t kFreeSlot = 0xffffffff;
 constexpr std::size_t kFirstSlots = 64;
+constexpr std::size_t kBits = 64;  // rows to a word of nulls
 
 bool has_type(const Value& value, FieldType type) {
   switch (type) {
@@ -35,13 +37,13 @@ std::uint64_t bits_of(const Value& value) {
   return 0;
 }
 
+void require(bool condition, const char* words) {
+  if (!condition) throw std::invalid_argument(words);
+}
+
 template <typename T>
 std::size_t heap_bytes(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
-}
-
-std::size_t heap_bytes(const std::vector<bool>& v) {
-  return v.capacity() / 8;
 }
 
 // A short string lives inside its object.
@@ -53,6 +55,19 @@ std::size_t heap_bytes(const std::string& s) {
 
 FeatureTable::FeatureTable(std::vector<Field> fields)
     : fields_(std::move(fields)), columns_(fields_.size()) {}
+
+FeatureTable::FeatureTable(std::vector<Field> fields, const Cells& cells)
+    : fields_(std::move(fields)),
+      ids_(StoredArray<std::int64_t>::looking_at(cells.ids)),
+      string_bytes_(StoredArray<char>::looking_at(cells.string_bytes)),
+      string_ends_(StoredArray<std::uint64_t>::looking_at(cells.string_ends)) {
+  for (const Cells::Column& column : cells.columns) {
+    columns_.push_back({StoredArray<std::uint64_t>::looking_at(column.numbers),
+                        StoredArray<std::uint64_t>::looking_at(column.nulls),
+                        StoredArray<std::uint32_t>::looking_at(column.texts)});
+  }
+  check_cells();
+}
 
 std::uint32_t FeatureTable::append(std::int64_t id, std::span<const Value> values) {
   check_types(values);
@@ -83,21 +98,50 @@ Value FeatureTable::value(std::uint32_t row, int field) const {
     const std::uint32_t number = column.texts[row];
     return number == kNullText ? Value() : Value(text(number));
   }
-  if (row < column.nulls.size() && column.nulls[row]) return {};
+  if (row / kBits < column.nulls.size() && (column.nulls[row / kBits] >> row % kBits & 1) != 0) {
+    return {};
+  }
   const std::uint64_t bits = column.numbers[row];
   if (fields_[field].type == FieldType::integer) return std::bit_cast<std::int64_t>(bits);
   return std::bit_cast<double>(bits);
 }
 
+FeatureTable::Cells FeatureTable::cells() const {
+  Cells cells{ids_, {}, string_bytes_, string_ends_};
+  for (const Column& column : columns_) {
+    cells.columns.push_back({column.numbers, column.nulls, column.texts});
+  }
+  return cells;
+}
+
 std::size_t FeatureTable::memory() const {
-  std::size_t bytes = heap_bytes(fields_) + heap_bytes(ids_) + heap_bytes(columns_) +
-                      heap_bytes(string_bytes_) + heap_bytes(string_ends_) +
-                      heap_bytes(string_slots_);
+  std::size_t bytes = heap_bytes(fields_) + ids_.memory() + heap_bytes(columns_) +
+                      string_bytes_.memory() + string_ends_.memory() + heap_bytes(string_slots_);
   for (const Field& field : fields_) bytes += heap_bytes(field.name);
   for (const Column& column : columns_) {
-    bytes += heap_bytes(column.numbers) + heap_bytes(column.nulls) + heap_bytes(column.texts);
+    bytes += column.numbers.memory() + column.nulls.memory() + column.texts.memory();
   }
   return bytes;
+}
+
+void FeatureTable::check_cells() const {
+  require(columns_.size() == fields_.size(), "there is not one column a field");
+  require(ids_.size() < 0xffffffff, "there are too many features");
+  require(string_ends_.size() < kNullText, "there are too many texts");
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    const Column& column = columns_[i];
+    const bool is_text = fields_[i].type == FieldType::text;
+    require(column.numbers.size() == (is_text ? 0 : ids_.size()),
+            "a column has not one number a row");
+    require(column.texts.size() == (is_text ? ids_.size() : 0), "a column has not one text a row");
+    const std::size_t strings = string_ends_.size();
+    require(std::ranges::all_of(
+                column.texts, [strings](std::uint32_t t) { return t < strings || t == kNullText; }),
+            "a text is not there");
+  }
+  require(std::ranges::is_sorted(string_ends_), "texts are not in order");
+  require(string_ends_.empty() || string_ends_[string_ends_.size() - 1] <= string_bytes_.size(),
+          "texts end too late");
 }
 
 void FeatureTable::check_types(std::span<const Value> values) const {
@@ -114,8 +158,9 @@ void FeatureTable::check_types(std::span<const Value> values) const {
 
 void FeatureTable::append_number(Column& column, const Value& value) {
   if (is_null(value)) {
-    column.nulls.resize(column.numbers.size());
-    column.nulls.push_back(true);
+    const std::size_t row = column.numbers.size();
+    column.nulls.resize(row / kBits + 1);
+    column.nulls.back() |= std::uint64_t{1} << row % kBits;
   }
   column.numbers.push_back(bits_of(value));
 }
@@ -138,7 +183,7 @@ std::uint32_t FeatureTable::intern(std::string_view text_to_find) {
 
 std::string_view FeatureTable::text(std::uint32_t number) const {
   const std::uint64_t begin = number == 0 ? 0 : string_ends_[number - 1];
-  return std::string_view(string_bytes_).substr(begin, string_ends_[number] - begin);
+  return {string_bytes_.data() + begin, string_ends_[number] - begin};
 }
 
 void FeatureTable::grow_slots() {

@@ -12,6 +12,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/stored_array.h"
+
 namespace trapeze {
 
 enum class FieldType : std::uint8_t { integer, real, text };
@@ -26,8 +28,24 @@ using Value = std::variant<std::monostate, std::int64_t, double, std::string_vie
 
 class FeatureTable {
  public:
+  /// The cells as flat arrays, to be stored and looked at again.
+  struct Cells {
+    struct Column {
+      std::span<const std::uint64_t> numbers;
+      std::span<const std::uint64_t> nulls;
+      std::span<const std::uint32_t> texts;
+    };
+    std::span<const std::int64_t> ids;
+    std::vector<Column> columns;
+    std::span<const char> string_bytes;
+    std::span<const std::uint64_t> string_ends;
+  };
+
   FeatureTable() = default;
   explicit FeatureTable(std::vector<Field> fields);
+  /// A table that looks at cells, which must outlive it. Throws std::invalid_argument if they do
+  /// not fit each other or the fields; if it does not, no value is read from beyond them.
+  FeatureTable(std::vector<Field> fields, const Cells& cells);
 
   /// Appends a row and returns its number; `values` are as many as fields, each null or of its
   /// field's type (std::invalid_argument if not). `id` is the source's own feature id.
@@ -40,30 +58,32 @@ class FeatureTable {
   std::int64_t id(std::uint32_t row) const { return ids_[row]; }
   /// `row` < size(), 0 <= `field` < fields().size().
   Value value(std::uint32_t row, int field) const;
-  /// Heap memory held, in bytes.
+  Cells cells() const;
+  /// Memory held, in bytes: heap, or mapped.
   std::size_t memory() const;
 
  private:
   // One column a field; a column uses one of the two kinds of cells. Equal strings of the whole
   // table are stored once, whatever their field.
   struct Column {
-    std::vector<std::uint64_t> numbers;  // integer and real: the integer, or the bits of the double
-    std::vector<bool> nulls;             // integer and real: as long as up to the last null
-    std::vector<std::uint32_t> texts;    // text: number of the string, or kNullText
+    StoredArray<std::uint64_t> numbers;  // integer and real: the integer, or the bits of the double
+    StoredArray<std::uint64_t> nulls;    // integer and real: a bit a row, up to the last null
+    StoredArray<std::uint32_t> texts;    // text: number of the string, or kNullText
   };
   static constexpr std::uint32_t kNullText = 0xffffffff;
 
   void check_types(std::span<const Value> values) const;
+  void check_cells() const;
   void append_number(Column& column, const Value& value);
   std::uint32_t intern(std::string_view text);
   std::string_view text(std::uint32_t number) const;
   void grow_slots();
 
   std::vector<Field> fields_;
-  std::vector<std::int64_t> ids_;
+  StoredArray<std::int64_t> ids_;
   std::vector<Column> columns_;
-  std::string string_bytes_;
-  std::vector<std::uint64_t> string_ends_;
+  StoredArray<char> string_bytes_;
+  StoredArray<std::uint64_t> string_ends_;
   // Open addressing over string numbers, keyed by the bytes; the size is a power of two.
   std::vector<std::uint32_t> string_slots_;
 };

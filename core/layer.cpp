@@ -83,7 +83,8 @@ void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   const Contents& c = *contents_;
   if (row >= c.outline_ends.size()) return;
   for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
-    rings.add(c.outlines[i]);
+    const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
+    rings.add(std::span(c.outline_points).subspan(begin, c.ring_ends[i] - begin));
   }
 }
 
@@ -98,13 +99,10 @@ Layer::Size Layer::size() const {
 std::size_t Layer::memory() const {
   const Contents& c = *contents_;
   const std::size_t beside = has_without_test_ ? without_test_->memory() : 0;
-  return beside + c.vertices.capacity() * sizeof(Point) + c.edges.capacity() * sizeof(MeshEdge) +
-         c.trapezoids.capacity() * sizeof(MeshTrapezoid) +
-         c.lifespans.capacity() * sizeof(Lifespan) +
-         c.feature_of.capacity() * sizeof(std::uint32_t) +
-         c.outlines.points.capacity() * sizeof(Point) +
-         (c.outlines.ends.capacity() + c.outline_ends.capacity()) * sizeof(std::uint32_t) +
-         c.polygon_index.memory() + c.mote_index.memory() + c.merged_mote_index.memory();
+  return beside + c.vertices.memory() + c.edges.memory() + c.trapezoids.memory() +
+         c.lifespans.memory() + c.feature_of.memory() + c.outline_points.memory() +
+         c.ring_ends.memory() + c.outline_ends.memory() + c.polygon_index.memory() +
+         c.mote_index.memory() + c.merged_mote_index.memory();
 }
 
 }  // namespace trapeze

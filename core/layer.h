@@ -30,9 +30,9 @@ class Layer {
  public:
   static constexpr std::uint32_t kNoFeature = 0xffffffff;
 
-  struct Contents;  // the stored arrays; made by LayerBuilder
+  struct Contents;  // the stored arrays; made by LayerBuilder and layer_from
 
-  explicit Layer(std::unique_ptr<const Contents> contents);  // used by LayerBuilder
+  explicit Layer(std::unique_ptr<const Contents> contents);  // used by these
   ~Layer();
   Layer(const Layer&) = delete;
   Layer& operator=(const Layer&) = delete;
@@ -87,9 +87,11 @@ class Layer {
   };
   Size size() const;
 
-  /// Heap memory held by geometry and index, in bytes; attributes are counted by
+  /// Memory held by geometry and index, in bytes: heap, or mapped. Attributes are counted by
   /// features().memory().
   std::size_t memory() const;
+
+  const Contents& contents() const { return *contents_; }  // used by arrays_of
 
  private:
   void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;

@@ -53,8 +53,19 @@ std::span<const T> part_of(const std::vector<T>& all, const Stock& stock, std::s
   return std::span<const T>(all).subspan(from, to - from);
 }
 
+/// The arrays of a layer while they grow.
+struct GrowingLayer {
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
+  std::vector<Lifespan> lifespans;
+  std::vector<std::uint32_t> feature_of;
+  Rings outlines;
+  std::vector<std::uint32_t> outline_ends;
+};
+
 /// Lays the histories one after another; returns their grains.
-std::vector<Grain> concatenate(const std::vector<PartOf>& parts, Layer::Contents& layer) {
+std::vector<Grain> concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
   std::vector<Grain> all_grains;
   for (const auto& [stock, p] : parts) {
     const History& history = stock->history;
@@ -97,7 +108,7 @@ void permute(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
 }
 
 /// Orders trapezoids for the index.
-void order_trapezoids(Layer::Contents& layer) {
+void order_trapezoids(GrowingLayer& layer) {
   const MeshView view{0, layer.vertices, layer.edges, layer.trapezoids};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   keys.reserve(layer.trapezoids.size());
@@ -117,7 +128,7 @@ void order_trapezoids(Layer::Contents& layer) {
 
 /// Numbers edges and vertices anew in the order in which the trapezoids use them, so that what is
 /// drawn together lies together in memory; unused ones go.
-void order_edges_and_vertices(Layer::Contents& layer) {
+void order_edges_and_vertices(GrowingLayer& layer) {
   std::vector<std::uint32_t> number(layer.edges.size(), kUnused);
   std::vector<MeshEdge> edges;
   edges.reserve(layer.edges.size());
@@ -158,7 +169,7 @@ void order_edges_and_vertices(Layer::Contents& layer) {
 }
 
 /// The square of a mote as a trapezoid; one of negative area has its edges changed round.
-void append_mote(const Mote& mote, Layer::Contents& layer) {
+void append_mote(const Mote& mote, GrowingLayer& layer) {
   const double area = std::abs(mote.area);
   const double width = std::max(1.0, std::round(std::sqrt(area)));
   const double height = std::max(1.0, std::round(area / width));
@@ -175,7 +186,7 @@ void append_mote(const Mote& mote, Layer::Contents& layer) {
 }
 
 /// Single motes first, then merged ones; returns the number of single ones.
-std::uint32_t append_dust(const std::vector<Mote>& motes, Layer::Contents& layer) {
+std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
   using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
   std::vector<Key> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {
@@ -195,6 +206,19 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, Layer::Contents& layer
     singles += !is_merged;
   }
   return singles;
+}
+
+void move_arrays(GrowingLayer& from, Layer::Contents& to) {
+  from.outlines.points.shrink_to_fit();
+  from.outlines.ends.shrink_to_fit();
+  to.vertices = std::move(from.vertices);
+  to.edges = std::move(from.edges);
+  to.trapezoids = std::move(from.trapezoids);
+  to.lifespans = std::move(from.lifespans);
+  to.feature_of = std::move(from.feature_of);
+  to.outline_points = std::move(from.outlines.points);
+  to.ring_ends = std::move(from.outlines.ends);
+  to.outline_ends = std::move(from.outline_ends);
 }
 
 }  // namespace
@@ -235,20 +259,20 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   std::vector<const Stock*> stocks;
   stocks.reserve(builders.size());
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
-  const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), *layer);
+  GrowingLayer arrays;
+  const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), arrays);
   for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);
 
-  order_trapezoids(*layer);
-  order_edges_and_vertices(*layer);
-  for (const Point p : layer->vertices) layer->bounds.include(p);
-  const auto polygons = static_cast<std::uint32_t>(layer->trapezoids.size());
-  layer->size = {layer->vertices.size(), layer->trapezoids.size(), layer->edges.size(), 0};
-  const std::uint32_t motes = append_dust(settle(grains), *layer);
-  const auto all = static_cast<std::uint32_t>(layer->trapezoids.size());
+  order_trapezoids(arrays);
+  order_edges_and_vertices(arrays);
+  for (const Point p : arrays.vertices) layer->bounds.include(p);
+  const auto polygons = static_cast<std::uint32_t>(arrays.trapezoids.size());
+  layer->size = {arrays.vertices.size(), arrays.trapezoids.size(), arrays.edges.size(), 0};
+  const std::uint32_t motes = append_dust(settle(grains), arrays);
+  const auto all = static_cast<std::uint32_t>(arrays.trapezoids.size());
   layer->size.motes = all - polygons;
 
-  layer->outlines.points.shrink_to_fit();
-  layer->outlines.ends.shrink_to_fit();
+  move_arrays(arrays, *layer);
   layer->features = std::move(features);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   const auto index = [&layer](std::uint32_t from, std::uint32_t to) {

@@ -1,21 +1,23 @@
-// The stored arrays of a layer; private to Layer and LayerBuilder.
+// The stored arrays of a layer; private to Layer, LayerBuilder and LayerArrays.
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "core/adaptable_graph.h"
 #include "core/layer.h"
 #include "core/mesh_index.h"
+#include "core/stored_array.h"
 
 namespace trapeze {
 
 struct Layer::Contents {
-  std::vector<Point> vertices;
-  std::vector<MeshEdge> edges;
-  std::vector<MeshTrapezoid> trapezoids;
-  std::vector<Lifespan> lifespans;        // by trapezoid
-  std::vector<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
+  std::shared_ptr<const void> mapping;  // what arrays that own nothing look at
+  StoredArray<Point> vertices;
+  StoredArray<MeshEdge> edges;
+  StoredArray<MeshTrapezoid> trapezoids;
+  StoredArray<Lifespan> lifespans;        // by trapezoid
+  StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // looks at the arrays above
   // Trapezoids of polygons come first, then those of single motes, then those of merged ones.
   MeshIndex polygon_index;
@@ -23,8 +25,10 @@ struct Layer::Contents {
   MeshIndex merged_mote_index;
   Size size;
   GeneralizationOptions options;
-  Rings outlines;                           // of all features, in order of rows
-  std::vector<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
+  // The rings of all features, in order of rows, as in Rings.
+  StoredArray<Point> outline_points;
+  StoredArray<std::uint32_t> ring_ends;
+  StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
   Box bounds;
   FeatureTable features;
 };

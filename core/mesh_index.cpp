@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "core/hilbert.h"
 
@@ -39,6 +41,18 @@ bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box,
 /// An octave of levels to a class; the untouched and the undying are classes of their own.
 unsigned lifespan_class(Level level) {
   return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
+}
+
+/// Where the heights of a tree over `count` items begin, and where the last one ends. The last has
+/// one entry, or the first none.
+std::vector<std::size_t> heights_over(std::size_t count, std::size_t fanout) {
+  std::vector<std::size_t> begins = {0};
+  std::size_t entries = count;
+  do {
+    entries = (entries + fanout - 1) / fanout;
+    begins.push_back(begins.back() + entries);
+  } while (entries > 1);
+  return begins;
 }
 
 }  // namespace
@@ -89,8 +103,8 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan) {
 
 MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
                      std::span<const Lifespan> lifespans)
-    : range_(range) {
-  std::vector<Entry> entries((range.count + kFanout - 1) / kFanout);
+    : range_(range), heights_(heights_over(range.count, kFanout)) {
+  std::vector<Entry> entries(heights_.back());
   for (std::size_t i = 0; i < range.count; ++i) {
     Entry& entry = entries[i / kFanout];
     const std::size_t t = range.first + i;
@@ -98,33 +112,40 @@ MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
     entry.min_born = std::min(entry.min_born, lifespans[t].born);
     entry.max_dies = std::max(entry.max_dies, lifespans[t].dies);
   }
-  heights_.push_back(std::move(entries));
-  while (heights_.back().size() > 1) {
-    const std::vector<Entry>& below = heights_.back();
-    std::vector<Entry> above((below.size() + kFanout - 1) / kFanout);
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      Entry& entry = above[i / kFanout];
-      entry.box.include(below[i].box);
-      entry.min_born = std::min(entry.min_born, below[i].min_born);
-      entry.max_dies = std::max(entry.max_dies, below[i].max_dies);
+  for (std::size_t height = 1; height + 1 < heights_.size(); ++height) {
+    const std::size_t below = heights_[height - 1];
+    for (std::size_t i = below; i < heights_[height]; ++i) {
+      Entry& entry = entries[heights_[height] + (i - below) / kFanout];
+      entry.box.include(entries[i].box);
+      entry.min_born = std::min(entry.min_born, entries[i].min_born);
+      entry.max_dies = std::max(entry.max_dies, entries[i].max_dies);
     }
-    heights_.push_back(std::move(above));
+  }
+  entries_ = std::move(entries);
+}
+
+MeshIndex::MeshIndex(TrapezoidRange range, std::span<const Entry> entries)
+    : range_(range),
+      entries_(StoredArray<Entry>::looking_at(entries)),
+      heights_(heights_over(range.count, kFanout)) {
+  if (entries.size() != heights_.back()) {
+    throw std::invalid_argument("an index is not one over its trapezoids");
   }
 }
 
 void MeshIndex::select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
                        std::vector<TrapezoidRange>& ranges) const {
   if (range_.count == 0) return;
-  descend(heights_.size() - 1, 0, Query{box, born, alive, lifespans, ranges});
+  descend(heights_.size() - 2, 0, Query{box, born, alive, lifespans, ranges});
 }
 
 void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
-  const Entry& entry = heights_[height][index];
+  const Entry& entry = entries_[heights_[height] + index];
   if (query.born < entry.min_born || query.alive >= entry.max_dies) return;
   if (!entry.box.intersects(query.box)) return;
   const std::size_t begin = index * kFanout;
   if (height > 0) {
-    const std::size_t end = std::min(begin + kFanout, heights_[height - 1].size());
+    const std::size_t end = std::min(begin + kFanout, heights_[height] - heights_[height - 1]);
     for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, query);
     return;
   }
@@ -138,12 +159,6 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
       query.ranges.push_back({id, 1});
     }
   }
-}
-
-std::size_t MeshIndex::memory() const {
-  std::size_t entries = 0;
-  for (const auto& height : heights_) entries += height.capacity();
-  return entries * sizeof(Entry);
 }
 
 }  // namespace trapeze

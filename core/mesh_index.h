@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "core/stored_array.h"
 #include "core/tolerance.h"
 #include "core/trapezoid_mesh.h"
 
@@ -29,9 +30,20 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan);
 /// Thread-safety: immutable, any number of threads may read.
 class MeshIndex {
  public:
+  /// What is known of all that lies below a place in the tree.
+  struct Entry {
+    Box box;
+    Level min_born = kNeverDies;
+    Level max_dies = 0;
+    std::uint16_t unused = 0;  // in place of padding, so that equal entries are equal bytes
+  };
+
   MeshIndex() = default;
   /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh.
   MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans);
+  /// One that looks at entries() of an index over as many trapezoids; they must outlive it. Throws
+  /// std::invalid_argument if there are more or fewer.
+  MeshIndex(TrapezoidRange range, std::span<const Entry> entries);
 
   /// Appends to `ranges` the trapezoids that are born at `born` or before, die after `alive`, and
   /// may meet `box`, as disjoint ranges in ascending order. With both levels equal: those alive
@@ -39,16 +51,14 @@ class MeshIndex {
   void select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
 
-  std::size_t memory() const;
+  TrapezoidRange range() const { return range_; }
+  /// Height after height, that over the trapezoids first.
+  std::span<const Entry> entries() const { return entries_; }
+  std::size_t memory() const { return entries_.memory(); }
 
  private:
   static constexpr std::size_t kFanout = 8;
 
-  struct Entry {
-    Box box;
-    Level min_born = kNeverDies;
-    Level max_dies = 0;
-  };
   struct Query {
     const Box& box;
     Level born;
@@ -59,7 +69,8 @@ class MeshIndex {
   void descend(std::size_t height, std::size_t index, const Query& query) const;
 
   TrapezoidRange range_;
-  std::vector<std::vector<Entry>> heights_;  // [0]: over trapezoids; each next over the one before
+  StoredArray<Entry> entries_;
+  std::vector<std::size_t> heights_;  // where each begins in the entries, and the end of the last
 };
 
 }  // namespace trapeze

@@ -28,6 +28,13 @@ struct CheckArguments {
 };
 int run_check(const CheckArguments& arguments);
 
+struct PrepareArguments {
+  std::vector<std::string> files;
+  std::string output;  // a folder, made if it is not there
+  std::string weights = "douglas-peucker";
+};
+int run_prepare(const PrepareArguments& arguments);
+
 struct ExportArguments {
   std::string file;
   int zoom = 0;

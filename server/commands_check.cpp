@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/io/open_layer.h"
 #include "server/commands.h"
-#include "server/dataset.h"
 #include "server/load_progress.h"
 
 namespace trapeze {
@@ -35,7 +35,7 @@ void print_notes(const LoadReport& report) {
 }
 
 void print_report(const LoadReport& report, const Layer& layer) {
-  fmt::print("{} ({})\n", report.path, report.driver);
+  fmt::print("{} ({})\n", report.path, report.origin());
   fmt::print("  features              {}\n", report.features);
   fmt::print("    loaded              {}\n", report.loaded);
   fmt::print("      of these repaired {}\n", report.repaired);
@@ -58,9 +58,9 @@ bool check_file(const std::string& file) {
   LoadedLayer loaded;
   try {
     LoadProgress progress(file);
-    LoadOptions options;
+    OpenOptions options;
     options.progress = [&progress](double share) { progress.show(share); };
-    loaded = load_layer(file, options);
+    loaded = open_layer(file, options);
   } catch (const std::exception& error) {
     // Reported here and not by main, so that the files after this one are checked too.
     fmt::print(stderr, "trapeze: {}\n", error.what());

@@ -56,11 +56,11 @@ Config configure(const ServeArguments& arguments) {
 /// Finds out before the socket is open what would only fail after the other files were loaded.
 void check_files_exist(const std::vector<LayerConfig>& layers) {
   for (const LayerConfig& layer : layers) {
-    const bool is_virtual = layer.file.starts_with("/vsi");  // GDAL's own, within archives
+    const std::string& file = layer.file_to_open();
+    const bool is_virtual = file.starts_with("/vsi");  // GDAL's own, within archives
     std::error_code error;
-    if (!is_virtual && !std::filesystem::exists(layer.file, error)) {
-      throw std::runtime_error(
-          fmt::format("layer \"{}\": there is no file {}", layer.name, layer.file));
+    if (!is_virtual && !std::filesystem::exists(file, error)) {
+      throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name, file));
     }
   }
 }

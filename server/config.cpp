@@ -159,10 +159,12 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
                 fmt::format("every [[layer]] needs a name of {}", kLayerNameRule));
   }
   reader.read("file", layer.file);
-  if (layer.file.empty()) {
+  reader.read("prepared", layer.prepared);
+  if (layer.file_to_open().empty()) {
     reader.fail(fmt::format("layer \"{}\" needs a file", layer.name));
   }
   layer.file = relative_to_config(path, layer.file);
+  layer.prepared = relative_to_config(path, layer.prepared);
   layer.title = layer.name;
   reader.read("title", layer.title);
   reader.read("attribution", layer.attribution);
@@ -172,14 +174,15 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
   if (layer.min_zoom > layer.max_zoom) {
     reader.fail(fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
   }
-  std::string weights(name_of(layer.weights));
+  std::string weights;
   reader.read("weights", weights);
-  if (const auto rule = weight_rule_from_name(weights)) {
-    layer.weights = *rule;
-  } else {
-    reader.fail(
-        *table.get("weights"),
-        "layer.weights takes \"douglas-peucker\", \"raised-parents\" or \"effective-area\"");
+  if (const toml::node* node = table.get("weights")) {
+    layer.weights = weight_rule_from_name(weights);
+    if (!layer.weights) {
+      reader.fail(
+          *node,
+          "layer.weights takes \"douglas-peucker\", \"raised-parents\" or \"effective-area\"");
+    }
   }
   if (const toml::node* style = reader.find("style")) {
     if (!style->is_table()) reader.fail(*style, "layer.style takes a table");

@@ -20,15 +20,18 @@ struct LayerStyle {
 };
 
 struct LayerConfig {
-  std::string name;  // is_layer_name() holds
-  std::string file;
-  std::string title;  // the name if not set
+  std::string name;      // is_layer_name() holds
+  std::string file;      // empty only if `prepared` is set
+  std::string prepared;  // a prepared file of it, which is served in its place; may be empty
+  std::string title;     // the name if not set
   std::string attribution;
   std::string description;
   LayerStyle style;
-  WeightRule weights = WeightRule::douglas_peucker;
-  int min_zoom = 0;  // the layer is drawn at zooms min_zoom to max_zoom
+  std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
+  int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
+
+  const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }
 };
 
 struct ServerConfig {

@@ -7,6 +7,7 @@
 #include <future>
 #include <numeric>
 
+#include "core/io/open_layer.h"
 #include "server/content_hash.h"
 #include "server/load_progress.h"
 
@@ -26,23 +27,6 @@ void add_value(ContentHash& hash, const Value& value) {
   }
 }
 
-std::uint64_t hash_contents(const Layer& layer) {
-  ContentHash hash;
-  const MeshView& mesh = layer.mesh();
-  hash.add(mesh.vertices);
-  hash.add(mesh.edges);
-  hash.add(mesh.trapezoids);
-  const FeatureTable& features = layer.features();
-  for (const Field& field : features.fields()) hash.add(field.name);
-  for (std::uint32_t row = 0; row < features.size(); ++row) {
-    hash.add(static_cast<std::uint64_t>(features.id(row)));
-    for (int field = 0; field < static_cast<int>(features.fields().size()); ++field) {
-      add_value(hash, features.value(row, field));
-    }
-  }
-  return hash.value();
-}
-
 void log_notes(const LoadReport& report) {
   for (std::size_t i = 0; i < report.notes.size() && i < kMaxLoggedNotes; ++i) {
     spdlog::warn("{}: feature {}: {}", report.path, report.notes[i].id, report.notes[i].reason);
@@ -60,7 +44,7 @@ void log_report(const LoadReport& report, const Layer& layer) {
       report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
       layer.mesh().trapezoids.size(),
       static_cast<double>(layer.memory() + layer.features().memory()) / 1e6, report.total_seconds,
-      report.driver);
+      report.origin());
   if (report.other_geometry > 0) {
     spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
                  report.other_geometry);
@@ -82,7 +66,7 @@ class SharedProgress {
  public:
   explicit SharedProgress(const std::vector<LayerConfig>& layers)
       : shares_(layers.size(), 0),
-        progress_(std::in_place, layers.size() == 1 ? layers.front().file
+        progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
                                                     : fmt::format("{} layers", layers.size())) {}
 
   void show(std::size_t layer, double share) {
@@ -102,17 +86,37 @@ class SharedProgress {
 
 }  // namespace
 
+std::uint64_t revision_of(const Layer& layer) {
+  ContentHash hash;
+  const MeshView& mesh = layer.mesh();
+  hash.add(mesh.vertices);
+  hash.add(mesh.edges);
+  hash.add(mesh.trapezoids);
+  const FeatureTable& features = layer.features();
+  for (const Field& field : features.fields()) hash.add(field.name);
+  for (std::uint32_t row = 0; row < features.size(); ++row) {
+    hash.add(static_cast<std::uint64_t>(features.id(row)));
+    for (int field = 0; field < static_cast<int>(features.fields().size()); ++field) {
+      add_value(hash, features.value(row, field));
+    }
+  }
+  return hash.value();
+}
+
 std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers) {
   // All at once: while one layer is at a step for one core, another one uses the others.
   SharedProgress progress(layers);
   std::vector<std::future<ServedLayer>> loading;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     loading.push_back(std::async(std::launch::async, [&progress, &layers, i] {
-      LoadOptions options;
-      options.generalization.weights = layers[i].weights;
+      const LayerConfig& layer = layers[i];
+      OpenOptions options;
+      options.weights = layer.weights;
+      options.prepared_from = layer.prepared.empty() ? "" : layer.file;
       options.progress = [&progress, i](double share) { progress.show(i, share); };
-      LoadedLayer loaded = load_layer(layers[i].file, options);
-      const std::uint64_t revision = hash_contents(*loaded.layer);
+      LoadedLayer loaded = open_layer(layer.file_to_open(), options);
+      const std::uint64_t revision =
+          loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
       return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision};
     }));
   }

@@ -19,14 +19,18 @@ struct ServedLayer {
   LayerConfig config;
   std::unique_ptr<const Layer> layer;
   LoadReport report;
-  std::uint64_t revision = 0;  // a hash of geometry and attributes
+  std::uint64_t revision = 0;  // revision_of(*layer)
 };
+
+/// A hash of geometry and attributes: equal on every machine that loaded the same layer.
+std::uint64_t revision_of(const Layer& layer);
 
 /// Thread-safety: immutable, any number of threads may read.
 class Dataset {
  public:
-  /// Loads all layers at once, on all cores, with progress and a summary in the log.
-  /// Throws std::runtime_error naming the file if one cannot be read.
+  /// Loads all layers at once, or maps those that are prepared, on all cores, with progress and a
+  /// summary in the log. Throws std::runtime_error naming the file if one cannot be read, or was
+  /// prepared otherwise than configured.
   static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers);
 
   explicit Dataset(std::vector<ServedLayer> layers);

@@ -19,6 +19,7 @@ constexpr const char* kDescription =
     "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
     "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
     "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
+    "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
     "file\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
@@ -37,6 +38,18 @@ constexpr const char* kCheckFooter =
     "\nExample:\n"
     "  trapeze check countries.fgb buildings.shp\n\n"
     "The exit status is 1 if a file cannot be read; repaired and skipped features are only listed.";
+
+constexpr const char* kPrepareFooter =
+    "\nExamples:\n"
+    "  trapeze prepare buildings.gpkg water.fgb --output prepared\n"
+    "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n\n"
+    "A prepared file holds a layer as it is served: it is mapped and not built again, servers on\n"
+    "one machine share its memory, and tiles and their ETags are those of FILE. It is refused if "
+    "it\n"
+    "is damaged, if FILE has changed since, or if this version of Trapeze builds layers "
+    "otherwise:\n"
+    "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
+    "under a running server without harm; write into it by no other means.";
 
 constexpr const char* kExportFooter =
     "\nExamples:\n"
@@ -60,8 +73,8 @@ void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
   CLI::App* serve = app.add_subcommand("serve", "Serve tiles over HTTP");
   serve->footer(kServeFooter);
   serve->add_option("FILE", arguments.files,
-                    "Files of polygons, in any format GDAL reads; each becomes a layer named "
-                    "after it. Instead of the layers of the configuration.");
+                    "Files of polygons, in any format GDAL reads, or prepared ones; each becomes a "
+                    "layer named after it. Instead of the layers of the configuration.");
   serve->add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
       ->type_name("FILE");
   serve->add_option("--port", arguments.port, "Port, 8080 if not set; 0 takes any free one")
@@ -83,7 +96,26 @@ void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
   check->footer(kCheckFooter);
-  check->add_option("FILE", arguments.files, "Files of polygons")->required();
+  check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
+}
+
+void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
+  CLI::App* prepare =
+      app.add_subcommand("prepare", "Save layers in files that are served without building them");
+  prepare->footer(kPrepareFooter);
+  prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads")
+      ->required();
+  prepare
+      ->add_option(
+          "--weights", arguments.weights,
+          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
+          "effective-area")
+      ->type_name("NAME");
+  prepare
+      ->add_option("--output", arguments.output,
+                   "The folder to write into; each file is named after FILE, and ends in .trapeze")
+      ->required()
+      ->type_name("DIR");
 }
 
 void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
@@ -104,9 +136,10 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                    "crossing themselves; what crosses is noded")
       ->type_name("NAME");
   command
-      ->add_option("--weights", arguments.weights,
-                   "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
-                   "effective-area")
+      ->add_option(
+          "--weights", arguments.weights,
+          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
+          "effective-area")
       ->type_name("NAME");
   command
       ->add_option("--crs", arguments.crs,
@@ -149,10 +182,12 @@ int run(int argc, char** argv) {
   app.fallthrough();
   trapeze::ServeArguments serve;
   trapeze::CheckArguments check;
+  trapeze::PrepareArguments prepare;
   trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
   add_serve(app, serve);
   add_check(app, check);
+  add_prepare(app, prepare);
   add_export(app, to_export);
   add_render(app, render);
   try {
@@ -167,6 +202,7 @@ int run(int argc, char** argv) {
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
   if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
   if (app.got_subcommand("check")) return trapeze::run_check(check);
+  if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);
   return trapeze::run_render(render);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct FeatureNote {
 struct LoadReport {
   std::string path;
   std::string driver;
+  std::string prepared_from;       // the source of a prepared layer; empty if it was read itself
   std::size_t features = 0;        // in the source
   std::size_t loaded = 0;          // drawn
   std::size_t other_geometry = 0;  // points, lines, no geometry: not drawn
@@ -39,8 +41,13 @@ struct LoadReport {
   std::size_t repaired = 0;  // noded: crossings, touches, overlaps
   std::vector<FeatureNote>
       notes;                // one for each skipped feature, the first hundred of others (repaired)
-  double read_seconds = 0;  // wall time until the last feature was read
+  double read_seconds = 0;  // wall time until the last feature was read, or the file mapped
   double total_seconds = 0;
+
+  /// The driver, and what a prepared layer was prepared from, in words.
+  std::string origin() const {
+    return prepared_from.empty() ? driver : driver + ", prepared from " + prepared_from;
+  }
 };
 
 struct LoadOptions {
@@ -54,6 +61,7 @@ struct LoadOptions {
 struct LoadedLayer {
   std::unique_ptr<Layer> layer;
   LoadReport report;
+  std::optional<std::uint64_t> revision = {};  // of a prepared layer: under which it was saved
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its

@@ -12,6 +12,7 @@
 #include <cpl_vsi.h>
 
 #include "core/io/gdal_messages.h"
+#include "core/io/prepared_file.h"
 
 namespace trapeze {
 namespace {
@@ -82,6 +83,7 @@ void check_contents(const std::string& path) {
   const bool is_empty = VSIFReadL(&byte, 1, 1, file) == 0;
   VSIFCloseL(file);
   if (is_empty) fail(path, "is empty");
+  if (is_prepared_file(path)) fail(path, "is a prepared layer; name what it was prepared from");
 }
 
 // Distinguishes a name that is not there from one that is there and cannot be looked at, such as a

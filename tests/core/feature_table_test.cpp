@@ -101,5 +101,73 @@ TEST(FeatureTableTest, WorksWithoutAnyField) {
   EXPECT_TRUE(table.fields().empty());
 }
 
+TEST(FeatureTableTest, ATableOverItsCellsGivesTheSameValues) {
+  FeatureTable table = make_table();
+  for (int i = 0; i < 200; ++i) {
+    const std::string name = "name " + std::to_string(i % 13);
+    const Value number = i % 5 == 0 ? Value() : Value(std::int64_t{i});
+    const Value text = i % 7 == 0 ? Value() : Value(std::string_view(name));
+    table.append(i, std::vector<Value>{number, i * 0.5, text});
+  }
+  const FeatureTable view({table.fields().begin(), table.fields().end()}, table.cells());
+  ASSERT_EQ(view.size(), table.size());
+  for (std::uint32_t row = 0; row < 200; ++row) {
+    EXPECT_EQ(view.id(row), table.id(row));
+    for (int field = 0; field < 3; ++field) {
+      EXPECT_EQ(view.value(row, field), table.value(row, field)) << row << " " << field;
+    }
+  }
+}
+
+TEST(FeatureTableTest, AppendingToATableOverCellsLeavesThemAlone) {
+  FeatureTable table = make_table();
+  table.append(1, std::vector<Value>{std::int64_t{1}, 1.0, std::string_view("one")});
+  FeatureTable view({table.fields().begin(), table.fields().end()}, table.cells());
+  view.append(2, std::vector<Value>{Value(), 2.0, std::string_view("one")});
+  EXPECT_EQ(table.size(), 1u);
+  ASSERT_EQ(view.size(), 2u);
+  EXPECT_EQ(view.value(0, 0), Value(std::int64_t{1}));
+  EXPECT_EQ(view.value(1, 0), Value());
+  EXPECT_EQ(view.value(1, 2), Value(std::string_view("one")));
+}
+
+TEST(FeatureTableTest, RefusesCellsThatDoNotFit) {
+  FeatureTable table = make_table();
+  table.append(1, std::vector<Value>{std::int64_t{1}, 1.0, std::string_view("one")});
+  table.append(2, std::vector<Value>{Value(), 1.0, std::string_view("two")});
+  const std::vector<Field> fields(table.fields().begin(), table.fields().end());
+  const auto refused = [&fields](const FeatureTable::Cells& cells) {
+    try {
+      FeatureTable(fields, cells);
+    } catch (const std::invalid_argument&) {
+      return true;
+    }
+    return false;
+  };
+  ASSERT_FALSE(refused(table.cells()));
+  FeatureTable::Cells cells = table.cells();
+  cells.columns.pop_back();
+  EXPECT_TRUE(refused(cells)) << "a column is missing";
+  cells = table.cells();
+  cells.columns[0].numbers = cells.columns[0].numbers.first(1);
+  EXPECT_TRUE(refused(cells)) << "a number is missing";
+  cells = table.cells();
+  cells.columns[2].texts = {};
+  EXPECT_TRUE(refused(cells)) << "texts are missing";
+  cells = table.cells();
+  cells.columns[0].texts = cells.columns[2].texts;
+  EXPECT_TRUE(refused(cells)) << "numbers have texts";
+  const std::vector<std::uint32_t> wild = {0, 2};
+  cells = table.cells();
+  cells.columns[2].texts = wild;
+  EXPECT_TRUE(refused(cells)) << "a text is not there";
+  for (const std::vector<std::uint64_t>& ends :
+       {std::vector<std::uint64_t>{3, 7}, std::vector<std::uint64_t>{4, 3}}) {
+    cells = table.cells();
+    cells.string_ends = ends;
+    EXPECT_TRUE(refused(cells)) << "texts end at " << ends[1];
+  }
+}
+
 }  // namespace
 }  // namespace trapeze

@@ -33,6 +33,32 @@ class ConfigTest : public ::testing::Test {
                             ".toml";
 };
 
+TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
+  const Config config = read(R"(
+    [[layer]]
+    name = "a"
+    file = "a.fgb"
+    [[layer]]
+    name = "b"
+    file = "b.fgb"
+    prepared = "out/b.trapeze"
+    weights = "raised-parents"
+    [[layer]]
+    name = "c"
+    prepared = "c.trapeze")");
+  ASSERT_EQ(config.layers.size(), 3u);
+  EXPECT_THAT(config.layers[0].file_to_open(), ::testing::EndsWith("/a.fgb"));
+  EXPECT_EQ(config.layers[0].weights, std::nullopt);
+  EXPECT_THAT(config.layers[1].file_to_open(), ::testing::EndsWith("/out/b.trapeze"));
+  EXPECT_THAT(config.layers[1].file, ::testing::EndsWith("/b.fgb"));
+  EXPECT_EQ(config.layers[1].weights, WeightRule::raised_parents);
+  EXPECT_EQ(config.layers[2].file, "");
+  EXPECT_THAT(config.layers[2].file_to_open(), ::testing::EndsWith("/c.trapeze"));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\""), HasSubstr("needs a file"));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nweights = \"none\""),
+              HasSubstr("effective-area"));
+}
+
 TEST_F(ConfigTest, ReadsEveryKey) {
   const Config config = read(R"(
     [server]

@@ -194,6 +194,11 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
         "x.png"},
        "fill takes a colour"},
       {{"check"}, "FILE"},
+      {{"prepare", fixture("rings.geojson")}, "--output"},
+      {{"prepare", fixture("rings.geojson"), "--output", "x", "--weights", "none"},
+       "effective-area"},
+      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
+       "--output takes a folder"},
       {{"export", fixture("rings.geojson"), "--output", "x.fgb"}, "--zoom"},
       {{"export", fixture("rings.geojson"), "--zoom", "3"}, "--output"},
       {{"export", fixture("rings.geojson"), "--zoom", "25", "--output", "x.fgb"}, "0 to 24"},
@@ -271,10 +276,43 @@ TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {
   std::filesystem::remove(path);
 }
 
+TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {
+  const std::string folder = scratch_path("prepared");
+  std::filesystem::remove_all(folder);
+  Program prepare({"prepare", fixture("rings.geojson"), fixture("nosuch.fgb"),
+                   fixture("west.geojson"), "--output", folder});
+  EXPECT_EQ(prepare.wait(), 1) << "one of them is not there";
+  EXPECT_THAT(prepare.output(), AllOf(HasSubstr("nosuch.fgb"), HasSubstr("rings.trapeze: 1 of 1"),
+                                      HasSubstr("west.trapeze: 1 of 1")));
+  Program again({"prepare", fixture("rings.geojson"), "--output", folder});
+  EXPECT_EQ(again.wait(), 0) << again.output();
+  const auto answer = [](const std::vector<std::string>& files) {
+    Program program(serve_arguments(files));
+    const std::uint16_t port = program.port();
+    wait_until_ready(port);
+    return RawClient(port).get("/tiles/rings,west/0/0/0.png");
+  };
+  const auto built = answer({fixture("rings.geojson"), fixture("west.geojson")});
+  const auto prepared = answer({folder + "/rings.trapeze", folder + "/west.trapeze"});
+  EXPECT_EQ(prepared.status, 200);
+  EXPECT_EQ(prepared.body, built.body);
+  EXPECT_EQ(prepared.headers.at("etag"), built.headers.at("etag"));
+  Program check({"check", folder + "/rings.trapeze"});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(check.output(), AllOf(HasSubstr("GeoJSON, prepared from " + fixture("rings.geojson")),
+                                    ::testing::ContainsRegex("polygons +2")));
+  std::filesystem::resize_file(folder + "/rings.trapeze", 1000);
+  Program damaged(serve_arguments({folder + "/rings.trapeze"}));
+  EXPECT_EQ(damaged.wait(), 1);
+  EXPECT_THAT(damaged.output(), HasSubstr("rings.trapeze: is damaged"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(ProgramTest, HelpShowsExamples) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"serve", "--help"},
                                                     {"check", "--help"},
+                                                    {"prepare", "--help"},
                                                     {"export", "--help"},
                                                     {"render", "--help"}}) {
     Program program(arguments);

@@ -1,0 +1,29 @@
+// Independent pieces of work on all cores.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <future>
+#include <thread>
+#include <vector>
+
+namespace trapeze {
+
+/// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads of which one is
+/// the caller's; returns when all are done. Rethrows one of what they threw, if any did.
+template <typename Work>
+void for_each_in_parallel(std::size_t count, std::size_t max_threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  };
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t threads = std::min({count, max_threads, cores});
+  std::vector<std::future<void>> others;
+  for (std::size_t t = 1; t < threads; ++t) others.push_back(std::async(std::launch::async, run));
+  run();
+  for (std::future<void>& other : others) other.get();
+}
+
+}  // namespace trapeze

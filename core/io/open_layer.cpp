@@ -1,0 +1,20 @@
+#include "core/io/open_layer.h"
+
+#include "core/io/prepared_file.h"
+#include "core/io/prepared_layer.h"
+
+namespace trapeze {
+
+LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
+  if (is_prepared_file(path)) {
+    LoadedLayer layer = open_prepared_layer(path, {options.weights, options.prepared_from});
+    if (options.progress) options.progress(1);
+    return layer;
+  }
+  LoadOptions load;
+  load.generalization.weights = options.weights.value_or(WeightRule::douglas_peucker);
+  load.progress = options.progress;
+  return load_layer(path, load);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,22 @@
+// A layer of a file, whatever it is: a source of polygons, or a layer prepared from one.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/io/load_layer.h"
+
+namespace trapeze {
+
+struct OpenOptions {
+  std::optional<WeightRule> weights;  // unset: those of a prepared layer, else Douglas-Peucker
+  std::string prepared_from;  // the source of a prepared layer, where it is now; empty: as it says
+  std::function<void(double)> progress = {};  // see LoadOptions
+};
+
+/// Maps a prepared file, which is known by its first bytes, or loads a source. Throws as
+/// open_prepared_layer() and load_layer() do. Thread-safety: any thread.
+LoadedLayer open_layer(const std::string& path, const OpenOptions& options = {});
+
+}  // namespace trapeze

@@ -1,0 +1,138 @@
+// The container that a prepared layer is stored in: arrays, one after another, each with a
+// checksum, so that the file can be mapped and used as it is.
+//
+//   header, directory, padding | section, padding | section, padding | ...
+//
+// Every section begins at a multiple of 64 bytes, at once after the one before: where it lies
+// follows from the counts before it and is not stored. Paddings are zero, and are looked at, so
+// that no byte may change unnoticed. Numbers have the byte order of the machine that wrote them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace trapeze {
+
+/// To be raised when header, directory, the sections or the description in them change.
+constexpr std::uint32_t kPreparedVersion = 1;
+
+/// As in PNG, what text conversion would spoil.
+constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
+constexpr std::uint32_t kByteOrderMark = 0x01020304;
+constexpr std::size_t kSectionAlignment = 64;
+
+struct PreparedHeader {
+  std::array<std::uint8_t, 8> magic = kPreparedMagic;
+  std::uint32_t byte_order = kByteOrderMark;
+  std::uint32_t version = kPreparedVersion;
+  std::uint64_t file_size = 0;
+  std::uint64_t fingerprint = 0;  // build_fingerprint of the options it was prepared with
+  std::uint64_t section_count = 0;
+  std::uint64_t directory_checksum = 0;
+  std::uint64_t unused = 0;
+  std::uint64_t header_checksum = 0;  // of the fields above
+};
+static_assert(sizeof(PreparedHeader) == kSectionAlignment);
+
+/// In the order in which they are stored; those of a column, once for each.
+enum class SectionKind : std::uint32_t {
+  description = 1,
+  vertices,
+  edges,
+  trapezoids,
+  lifespans,
+  feature_of,
+  polygon_index,
+  mote_index,
+  merged_mote_index,
+  outline_points,
+  ring_ends,
+  outline_ends,
+  ids,
+  string_bytes,
+  string_ends,
+  numbers,
+  nulls,
+  texts,
+};
+std::string name_of(SectionKind kind);
+
+struct DirectoryEntry {
+  SectionKind kind = SectionKind::description;
+  std::uint32_t item_size = 1;
+  std::uint64_t count = 0;
+  std::uint64_t checksum = 0;
+};
+
+/// A file that is no prepared one, damaged, or of another version; the words do not name it yet.
+class PreparedFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Whether `path` is a file that begins as prepared ones do. Never throws.
+bool is_prepared_file(const std::string& path);
+
+/// Collects sections and puts the bytes of a file together from them; looks at memory of the
+/// caller until then.
+class SectionWriter {
+ public:
+  template <typename T>
+  void add(SectionKind kind, std::span<const T> items) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, std::byte>);
+    add_bytes({kind, sizeof(T), items.size(), 0}, std::as_bytes(items));
+  }
+
+  /// Writes it all, see write_atomically.
+  void write(const std::string& path, std::uint64_t fingerprint) const;
+
+ private:
+  void add_bytes(DirectoryEntry entry, std::span<const std::byte> bytes);
+
+  std::vector<DirectoryEntry> entries_;
+  std::vector<std::span<const std::byte>> bytes_;
+};
+
+/// Hands out the sections of a file in their order. Trusts nothing: nothing is handed out that does
+/// not lie within the file. Throws PreparedFileError.
+class SectionReader {
+ public:
+  /// Checks header, directory and, on all cores, the checksum of every section. `file` begins at a
+  /// multiple of 64 bytes and must outlive what is taken from it.
+  explicit SectionReader(std::span<const std::byte> file);
+
+  std::uint64_t fingerprint() const { return header_.fingerprint; }
+
+  /// The next section, which must be of this kind.
+  template <typename T>
+  std::span<const T> take(SectionKind kind) {
+    static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kSectionAlignment);
+    const std::span<const std::byte> bytes = take_bytes(kind, sizeof(T));
+    return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+  }
+  /// There must be no section left.
+  void finish() const;
+
+ private:
+  struct Section {
+    DirectoryEntry entry;
+    std::span<const std::byte> bytes;    // of its items
+    std::span<const std::byte> padding;  // up to the next section
+  };
+
+  void read_directory(std::span<const std::byte> file);
+  void check_sections() const;
+  std::span<const std::byte> take_bytes(SectionKind kind, std::size_t item_size);
+
+  PreparedHeader header_;
+  std::vector<Section> sections_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace trapeze

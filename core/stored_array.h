@@ -1,0 +1,81 @@
+// An array that owns its items, or looks at items that something else holds, such as a mapped file.
+// Who reads it sees no difference.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace trapeze {
+
+template <typename T>
+class StoredArray {
+ public:
+  StoredArray() = default;
+  StoredArray(std::vector<T> items) : own_(std::move(items)), items_(own_) {}
+  /// `items` must outlive the array.
+  static StoredArray looking_at(std::span<const T> items) {
+    StoredArray array;
+    array.items_ = items;
+    return array;
+  }
+  // A vector that is moved keeps its memory, so what is looked at stays where it is.
+  StoredArray(StoredArray&& other) noexcept
+      : own_(std::move(other.own_)), items_(std::exchange(other.items_, {})) {}
+  StoredArray& operator=(StoredArray&& other) noexcept {
+    own_ = std::move(other.own_);
+    items_ = std::exchange(other.items_, {});
+    return *this;
+  }
+  StoredArray(const StoredArray&) = delete;
+  StoredArray& operator=(const StoredArray&) = delete;
+  ~StoredArray() = default;
+
+  std::size_t size() const { return items_.size(); }
+  bool empty() const { return items_.empty(); }
+  const T& operator[](std::size_t i) const { return items_[i]; }
+  const T* data() const { return items_.data(); }
+  auto begin() const { return items_.begin(); }
+  auto end() const { return items_.end(); }
+
+  /// Items that are only looked at are copied before they are added to.
+  void append(std::span<const T> more) {
+    own_items();
+    own_.insert(own_.end(), more.begin(), more.end());
+    items_ = own_;
+  }
+  void push_back(const T& item) {
+    own_items();
+    own_.push_back(item);
+    items_ = own_;
+  }
+  /// New items are T().
+  void resize(std::size_t size) {
+    own_items();
+    own_.resize(size);
+    items_ = own_;
+  }
+  /// For changing the last item; there is one.
+  T& back() {
+    own_items();
+    return own_.back();
+  }
+
+  /// Bytes of memory, its own or that it looks at.
+  std::size_t memory() const {
+    return own_.empty() ? items_.size_bytes() : own_.capacity() * sizeof(T);
+  }
+
+ private:
+  void own_items() {
+    if (own_.size() == items_.size()) return;
+    own_.assign(items_.begin(), items_.end());
+    items_ = own_;
+  }
+
+  std::vector<T> own_;
+  std::span<const T> items_;
+};
+
+}  // namespace trapeze
