@@ -157,11 +157,15 @@ class Connection {
       const std::size_t size = head->size + head->length;
       if (text.size() - done < size) break;
       if (asked_.empty()) throw std::runtime_error("the server answers what nobody asked");
-      const Exchange exchange{asked_.front().request, head->status, head->from_cache,
+      const std::string_view body = text.substr(done + head->size, head->length);
+      const Exchange exchange{asked_.front().request,
+                              head->status,
+                              head->from_cache,
+                              body.starts_with("\x89PNG"),
                               static_cast<float>(ms_between(asked_.front().when, now)),
                               static_cast<std::uint32_t>(head->length)};
       asked_.pop_front();
-      take(exchange, *head, text.substr(done + head->size, head->length));
+      take(exchange, *head, body);
       done += size;
     }
     return done;

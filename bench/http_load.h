@@ -22,6 +22,7 @@ struct Exchange {
   std::uint32_t request = 0;  // its number among the requests
   std::uint16_t status = 0;
   bool from_cache = false;  // X-Cache says HIT
+  bool is_png = false;      // the body begins like one
   float ms = 0;             // from sending to the last byte of the answer
   std::uint32_t bytes = 0;  // of the body
 };

@@ -6,8 +6,10 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 
 namespace trapeze {
 namespace {
@@ -45,6 +47,34 @@ std::string target_of(const TileId& tile) {
   return "/" + std::to_string(tile.z) + "/" + std::to_string(tile.x) + "/" +
          std::to_string(tile.y) + ".png";
 }
+
+/// Makes requests none of which can be answered with what was drawn for another: a tile that was
+/// asked for before is asked for in a slightly different colour of the lowest layer.
+class UncachedRequests {
+ public:
+  explicit UncachedRequests(const Trip& trip) : trip_(trip) {}
+
+  /// For all tiles of the trip, once. Throws std::runtime_error when there are no more colours.
+  std::vector<std::string> next() {
+    const std::string front = "/tiles/" + layer_list(trip_);
+    const TripLayer& lowest = trip_.layers.front();
+    std::vector<std::string> requests;
+    for (const TileId& tile : trip_.tiles) {
+      const int variant = asked_[{tile.z, tile.x, tile.y}]++;
+      if (variant == kVariants) throw std::runtime_error("a tile was asked for in every colour");
+      std::string target = front + target_of(tile);
+      if (variant > 0) {
+        target += "?" + lowest.name + ".fill=" + varied_colour(lowest.colour, variant);
+      }
+      requests.push_back(http_request(target));
+    }
+    return requests;
+  }
+
+ private:
+  const Trip& trip_;
+  std::map<std::tuple<int, std::uint32_t, std::uint32_t>, int> asked_;
+};
 
 }  // namespace
 
@@ -103,22 +133,6 @@ std::vector<std::string> tile_requests(const Trip& trip, const std::string& more
   return requests;
 }
 
-std::vector<std::string> UncachedRequests::next() {
-  const std::string front = "/tiles/" + layer_list(trip_);
-  const TripLayer& lowest = trip_.layers.front();
-  std::vector<std::string> requests;
-  for (const TileId& tile : trip_.tiles) {
-    const int variant = asked_[{tile.z, tile.x, tile.y}]++;
-    if (variant == kVariants) throw std::runtime_error("a tile was asked for in every colour");
-    std::string target = front + target_of(tile);
-    if (variant > 0) {
-      target += "?" + lowest.name + ".fill=" + varied_colour(lowest.colour, variant);
-    }
-    requests.push_back(http_request(target));
-  }
-  return requests;
-}
-
 TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached) {
   TileRun run;
   run.seconds = result.seconds;
@@ -126,11 +140,34 @@ TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached) {
     if (exchange.status != 200) {
       throw std::runtime_error("a tile was answered by " + std::to_string(exchange.status));
     }
+    if (!exchange.is_png) throw std::runtime_error("a tile is no picture");
     if (uncached && exchange.from_cache) {
       throw std::runtime_error("a tile that should have been drawn came from the cache");
     }
     run.tiles.push_back({trip.tiles[exchange.request % trip.tiles.size()].z, exchange.ms});
   }
+  return run;
+}
+
+std::vector<std::string> uncached_requests(const Trip& trip, int repeats) {
+  constexpr std::size_t kEnough = 1500;
+  const std::size_t times = repeats > 0 ? static_cast<std::size_t>(repeats)
+                                        : (kEnough + trip.tiles.size() - 1) / trip.tiles.size();
+  UncachedRequests source(trip);
+  std::vector<std::string> requests;
+  for (std::size_t i = 0; i < times; ++i) {
+    const auto once = source.next();
+    requests.insert(requests.end(), once.begin(), once.end());
+  }
+  return requests;
+}
+
+TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const LoadOptions& load,
+                     int repeats) {
+  const auto requests = uncached_requests(trip, repeats);
+  const double before = server.cpu_seconds();
+  TileRun run = tile_run(trip, load_http(server.port(), requests, load), true);
+  run.cpu_seconds = server.cpu_seconds() - before;
   return run;
 }
 

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "bench/child_process.h"
@@ -60,22 +58,18 @@ class TrapezeServer {
 /// Requests for the tiles of a trip, all layers in each, in the layers' own colours.
 std::vector<std::string> tile_requests(const Trip& trip, const std::string& more_headers = {});
 
-/// Makes requests none of which can be answered with what was drawn for another: a tile that was
-/// asked for before is asked for in a slightly different colour of the lowest layer.
-class UncachedRequests {
- public:
-  explicit UncachedRequests(const Trip& trip) : trip_(trip) {}
-
-  /// Throws std::runtime_error when there are no more colours, which is after 511 times.
-  std::vector<std::string> next();
-
- private:
-  const Trip& trip_;
-  std::map<std::tuple<int, std::uint32_t, std::uint32_t>, int> asked_;
-};
+/// Requests for the trip, so many times, or, for 0, so often that there are enough tiles (1,500) to
+/// tell anything by. None can be answered with what was drawn for another: a tile that was asked
+/// for before is asked for in a slightly different colour of the lowest layer. Throws
+/// std::runtime_error if there are not enough colours, which are 512.
+std::vector<std::string> uncached_requests(const Trip& trip, int repeats = 0);
 
 /// The times of the tiles of a trip. Throws std::runtime_error unless all were answered by 200 and,
 /// if `uncached`, drawn for it.
 TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached);
+
+/// Asks for uncached_requests, and takes the processor time of the server.
+TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const LoadOptions& load,
+                     int repeats = 0);
 
 }  // namespace trapeze

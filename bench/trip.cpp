@@ -17,6 +17,14 @@ namespace {
 
 constexpr int kTileSide = 256;  // pixels
 
+struct NamedTrip {
+  const char* name;
+  Trip (*make)(const std::string& data_folder);
+};
+
+constexpr NamedTrip kTrips[] = {
+    {"malta", malta_trip}, {"shenzhen_z0-9", shenzhen_from_afar}, {"usa48", usa48_trip}};
+
 /// Different tiles in the order in which they were first added.
 class TileList {
  public:
@@ -144,6 +152,19 @@ Trip usa48_trip(const std::string& data_folder) {
   Trip trip{"usa48", {{"usa48_land", data_folder + "/usa48_land.fgb", "8fbf7f"}}, {}};
   trip.tiles = tiles_at_vertices(read_places(trip.layers), 0, kLastZoom, kTilesPerZoom);
   return trip;
+}
+
+std::vector<std::string> trip_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : kTrips) names.emplace_back(name);
+  return names;
+}
+
+Trip named_trip(const std::string& name, const std::string& data_folder) {
+  for (const auto& [known, make] : kTrips) {
+    if (name == known) return make(data_folder);
+  }
+  throw std::runtime_error("there is no trip " + name);
 }
 
 std::string real_data_folder() {

@@ -65,6 +65,10 @@ Trip shenzhen_from_afar(const std::string& data_folder);
 /// Tiles of all zooms that the boundary of one polygon with 488,034 vertices goes through.
 Trip usa48_trip(const std::string& data_folder);
 
+/// The names of these trips, and the trip of a name. Throws std::runtime_error for others.
+std::vector<std::string> trip_names();
+Trip named_trip(const std::string& name, const std::string& data_folder);
+
 /// The folder that the variable TRAPEZE_DATA names. Throws std::runtime_error if it is not set.
 std::string real_data_folder();
 

@@ -30,7 +30,7 @@ namespace trapeze {
 namespace {
 
 struct Options {
-  std::vector<std::string> trips{"malta", "shenzhen_z0-9", "usa48"};
+  std::vector<std::string> trips = trip_names();
   std::vector<std::string> renderers{"egl", "software"};
   std::string program = built_trapeze();
   std::vector<std::string> more;
@@ -42,39 +42,6 @@ struct Options {
   std::uint16_t port = 0;
   std::string json = "out/bench/trip.json";
 };
-
-Trip trip_of(const std::string& name) {
-  const std::string folder = real_data_folder();
-  if (name == "malta") return malta_trip(folder);
-  if (name == "shenzhen_z0-9") return shenzhen_from_afar(folder);
-  return usa48_trip(folder);
-}
-
-int repeats_of(const Trip& trip, const Options& options) {
-  constexpr std::size_t kEnough = 1500;  // tiles
-  if (options.repeat > 0) return options.repeat;
-  return static_cast<int>((kEnough + trip.tiles.size() - 1) / trip.tiles.size());
-}
-
-std::vector<std::string> uncached_requests(const Trip& trip, int repeats) {
-  UncachedRequests source(trip);
-  std::vector<std::string> requests;
-  for (int i = 0; i < repeats; ++i) {
-    const auto once = source.next();
-    requests.insert(requests.end(), once.begin(), once.end());
-  }
-  return requests;
-}
-
-template <typename Server>
-TileRun uncached_run(const Server& server, const Trip& trip,
-                     const std::vector<std::string>& requests, const LoadOptions& load) {
-  const double before = server.cpu_seconds();
-  const LoadResult result = load_http(server.port(), requests, load);
-  TileRun run = tile_run(trip, result, true);
-  run.cpu_seconds = server.cpu_seconds() - before;
-  return run;
-}
 
 double rate_of(std::uint16_t port, const std::vector<std::string>& requests, int status,
                const LoadOptions& load) {
@@ -109,15 +76,14 @@ class RendererFigures {
         known_(trip.name + "/trapeze-" + renderer + "/known") {}
 
   void measure(const TrapezeOptions& trapeze, const Options& options) {
-    const int repeats = repeats_of(trip_, options);
     const LoadOptions load{.connections = options.connections, .pipeline = options.pipeline};
     {
       const TrapezeServer server(trip_.layers, trapeze);
-      cold_.add(uncached_run(server, trip_, uncached_requests(trip_, repeats), load));
+      cold_.add(uncached_run(server, trip_, load, options.repeat));
       measure_known(server, options, load);
     }
     const TrapezeServer server(trip_.layers, trapeze);
-    alone_.add(uncached_run(server, trip_, uncached_requests(trip_, repeats), {.connections = 1}));
+    alone_.add(uncached_run(server, trip_, {.connections = 1}, options.repeat));
     known_.set("seconds to ready", server.seconds_to_ready());
   }
 
@@ -160,17 +126,15 @@ void print(const Figure& figure) {
 
 /// Only load for a server that somebody else has started.
 void load_running_server(const Options& options) {
-  struct Running {
-    std::uint16_t port_number;
-    std::uint16_t port() const { return port_number; }
-    double cpu_seconds() const { return 0; }
-  };
   for (const std::string& name : options.trips) {
-    const Trip trip = trip_of(name);
+    const Trip trip = named_trip(name, real_data_folder());
+    const auto requests = uncached_requests(trip, options.repeat);
     Figure figure(trip.name + "/running/cold");
-    figure.add(uncached_run(Running{options.port}, trip,
-                            uncached_requests(trip, repeats_of(trip, options)),
-                            {.connections = options.connections, .pipeline = options.pipeline}));
+    figure.add(
+        tile_run(trip,
+                 load_http(options.port, requests,
+                           {.connections = options.connections, .pipeline = options.pipeline}),
+                 true));
     print_line(figure);
     print_zooms(figure);
   }
@@ -179,7 +143,7 @@ void load_running_server(const Options& options) {
 void measure_all(const Options& options, const std::string& command) {
   std::vector<Figure> figures;
   for (const std::string& name : options.trips) {
-    const Trip trip = trip_of(name);
+    const Trip trip = named_trip(name, real_data_folder());
     std::vector<RendererFigures> renderers;
     for (const std::string& renderer : options.renderers) renderers.emplace_back(trip, renderer);
     for (int round = 0; round < options.rounds; ++round) {
