@@ -80,12 +80,11 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std:
 }
 
 ChildProcess::~ChildProcess() {
-  if (!is_running()) return;
-  kill(-pid_, SIGTERM);
+  if (is_running()) kill(-pid_, SIGTERM);
   for (int tries = 0; tries < 500 && is_running(); ++tries) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  if (is_running()) kill(-pid_, SIGKILL);
+  kill(-pid_, SIGKILL);  // and those of its children that it has left behind
   wait();
 }
 

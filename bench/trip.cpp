@@ -148,7 +148,7 @@ Trip shenzhen_from_afar(const std::string& data_folder) {
 
 Trip usa48_trip(const std::string& data_folder) {
   constexpr int kLastZoom = 22;
-  constexpr std::size_t kTilesPerZoom = 12;
+  constexpr std::size_t kTilesPerZoom = 6;
   Trip trip{"usa48", {{"usa48_land", data_folder + "/usa48_land.fgb", "8fbf7f"}}, {}};
   trip.tiles = tiles_at_vertices(read_places(trip.layers), 0, kLastZoom, kTilesPerZoom);
   return trip;

@@ -32,6 +32,7 @@ std::string write_lighttpd_config(const std::string& folder, std::uint16_t port)
        << "  \"bin-path\" => \"/usr/bin/mapserv\",\n"
        << "  \"max-procs\" => " << std::thread::hardware_concurrency() << ",\n"
        << "  \"check-local\" => \"disable\",\n"
+       << "  \"kill-signal\" => 9,\n"  // mapserv does not heed any other while it waits
        << "  \"bin-environment\" => (\"MAPSERVER_CONFIG_FILE\" => \"" << mapserver_config
        << "\")\n)))\n";
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
