@@ -3,10 +3,10 @@
 //
 //   TRAPEZE_DATA=folder growth_bench
 //
-// Copies are shifted by whole tiles of zoom 9, so that a tile of the trip (zooms 10 to 17) shows
-// the same picture with or without them; that is checked. Tiles are asked for one at a time, of
-// servers that run side by side, in turns. "zooms": tiles at every zoom from 0 to 20; up to 9 they
-// show the copies too.
+// Copies are shifted by whole tiles of zoom 7, farther than a screen at zoom 10 reaches, so that a
+// tile of the trip (zooms 10 to 17) shows the same picture with or without them; that is checked.
+// Tiles are asked for one at a time, of servers that run side by side, in turns. "zooms": tiles at
+// every zoom from 0 to 20; at the lowest they show the copies too.
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <span>
 #include <stdexcept>
 
 #include "render/coverage.h"
@@ -62,10 +61,7 @@ void paste(const Picture& picture, int left, int top, Picture& sheet) {
 
 void SideBySide::add(const std::string& name, const std::vector<std::string>& pngs) {
   Column column{name, {}};
-  for (const std::string& png : pngs) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(png.data());
-    column.pictures.push_back(decode_png(std::span(bytes, png.size())));
-  }
+  for (const std::string& png : pngs) column.pictures.push_back(decode_png(png));
   columns_.push_back(std::move(column));
 }
 
@@ -96,9 +92,9 @@ void SideBySide::write(const std::string& path) const {
             static_cast<int>(i) * (kTilePixels + kGap), tile * (kTilePixels + kGap), sheet);
     }
   }
-  const auto png = encode_png(sheet);
+  const std::string png = PngEncoder().encode(sheet);
   std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  file << png;
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
