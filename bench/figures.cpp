@@ -141,7 +141,7 @@ void print_line(const Figure& figure) {
                 figure.cpu_ms_per_tile(), p.p50, p.p95, p.p99, p.max);
   }
   for (const auto& [what, value] : figure.values()) {
-    std::printf("%-48s %s %.4g\n", figure.name().c_str(), what.c_str(), value);
+    std::printf("%-48s %-44s %8.4g\n", figure.name().c_str(), what.c_str(), value);
   }
   std::fflush(stdout);
 }
