@@ -136,7 +136,7 @@ class Grown {
         along_trip_(name_ + "/trip"),
         along_zooms_(name_ + "/zooms"),
         trip_requests_(uncached_requests(trip_, options.rounds)),
-        zoom_requests_(uncached_requests(zooms_, options.rounds)) {
+        zoom_requests_(uncached_requests(zooms_, options.rounds, kColours / 2)) {
     along_trip_.set("seconds to ready", server_.seconds_to_ready());
   }
   Grown(const Grown&) = delete;

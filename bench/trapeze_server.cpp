@@ -32,9 +32,7 @@ std::string layer_list(const Trip& trip) {
   return names;
 }
 
-constexpr int kVariants = 512;
-
-/// The colour with other low bits: three of each channel. 0 <= variant < kVariants.
+/// The colour with other low bits: three of each channel. 0 <= variant < kColours.
 std::string varied_colour(const std::string& colour, int variant) {
   const auto number = static_cast<int>(std::stoul(colour, nullptr, 16));
   const int mask = (variant & 7) | (variant >> 3 & 7) << 8 | (variant >> 6 & 7) << 16;
@@ -52,7 +50,7 @@ std::string target_of(const TileId& tile) {
 /// asked for before is asked for in a slightly different colour of the lowest layer.
 class UncachedRequests {
  public:
-  explicit UncachedRequests(const Trip& trip) : trip_(trip) {}
+  UncachedRequests(const Trip& trip, int first) : trip_(trip), first_(first) {}
 
   /// For all tiles of the trip, once. Throws std::runtime_error when there are no more colours.
   std::vector<std::string> next() {
@@ -60,8 +58,8 @@ class UncachedRequests {
     const TripLayer& lowest = trip_.layers.front();
     std::vector<std::string> requests;
     for (const TileId& tile : trip_.tiles) {
-      const int variant = asked_[{tile.z, tile.x, tile.y}]++;
-      if (variant == kVariants) throw std::runtime_error("a tile was asked for in every colour");
+      const int variant = first_ + asked_[{tile.z, tile.x, tile.y}]++;
+      if (variant >= kColours) throw std::runtime_error("a tile was asked for in every colour");
       std::string target = front + target_of(tile);
       if (variant > 0) {
         target += "?" + lowest.name + ".fill=" + varied_colour(lowest.colour, variant);
@@ -73,6 +71,7 @@ class UncachedRequests {
 
  private:
   const Trip& trip_;
+  const int first_;
   std::map<std::tuple<int, std::uint32_t, std::uint32_t>, int> asked_;
 };
 
@@ -149,11 +148,11 @@ TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached) {
   return run;
 }
 
-std::vector<std::string> uncached_requests(const Trip& trip, int repeats) {
+std::vector<std::string> uncached_requests(const Trip& trip, int repeats, int first) {
   constexpr std::size_t kEnough = 1500;
   const std::size_t times = repeats > 0 ? static_cast<std::size_t>(repeats)
                                         : (kEnough + trip.tiles.size() - 1) / trip.tiles.size();
-  UncachedRequests source(trip);
+  UncachedRequests source(trip, first);
   std::vector<std::string> requests;
   for (std::size_t i = 0; i < times; ++i) {
     const auto once = source.next();

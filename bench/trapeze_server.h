@@ -60,9 +60,11 @@ std::vector<std::string> tile_requests(const Trip& trip, const std::string& more
 
 /// Requests for the trip, so many times, or, for 0, so often that there are enough tiles (1,500) to
 /// tell anything by. None can be answered with what was drawn for another: a tile that was asked
-/// for before is asked for in a slightly different colour of the lowest layer. Throws
-/// std::runtime_error if there are not enough colours, which are 512.
-std::vector<std::string> uncached_requests(const Trip& trip, int repeats = 0);
+/// for before is asked for in a slightly different colour of the lowest layer, beginning with the
+/// colour of number `first`; number 0 is the layer's own. Throws std::runtime_error if there are
+/// not enough colours, which are kColours.
+constexpr int kColours = 512;
+std::vector<std::string> uncached_requests(const Trip& trip, int repeats = 0, int first = 0);
 
 /// The times of the tiles of a trip. Throws std::runtime_error unless all were answered by 200 and,
 /// if `uncached`, drawn for it.
