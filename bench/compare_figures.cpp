@@ -1,11 +1,12 @@
 // Compares the figures of a run with stored ones, and tells what got worse.
 //
-//   compare_figures STORED RESULT ...            compares; the exit status does not depend on what
-//   is found compare_figures --store STORED RESULT ...    stores what the results say instead
+//   compare_figures STORED RESULT ...           compares; what it finds is no failure
+//   compare_figures --store STORED RESULT ...   stores what the results say instead
 //
-// A RESULT is a JSON file of Google Benchmark (of repeated runs, the shortest counts) or of one of
-// our own benchmarks. A figure has got worse if it is more than --factor times as bad as the stored
-// one; on another machine than that of the stored figures, the factors say little.
+// A RESULT is a JSON file of Google Benchmark, of which processor times count, the shortest of
+// repeated runs, or of one of our own benchmarks. A figure has got worse if it is more than
+// --factor times as bad as the stored one; on another machine than that of the stored figures, the
+// factors say little.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -39,9 +40,10 @@ Json read_json(const std::string& path) {
   }
 }
 
-/// The middle of what varies most, and what can be compared at all.
-constexpr const char* kKept[] = {"tiles_per_second", "cpu_ms_per_tile", "p50_ms",          "p99_ms",
-                                 "cached tiles/s",   "304/s",           "seconds to ready"};
+/// What is compared of a figure, if it is there.
+constexpr const char* kKept[] = {"tiles_per_second", "cpu_ms_per_tile",      "p50_ms",
+                                 "p99_ms",           "cached tiles, cpu us", "304, cpu us",
+                                 "seconds to ready"};
 
 void add_own(const Json& json, Figures& figures) {
   const Json& machine = json.at("machine");
@@ -63,8 +65,8 @@ void add_google(const Json& json, Figures& figures) {
     const bool is_aggregate = one.at("run_type") == "aggregate";
     if (is_aggregate && one.at("aggregate_name") != "min") continue;
     const std::string name =
-        one.at("run_name").get<std::string>() + ": " + one.at("time_unit").get<std::string>();
-    const double time = one.at("real_time");
+        one.at("run_name").get<std::string>() + ": cpu " + one.at("time_unit").get<std::string>();
+    const double time = one.at("cpu_time");
     const auto [place, is_new] = figures.values.emplace(name, time);
     if (!is_new && time < place->second) place->second = time;
   }
@@ -102,7 +104,7 @@ void store(const Figures& figures, const std::string& path) {
 }
 
 bool is_better_if_larger(const std::string& name) {
-  return name.ends_with("/s") || name.ends_with("per_second");
+  return name.ends_with("per_second");
 }
 
 /// How many times as bad as before.

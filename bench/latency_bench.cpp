@@ -100,7 +100,6 @@ std::vector<Figure> measure_renderer(const Options& options, const std::string& 
   const Figure worst = slowest(figures, renderer);
   print_line(all);
   print_line(worst);
-  std::printf("  (%s)\n", worst.note().c_str());
   figures.push_back(all);
   figures.push_back(worst);
   return figures;

@@ -174,6 +174,7 @@ void add(const std::string& stage, const std::string& layer, const Run& run) {
   for (const int zoom : kZooms) bench->Arg(zoom);
   bench->ArgName("zoom")
       ->Unit(benchmark::kMicrosecond)
+      ->MeasureProcessCPUTime()
       ->UseRealTime()
       ->MinTime(0.05)
       ->Repetitions(3)
