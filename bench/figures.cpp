@@ -140,7 +140,9 @@ void print_line(const Figure& figure) {
                 p.count, figure.tiles_per_second(), figure.best_tiles_per_second(),
                 figure.cpu_ms_per_tile(), p.p50, p.p95, p.p99, p.max);
   }
-  if (!figure.note().empty()) std::printf("  (%s)\n", figure.note().c_str());
+  if (!figure.note().empty()) {
+    std::printf("%-48s %s\n", figure.name().c_str(), figure.note().c_str());
+  }
   for (const auto& [what, value] : figure.values()) {
     std::printf("%-48s %-44s %8.4g\n", figure.name().c_str(), what.c_str(), value);
   }
