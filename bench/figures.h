@@ -1,0 +1,76 @@
+// What benchmarks of whole servers found, as a table to read and as JSON to keep.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace trapeze {
+
+struct TileTime {
+  int zoom = 0;
+  double ms = 0;
+};
+
+/// One run over a list of tiles.
+struct TileRun {
+  double seconds = 0;      // of wall time
+  double cpu_seconds = 0;  // of processor time, of those who drew
+  std::vector<TileTime> tiles;
+};
+
+struct Percentiles {
+  std::size_t count = 0;
+  double p50 = 0;
+  double p95 = 0;
+  double p99 = 0;
+  double max = 0;
+};
+
+Percentiles percentiles_of(std::vector<double> values);
+
+/// The figures of one measurement: of several runs over the same tiles, or of single values.
+class Figure {
+ public:
+  /// A name such as "malta/trapeze-egl/cold".
+  explicit Figure(std::string name) : name_(std::move(name)) {}
+
+  void add(TileRun run) { runs_.push_back(std::move(run)); }
+  void set(const std::string& what, double value) { values_[what] = value; }
+  void note(std::string text) { note_ = std::move(text); }
+
+  const std::string& name() const { return name_; }
+  const std::string& note() const { return note_; }
+  bool has_runs() const { return !runs_.empty(); }
+  const std::map<std::string, double>& values() const { return values_; }
+
+  /// The middle one of the runs, which others who use the machine meanwhile disturb least.
+  double tiles_per_second() const;
+  double best_tiles_per_second() const;
+  /// Processor time of the run that took least, by tile.
+  double cpu_ms_per_tile() const;
+  /// Over the tiles of all runs.
+  Percentiles percentiles() const;
+  std::map<int, Percentiles> percentiles_by_zoom() const;
+
+ private:
+  std::string name_;
+  std::string note_;
+  std::vector<TileRun> runs_;
+  std::map<std::string, double> values_;
+};
+
+/// The table's head and a line for each figure, to standard output.
+void print_table_head();
+void print_line(const Figure& figure);
+void print_zooms(const Figure& figure);
+
+/// Writes the figures with the machine, the time, the commit (of the variable TRAPEZE_COMMIT) and
+/// the command; makes the folder. Throws std::runtime_error if the file cannot be written.
+void write_figures(const std::vector<Figure>& figures, const std::string& command,
+                   const std::string& file);
+
+/// The words of the command line.
+std::string command_line(int argc, char** argv);
+
+}  // namespace trapeze

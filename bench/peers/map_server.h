@@ -1,0 +1,34 @@
+// MapServer over HTTP: lighttpd, and behind it one FastCGI process of mapserv for every core.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/child_process.h"
+#include "bench/trapeze_server.h"
+#include "bench/trip.h"
+
+namespace trapeze {
+
+class MapServer {
+ public:
+  /// Needs lighttpd and mapserv. Returns when it answers; throws std::runtime_error if it does not.
+  explicit MapServer(const std::string& map_file);
+
+  std::uint16_t port() const { return port_; }
+  /// Requests for the tiles of the trip, with all layers of the map.
+  std::vector<std::string> requests(const Trip& trip) const;
+  /// Of lighttpd and of all mapserv.
+  double cpu_seconds() const { return process_.cpu_seconds(); }
+
+ private:
+  void await_answer();
+
+  const std::string map_file_;
+  ScratchFolder folder_;
+  std::uint16_t port_;
+  ChildProcess process_;
+};
+
+}  // namespace trapeze

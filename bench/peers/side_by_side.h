@@ -1,0 +1,32 @@
+// The same tiles drawn by different programs, to see and to count whether they are the same.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/compose.h"
+
+namespace trapeze {
+
+class SideBySide {
+ public:
+  /// One PNG for each tile, the same tiles in the same order for everyone. Throws
+  /// std::runtime_error if one is not a PNG.
+  void add(const std::string& name, const std::vector<std::string>& pngs);
+
+  /// How far each is from the first, on white, to standard output.
+  void print_differences() const;
+
+  /// A PNG with a row for each tile and a column for each program, on white. Throws
+  /// std::runtime_error if it cannot be written.
+  void write(const std::string& path) const;
+
+ private:
+  struct Column {
+    std::string name;
+    std::vector<Picture> pictures;
+  };
+  std::vector<Column> columns_;
+};
+
+}  // namespace trapeze
