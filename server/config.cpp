@@ -132,8 +132,8 @@ ServerConfig read_server(const std::string& path, const toml::table& table) {
   return server;
 }
 
-LayerStyle read_style(const std::string& path, const toml::table& table) {
-  LayerStyle style;
+ConfiguredStyle read_style(const std::string& path, const toml::table& table) {
+  ConfiguredStyle style;
   TableReader reader(path, table, "layer.style");
   std::string fill;
   reader.read("fill", fill);

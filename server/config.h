@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-struct LayerStyle {
+struct ConfiguredStyle {
   std::optional<Rgba> fill;  // unset: a colour of the palette, by the layer's position
   double fill_opacity = 1;   // 0 to 1
 };
@@ -25,7 +25,7 @@ struct LayerConfig {
   std::string title;  // the name if not set
   std::string attribution;
   std::string description;
-  LayerStyle style;
+  ConfiguredStyle style;
   WeightRule weights = WeightRule::douglas_peucker;
   int min_zoom = 0;  // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;

@@ -2,19 +2,42 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <exception>
 #include <utility>
 
 #include "server/catalog.h"
 #include "server/content_hash.h"
+#include "server/document.h"
+#include "server/identify.h"
+#include "server/legend.h"
 #include "server/url.h"
 
 namespace trapeze {
+
+/// Documents whose path begins with the segment `first`.
+struct DocumentRoute {
+  std::string_view first;
+  OrProblem<Document> (*make)(const DocumentRequest& request);
+};
+
 namespace {
 
 constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
+
+constexpr std::array kDocumentRoutes = {DocumentRoute{"identify", identify_document},
+                                        DocumentRoute{"legend", legend_document}};
+
+/// Null if there are no documents under the path, which is still encoded.
+const DocumentRoute* find_document_route(std::string_view path) {
+  path.remove_prefix(path.starts_with('/') ? 1 : 0);
+  const auto found =
+      std::ranges::find(kDocumentRoutes, path.substr(0, path.find('/')), &DocumentRoute::first);
+  return found == kDocumentRoutes.end() ? nullptr : &*found;
+}
 
 Problem still_loading() {
   return {503, "The data is still being loaded."};
@@ -58,11 +81,16 @@ HttpResponse document(const HttpRequest& request, std::string_view content_type,
   return response;
 }
 
-HttpResponse json_document(const HttpRequest& request, std::string json) {
+HttpResponse fresh_document(const HttpRequest& request, Document made) {
   ContentHash hash;
-  hash.add(json);
-  return document(request, "application/json", fmt::format("\"{:016x}\"", hash.value()),
-                  std::make_shared<const std::string>(std::move(json)));
+  hash.add(made.content_type);
+  hash.add(made.bytes);
+  return document(request, made.content_type, fmt::format("\"{:016x}\"", hash.value()),
+                  std::make_shared<const std::string>(std::move(made.bytes)));
+}
+
+HttpResponse json_document(const HttpRequest& request, std::string json) {
+  return fresh_document(request, {"application/json", std::move(json)});
 }
 
 std::string server_timing(const PaintTimes& times) {
@@ -140,6 +168,9 @@ HttpResponse Site::route(const HttpRequest& request) const {
   if (path == "/health") return answer_health();
   if (path == "/ready") return answer_ready();
   if (path == "/catalog") return answer_catalog(request);
+  if (const DocumentRoute* route = find_document_route(path)) {
+    return answer_document(*route, request);
+  }
   return answer_file(request);
 }
 
@@ -176,6 +207,21 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
   auto json = tile_json(tiles, *dataset, std::get<std::string>(base));
   if (const auto* problem = std::get_if<Problem>(&json)) return problem_response(*problem);
   return json_document(request, std::move(std::get<std::string>(json)));
+}
+
+HttpResponse Site::answer_document(const DocumentRoute& route, const HttpRequest& request) const {
+  const auto target = split_target(request.target);
+  auto path = target ? decode_path(target->path) : std::nullopt;
+  auto query = target ? decode_query(target->query) : std::nullopt;
+  if (!path || !query) return problem_response(malformed_target());
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return problem_response(still_loading());
+  auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  auto made = route.make(
+      {*dataset, std::move(std::get<std::string>(base)), std::move(*path), std::move(*query)});
+  if (const auto* problem = std::get_if<Problem>(&made)) return problem_response(*problem);
+  return fresh_document(request, std::move(std::get<Document>(made)));
 }
 
 HttpResponse Site::answer_file(const HttpRequest& request) const {

@@ -22,6 +22,8 @@ struct SiteOptions {
   std::string cache_control = "public, max-age=3600";
 };
 
+struct DocumentRoute;
+
 class Site {
  public:
   /// `data`, `tiles` and `cache` outlive the site, and `cache` also `tiles`.
@@ -37,6 +39,7 @@ class Site {
   HttpResponse answer_ready() const;
   HttpResponse answer_catalog(const HttpRequest& request) const;
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
+  HttpResponse answer_document(const DocumentRoute& route, const HttpRequest& request) const;
   HttpResponse answer_file(const HttpRequest& request) const;
   void handle_tiles(const HttpRequest& request, const Respond& respond) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
