@@ -88,10 +88,19 @@ Json center_json(const LayerSummary& summary) {
           std::clamp(zoom, summary.min_zoom, summary.max_zoom)};
 }
 
+std::string style_part(const StyleQuery& style) {
+  const std::string text = style.canonical_text();
+  return text.empty() ? text : "?" + text;
+}
+
 std::string tiles_url(const TileJsonRequest& request, const std::string& base_url) {
-  const std::string style = request.style.canonical_text();
-  return fmt::format("{}/tiles/{}/{{z}}/{{x}}/{{y}}.png{}{}", base_url,
-                     fmt::join(request.layers, ","), style.empty() ? "" : "?", style);
+  return fmt::format("{}/tiles/{}/{{z}}/{{x}}/{{y}}.png{}", base_url,
+                     fmt::join(request.layers, ","), style_part(request.style));
+}
+
+std::string legend_url(const TileJsonRequest& request, const std::string& base_url) {
+  return fmt::format("{}/legend/{}.png{}", base_url, fmt::join(request.layers, ","),
+                     style_part(request.style));
 }
 
 }  // namespace
@@ -127,6 +136,7 @@ OrProblem<std::string> tile_json(const TileJsonRequest& request, const Dataset& 
   json["maxzoom"] = summary.max_zoom;
   json["bounds"] = summary.bounds();
   json["center"] = center_json(summary);
+  json["legend"] = legend_url(request, base_url);
   json["vector_layers"] = Json::array();  // TileJSON 3.0 wants it always; these are pictures
   return to_text(json);
 }

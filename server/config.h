@@ -43,7 +43,10 @@ struct ServerConfig {
   std::string cache_control = "public, max-age=3600";  // of tiles
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
-  std::string web_root;    // folder of the viewer, empty for none
+  // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
+  // written without a port holds for every port. Not looked at if there is a public_url.
+  std::vector<std::string> allowed_hosts;
+  std::string web_root;  // folder of the viewer, empty for none
 };
 
 struct Config {

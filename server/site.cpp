@@ -12,14 +12,18 @@
 #include "server/document.h"
 #include "server/identify.h"
 #include "server/legend.h"
+#include "server/ogc_api.h"
 #include "server/url.h"
+#include "server/wmts.h"
 
 namespace trapeze {
 
-/// Documents whose path begins with the segment `first`.
+/// Documents, and perhaps tiles, whose path begins with the segment `first`.
 struct DocumentRoute {
   std::string_view first;
   OrProblem<Document> (*make)(const DocumentRequest& request);
+  /// Nothing if no tile is asked for. Null if there are none here.
+  std::optional<OrProblem<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
 };
 
 namespace {
@@ -29,7 +33,10 @@ constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
 constexpr std::string_view kDocumentCaching = "no-cache";
 
 constexpr std::array kDocumentRoutes = {DocumentRoute{"identify", identify_document},
-                                        DocumentRoute{"legend", legend_document}};
+                                        DocumentRoute{"legend", legend_document},
+                                        DocumentRoute{"ogc", ogc_document, parse_ogc_tile},
+                                        DocumentRoute{"wmts", wmts_document, parse_wmts_tile},
+                                        DocumentRoute{"wmts.xml", wmts_document}};
 
 /// Null if there are no documents under the path, which is still encoded.
 const DocumentRoute* find_document_route(std::string_view path) {
@@ -155,9 +162,12 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
     return respond_to_all(problem_response(
         {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
   }
-  if (const auto target = split_target(request.target);
-      target && target->path.starts_with("/tiles/")) {
+  const auto target = split_target(request.target);
+  if (target && target->path.starts_with("/tiles/")) {
     return handle_tiles(request, respond_to_all);
+  }
+  if (const DocumentRoute* document = target ? find_document_route(target->path) : nullptr) {
+    return handle_document(*document, request, respond_to_all);
   }
   respond_to_all(route(request));
 }
@@ -168,9 +178,6 @@ HttpResponse Site::route(const HttpRequest& request) const {
   if (path == "/health") return answer_health();
   if (path == "/ready") return answer_ready();
   if (path == "/catalog") return answer_catalog(request);
-  if (const DocumentRoute* route = find_document_route(path)) {
-    return answer_document(*route, request);
-  }
   return answer_file(request);
 }
 
@@ -209,21 +216,6 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
   return json_document(request, std::move(std::get<std::string>(json)));
 }
 
-HttpResponse Site::answer_document(const DocumentRoute& route, const HttpRequest& request) const {
-  const auto target = split_target(request.target);
-  auto path = target ? decode_path(target->path) : std::nullopt;
-  auto query = target ? decode_query(target->query) : std::nullopt;
-  if (!path || !query) return problem_response(malformed_target());
-  const auto dataset = data_.get();
-  if (dataset == nullptr) return problem_response(still_loading());
-  auto base = base_url(request);
-  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
-  auto made = route.make(
-      {*dataset, std::move(std::get<std::string>(base)), std::move(*path), std::move(*query)});
-  if (const auto* problem = std::get_if<Problem>(&made)) return problem_response(*problem);
-  return fresh_document(request, std::move(std::get<Document>(made)));
-}
-
 HttpResponse Site::answer_file(const HttpRequest& request) const {
   const auto target = split_target(request.target);
   const auto path = target ? percent_decode(target->path, Plus::literal) : std::nullopt;
@@ -248,6 +240,28 @@ void Site::handle_tiles(const HttpRequest& request, const Respond& respond) cons
     return respond(answer_tile_json(*tile_json, request));
   }
   handle_tile(std::get<TileRequest>(tiles), request, respond);
+}
+
+void Site::handle_document(const DocumentRoute& route, const HttpRequest& request,
+                           const Respond& respond) const {
+  const auto target = split_target(request.target);
+  auto path = target ? decode_path(target->path) : std::nullopt;
+  auto query = target ? decode_query(target->query) : std::nullopt;
+  if (!path || !query) return respond(problem_response(malformed_target()));
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return respond(problem_response(still_loading()));
+  auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return respond(problem_response(*problem));
+  const DocumentRequest asked{*dataset, std::move(std::get<std::string>(base)), std::move(*path),
+                              std::move(*query)};
+  if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
+    const auto* problem = std::get_if<Problem>(&*tile);
+    return problem != nullptr ? respond(problem_response(*problem))
+                              : handle_tile(std::get<TileRequest>(*tile), request, respond);
+  }
+  auto made = route.make(asked);
+  if (const auto* problem = std::get_if<Problem>(&made)) return respond(problem_response(*problem));
+  respond(fresh_document(request, std::move(std::get<Document>(made))));
 }
 
 void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
@@ -287,6 +301,10 @@ OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
                    "The request needs a Host header with a host name or address, and a port "
                    "if it is not 80.",
                    "Host", request.host, "a host name or address, with or without a port"};
+  }
+  if (!options_.allowed_hosts.empty() && !is_allowed_host(request.host, options_.allowed_hosts)) {
+    return Problem{400, "This server is not known by that name.", "Host", request.host,
+                   "one of the names that its configuration allows"};
   }
   return "http://" + request.host;
 }
