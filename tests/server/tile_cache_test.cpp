@@ -44,7 +44,9 @@ TEST(TileCacheTest, NeverHoldsMoreThanItsBudget) {
   for (int i = 0; i < 20'000; ++i) {
     cache.insert(key("t", i), tile('t', static_cast<std::size_t>(i) * 7 % 5000));
     if (i % 3 == 0) cache.find(key("t", i / 2));
-    if (i % 1000 == 0) EXPECT_LE(cache.figures().bytes, kBudget);
+    if (i % 1000 == 0) {
+      EXPECT_LE(cache.figures().bytes, kBudget);
+    }
   }
   EXPECT_LE(cache.figures().bytes, kBudget);
   EXPECT_GT(cache.figures().bytes, kBudget / 2);
