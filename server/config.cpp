@@ -12,6 +12,7 @@
 
 #include "server/style_parameters.h"
 #include "server/tile_request.h"
+#include "server/url.h"
 
 namespace trapeze {
 namespace {
@@ -49,6 +50,17 @@ class TableReader {
     if (node == nullptr) return;
     if (!node->is_string()) fail(*node, fmt::format("{} takes a string", full_name(key)));
     target = node->as_string()->get();
+  }
+
+  void read(std::string_view key, std::vector<std::string>& target) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr) fail(*node, fmt::format("{} takes a list of strings", full_name(key)));
+    for (const toml::node& item : *array) {
+      if (!item.is_string()) fail(item, fmt::format("{} takes a list of strings", full_name(key)));
+      target.push_back(item.as_string()->get());
+    }
   }
 
   template <typename Integer>
@@ -126,14 +138,23 @@ ServerConfig read_server(const std::string& path, const toml::table& table) {
     reader.fail(*table.get("public_url"),
                 "server.public_url takes a URL that begins with http:// or https://");
   }
+  reader.read("allowed_hosts", server.allowed_hosts);
+  for (const std::string& host : server.allowed_hosts) {
+    if (!is_valid_host(std::string_view(host).substr(host.starts_with("*.") ? 2 : 0))) {
+      reader.fail(*table.get("allowed_hosts"),
+                  fmt::format("server.allowed_hosts takes names of hosts, with or without a port, "
+                              "\"*.\" before them for all below; \"{}\" is none",
+                              host));
+    }
+  }
   reader.read("web_root", server.web_root);
   server.web_root = relative_to_config(path, server.web_root);
   reader.refuse_unknown_keys();
   return server;
 }
 
-LayerStyle read_style(const std::string& path, const toml::table& table) {
-  LayerStyle style;
+ConfiguredStyle read_style(const std::string& path, const toml::table& table) {
+  ConfiguredStyle style;
   TableReader reader(path, table, "layer.style");
   std::string fill;
   reader.read("fill", fill);

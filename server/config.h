@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-struct LayerStyle {
+struct ConfiguredStyle {
   std::optional<Rgba> fill;  // unset: a colour of the palette, by the layer's position
   double fill_opacity = 1;   // 0 to 1
 };
@@ -26,7 +26,7 @@ struct LayerConfig {
   std::string title;     // the name if not set
   std::string attribution;
   std::string description;
-  LayerStyle style;
+  ConfiguredStyle style;
   std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
   int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
@@ -46,7 +46,10 @@ struct ServerConfig {
   std::string cache_control = "public, max-age=3600";  // of tiles
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
-  std::string web_root;    // folder of the viewer, empty for none
+  // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
+  // written without a port holds for every port. Not looked at if there is a public_url.
+  std::vector<std::string> allowed_hosts;
+  std::string web_root;  // folder of the viewer, empty for none
 };
 
 struct Config {

@@ -1,6 +1,6 @@
 #include "server/problem.h"
 
-#include <nlohmann/json.hpp>
+#include "server/json_text.h"
 
 namespace trapeze {
 namespace {
@@ -48,7 +48,7 @@ std::string_view reason_phrase(int status) {
 }
 
 std::string problem_json(const Problem& problem) {
-  nlohmann::ordered_json body;
+  Json body;
   body["type"] = "about:blank";
   body["title"] = reason_phrase(problem.status);
   body["status"] = problem.status;
@@ -58,7 +58,7 @@ std::string problem_json(const Problem& problem) {
     body["value"] = cut(problem.value);
     body["takes"] = problem.takes;
   }
-  return body.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return to_text(body);
 }
 
 }  // namespace trapeze

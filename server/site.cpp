@@ -2,19 +2,49 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <exception>
 #include <utility>
 
 #include "server/catalog.h"
 #include "server/content_hash.h"
+#include "server/document.h"
+#include "server/identify.h"
+#include "server/legend.h"
+#include "server/ogc_api.h"
 #include "server/url.h"
+#include "server/wmts.h"
 
 namespace trapeze {
+
+/// Documents, and perhaps tiles, whose path begins with the segment `first`.
+struct DocumentRoute {
+  std::string_view first;
+  OrProblem<Document> (*make)(const DocumentRequest& request);
+  /// Nothing if no tile is asked for. Null if there are none here.
+  std::optional<OrProblem<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
+};
+
 namespace {
 
 constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
+
+constexpr std::array kDocumentRoutes = {DocumentRoute{"identify", identify_document},
+                                        DocumentRoute{"legend", legend_document},
+                                        DocumentRoute{"ogc", ogc_document, parse_ogc_tile},
+                                        DocumentRoute{"wmts", wmts_document, parse_wmts_tile},
+                                        DocumentRoute{"wmts.xml", wmts_document}};
+
+/// Null if there are no documents under the path, which is still encoded.
+const DocumentRoute* find_document_route(std::string_view path) {
+  path.remove_prefix(path.starts_with('/') ? 1 : 0);
+  const auto found =
+      std::ranges::find(kDocumentRoutes, path.substr(0, path.find('/')), &DocumentRoute::first);
+  return found == kDocumentRoutes.end() ? nullptr : &*found;
+}
 
 Problem still_loading() {
   return {503, "The data is still being loaded."};
@@ -58,11 +88,16 @@ HttpResponse document(const HttpRequest& request, std::string_view content_type,
   return response;
 }
 
-HttpResponse json_document(const HttpRequest& request, std::string json) {
+HttpResponse fresh_document(const HttpRequest& request, Document made) {
   ContentHash hash;
-  hash.add(json);
-  return document(request, "application/json", fmt::format("\"{:016x}\"", hash.value()),
-                  std::make_shared<const std::string>(std::move(json)));
+  hash.add(made.content_type);
+  hash.add(made.bytes);
+  return document(request, made.content_type, fmt::format("\"{:016x}\"", hash.value()),
+                  std::make_shared<const std::string>(std::move(made.bytes)));
+}
+
+HttpResponse json_document(const HttpRequest& request, std::string json) {
+  return fresh_document(request, {"application/json", std::move(json)});
 }
 
 std::string server_timing(const PaintTimes& times) {
@@ -127,9 +162,12 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
     return respond_to_all(problem_response(
         {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
   }
-  if (const auto target = split_target(request.target);
-      target && target->path.starts_with("/tiles/")) {
+  const auto target = split_target(request.target);
+  if (target && target->path.starts_with("/tiles/")) {
     return handle_tiles(request, respond_to_all);
+  }
+  if (const DocumentRoute* document = target ? find_document_route(target->path) : nullptr) {
+    return handle_document(*document, request, respond_to_all);
   }
   respond_to_all(route(request));
 }
@@ -204,6 +242,28 @@ void Site::handle_tiles(const HttpRequest& request, const Respond& respond) cons
   handle_tile(std::get<TileRequest>(tiles), request, respond);
 }
 
+void Site::handle_document(const DocumentRoute& route, const HttpRequest& request,
+                           const Respond& respond) const {
+  const auto target = split_target(request.target);
+  auto path = target ? decode_path(target->path) : std::nullopt;
+  auto query = target ? decode_query(target->query) : std::nullopt;
+  if (!path || !query) return respond(problem_response(malformed_target()));
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return respond(problem_response(still_loading()));
+  auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return respond(problem_response(*problem));
+  const DocumentRequest asked{*dataset, std::move(std::get<std::string>(base)), std::move(*path),
+                              std::move(*query)};
+  if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
+    const auto* problem = std::get_if<Problem>(&*tile);
+    return problem != nullptr ? respond(problem_response(*problem))
+                              : handle_tile(std::get<TileRequest>(*tile), request, respond);
+  }
+  auto made = route.make(asked);
+  if (const auto* problem = std::get_if<Problem>(&made)) return respond(problem_response(*problem));
+  respond(fresh_document(request, std::move(std::get<Document>(made))));
+}
+
 void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
                        const Respond& respond) const {
   auto dataset = data_.get();
@@ -241,6 +301,10 @@ OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
                    "The request needs a Host header with a host name or address, and a port "
                    "if it is not 80.",
                    "Host", request.host, "a host name or address, with or without a port"};
+  }
+  if (!options_.allowed_hosts.empty() && !is_allowed_host(request.host, options_.allowed_hosts)) {
+    return Problem{400, "This server is not known by that name.", "Host", request.host,
+                   "one of the names that its configuration allows"};
   }
   return "http://" + request.host;
 }

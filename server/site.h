@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/dataset.h"
 #include "server/http_message.h"
@@ -18,9 +19,13 @@ namespace trapeze {
 struct SiteOptions {
   /// What documents call this server, without a '/' at the end; empty: by the Host of each request.
   std::string public_url;
+  /// The Host headers that will do for that, as is_allowed_host() takes them; empty: all.
+  std::vector<std::string> allowed_hosts;
   /// What caches between here and the client may do with tiles.
   std::string cache_control = "public, max-age=3600";
 };
+
+struct DocumentRoute;
 
 class Site {
  public:
@@ -39,6 +44,9 @@ class Site {
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
   HttpResponse answer_file(const HttpRequest& request) const;
   void handle_tiles(const HttpRequest& request, const Respond& respond) const;
+  /// A document, or a tile that is named below it.
+  void handle_document(const DocumentRoute& route, const HttpRequest& request,
+                       const Respond& respond) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;
   /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or

@@ -61,10 +61,7 @@ std::string entity_tag_of(std::string_view key);
 /// The problem is 404 for a layer that is not in the dataset.
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
-/// What fills the layer at `position` of the dataset if a request does not say.
-Rgba default_fill(const LayerConfig& config, std::size_t position);
-
-/// The problem to answer with for a layer name that is not in the dataset.
-Problem unknown_layer(const std::string& name, const Dataset& dataset);
+/// How far the drawn boundary of the layer may be from the true one.
+double tolerance_in_pixels(const StyleQuery& query, const std::string& layer);
 
 }  // namespace trapeze

@@ -34,7 +34,46 @@ std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
   return number;
 }
 
-OrProblem<std::vector<std::string>> parse_layers(std::string_view list) {
+OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
+                                   std::span<const QueryPair> query) {
+  auto layers = parse_layer_list(path[1]);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  auto file = parse_picture_name(path[4]);
+  if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
+  auto tile = parse_tile_id(path[2], path[3], std::get<PictureName>(file).stem);
+  if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
+  TileRequest request{std::move(std::get<0>(layers)),
+                      std::get<TileId>(tile),
+                      std::get<PictureName>(file).scale,
+                      {}};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
+  file.remove_suffix(kJson.size());
+  auto layers = parse_layer_list(file);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  TileJsonRequest request{std::move(std::get<0>(layers)), {}};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+}  // namespace
+
+bool is_layer_name(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxLayerNameLength &&
+         std::ranges::all_of(name, [](char c) {
+           return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+                  c == '-';
+         });
+}
+
+OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
   std::vector<std::string> layers;
   while (true) {
     const std::size_t comma = std::min(list.find(','), list.size());
@@ -54,18 +93,13 @@ OrProblem<std::vector<std::string>> parse_layers(std::string_view list) {
   }
 }
 
-struct FileName {
-  std::string_view stem;  // "7" of "7@2x.png"
-  int scale = 1;
-};
-
-OrProblem<FileName> parse_file_name(std::string_view name) {
+OrProblem<PictureName> parse_picture_name(std::string_view name) {
   if (!name.ends_with(kPng)) {
-    return Problem{400, fmt::format("Tiles are PNG pictures: {}.", kTilePattern)};
+    return Problem{400, fmt::format("Pictures are PNG: {}.", kTilePattern)};
   }
   name.remove_suffix(kPng.size());
   const std::size_t at = name.find('@');
-  if (at == std::string_view::npos) return FileName{name, 1};
+  if (at == std::string_view::npos) return PictureName{name, 1};
   const std::string_view suffix = name.substr(at + 1);
   const bool is_scale =
       suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
@@ -73,44 +107,7 @@ OrProblem<FileName> parse_file_name(std::string_view name) {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
                    std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
   }
-  return FileName{name.substr(0, at), suffix[0] - '0'};
-}
-
-OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
-                                   std::span<const QueryPair> query) {
-  auto layers = parse_layers(path[1]);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
-  auto file = parse_file_name(path[4]);
-  if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
-  auto tile = parse_tile_id(path[2], path[3], std::get<FileName>(file).stem);
-  if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
-  TileRequest request{
-      std::move(std::get<0>(layers)), std::get<TileId>(tile), std::get<FileName>(file).scale, {}};
-  auto style = StyleQuery::parse(query, request.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  request.style = std::move(std::get<StyleQuery>(style));
-  return TilesRequest(std::move(request));
-}
-
-OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
-  file.remove_suffix(kJson.size());
-  auto layers = parse_layers(file);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
-  TileJsonRequest request{std::move(std::get<0>(layers)), {}};
-  auto style = StyleQuery::parse(query, request.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  request.style = std::move(std::get<StyleQuery>(style));
-  return TilesRequest(std::move(request));
-}
-
-}  // namespace
-
-bool is_layer_name(std::string_view name) {
-  return !name.empty() && name.size() <= kMaxLayerNameLength &&
-         std::ranges::all_of(name, [](char c) {
-           return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-                  c == '-';
-         });
+  return PictureName{name.substr(0, at), suffix[0] - '0'};
 }
 
 OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
@@ -132,6 +129,12 @@ OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::str
                                   kMaxZoom)};
 }
 
+Problem malformed_target() {
+  return {400,
+          "The target is not well formed: '%' comes with two hex digits, and control characters "
+          "are not allowed."};
+}
+
 OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
   if (target.size() > kMaxTargetLength) {
     return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
@@ -140,9 +143,7 @@ OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
   const auto path = split ? decode_path(split->path) : std::nullopt;
   const auto query = split ? decode_query(split->query) : std::nullopt;
   if (!path || !query) {
-    return Problem{400,
-                   "The target is not well formed: '%' comes with two hex digits, and "
-                   "control characters are not allowed."};
+    return malformed_target();
   }
   if (path->size() == 5) return parse_tile(*path, *query);
   if (path->size() == 2 && path->back().ends_with(kJson)) {

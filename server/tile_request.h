@@ -35,9 +35,21 @@ struct TileJsonRequest {
 
 using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
 
+Problem malformed_target();
+
 /// Parses a target, path and query, that begins with /tiles/. The problem is 400 for what is
 /// malformed, 404 for a tile outside of the matrix, and 414 for a target that is too long.
 OrProblem<TilesRequest> parse_tiles_target(std::string_view target);
+
+/// Parses names separated by commas; each is taken once, bottom first.
+OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list);
+
+/// The name of a picture, in parts. Looks at the text it was parsed from.
+struct PictureName {
+  std::string_view stem;  // "7" of "7@2x.png"
+  int scale = 1;
+};
+OrProblem<PictureName> parse_picture_name(std::string_view name);
 
 /// Parses the z, x, y of a tile written as "Z/X/Y".
 OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);

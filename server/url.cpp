@@ -39,6 +39,20 @@ bool is_valid_port(std::string_view port) {
   return !port.empty() && port.size() <= 5 && std::ranges::all_of(port, is_digit);
 }
 
+std::string to_lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  }
+  return lower;
+}
+
+/// Where the port begins, with its colon, or the host ends.
+std::size_t end_of_host_name(std::string_view host) {
+  const std::size_t bracket = host.find(']');  // of an IPv6 address, in which there are colons
+  return std::min(host.find(':', bracket == std::string_view::npos ? 0 : bracket), host.size());
+}
+
 }  // namespace
 
 std::optional<Target> split_target(std::string_view target) {
@@ -117,6 +131,19 @@ std::optional<std::vector<QueryPair>> decode_query(std::string_view query) {
   });
   if (!well_formed) return std::nullopt;
   return pairs;
+}
+
+bool is_allowed_host(std::string_view host, std::span<const std::string> allowed) {
+  const std::string name = to_lower(host);
+  return std::ranges::any_of(allowed, [&name](const std::string& entry) {
+    std::string pattern = to_lower(entry);
+    std::string_view asked = name;
+    if (end_of_host_name(pattern) == pattern.size())
+      asked = asked.substr(0, end_of_host_name(asked));
+    if (!pattern.starts_with("*.")) return asked == pattern;
+    return asked.size() > pattern.size() - 1 &&
+           asked.ends_with(std::string_view(pattern).substr(1));
+  });
 }
 
 bool is_valid_host(std::string_view host) {

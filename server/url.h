@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,5 +40,9 @@ std::optional<std::vector<QueryPair>> decode_query(std::string_view query);
 /// Whether `host` can be the Host of an absolute URL: a name, an IPv4 or a bracketed IPv6 address,
 /// with or without a port.
 bool is_valid_host(std::string_view host);
+
+/// Whether one of `allowed` stands for the valid host: the same in any case of letters; without a
+/// port, for every port; "*.name" for every name that ends with ".name".
+bool is_allowed_host(std::string_view host, std::span<const std::string> allowed);
 
 }  // namespace trapeze

@@ -71,6 +71,7 @@ TEST_F(ConfigTest, ReadsEveryKey) {
     renderer = "software"
     device = "1"
     public_url = "https://maps.example/trapeze/"
+    allowed_hosts = ["maps.example", "*.cdn.example:80"]
     web_root = "web"
 
     [[layer]]
@@ -96,6 +97,8 @@ TEST_F(ConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.server.renderer.kind, RendererKind::software);
   EXPECT_EQ(config.server.renderer.device, "1");
   EXPECT_EQ(config.server.public_url, "https://maps.example/trapeze");
+  EXPECT_EQ(config.server.allowed_hosts,
+            (std::vector<std::string>{"maps.example", "*.cdn.example:80"}));
   const auto folder = std::filesystem::path(path_).parent_path();
   EXPECT_EQ(std::filesystem::path(config.server.web_root), (folder / "web").lexically_normal());
   ASSERT_EQ(config.layers.size(), 2u);
@@ -138,6 +141,9 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\naddress = 1", ":2:11: ", "server.address takes a string"},
       {"[server]\nrenderer = \"vulkan\"", ":2:12: ", "\"osmesa\" or \"software\""},
       {"[server]\npublic_url = \"maps\"", ":2:14: ", "http://"},
+      {"[server]\nallowed_hosts = \"a\"", ":2:17: ", "takes a list of strings"},
+      {"[server]\nallowed_hosts = [1]", ":2:18: ", "takes a list of strings"},
+      {"[server]\nallowed_hosts = [\"a/b\"]", ":2:17: ", "\"a/b\" is none"},
       {"server = 1", ":1:10: ", "server takes a table"},
       {"layer = 1", ":1:9: ", "[[layer]]"},
       {"layer = [1]", ":1:9: ", "[[layer]]"},

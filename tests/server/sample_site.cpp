@@ -32,9 +32,9 @@ std::shared_ptr<const Dataset> sample_dataset() {
   return Dataset::load(layers);
 }
 
-SampleSite::SampleSite(bool is_loaded, StaticFiles files, std::string public_url)
+SampleSite::SampleSite(bool is_loaded, StaticFiles files, SiteOptions options)
     : tiles_({}, software_renderers()),
-      site_({.public_url = std::move(public_url)}, std::move(files), data_, tiles_, cache_) {
+      site_(std::move(options), std::move(files), data_, tiles_, cache_) {
   if (is_loaded) data_.set(sample_dataset());
 }
 

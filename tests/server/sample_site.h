@@ -19,7 +19,7 @@ std::shared_ptr<const Dataset> sample_dataset();
 
 class SampleSite {
  public:
-  explicit SampleSite(bool is_loaded = true, StaticFiles files = {}, std::string public_url = {});
+  explicit SampleSite(bool is_loaded = true, StaticFiles files = {}, SiteOptions options = {});
 
   Site& site() { return site_; }
   CurrentDataset& data() { return data_; }

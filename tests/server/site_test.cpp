@@ -311,6 +311,8 @@ TEST_F(SiteTest, TileJsonDescribesTheLayersTogether) {
   EXPECT_EQ(json["tiles"],
             nlohmann::json::array({"http://maps.example:8080/tiles/rings,west/{z}/{x}/{y}.png"
                                    "?fill-opacity=0.5&west.fill=008080ff"}));
+  EXPECT_EQ(json["legend"],
+            "http://maps.example:8080/legend/rings,west.png?fill-opacity=0.5&west.fill=008080ff");
   EXPECT_EQ(json["minzoom"], 0);
   EXPECT_EQ(json["maxzoom"], kMaxZoom);
   const auto bounds = json["bounds"].get<std::vector<double>>();
@@ -337,9 +339,21 @@ TEST_F(SiteTest, AHostThatIsNoneIsNotEchoed) {
 }
 
 TEST(SitePublicUrlTest, GoesBeforeTheHost) {
-  testing::SampleSite sample(true, {}, "https://cdn.example/maps");
+  testing::SampleSite sample(true, {}, {.public_url = "https://cdn.example/maps"});
   const auto json = nlohmann::json::parse(*sample.get("/tiles/rings.json").body);
   EXPECT_EQ(json["tiles"][0], "https://cdn.example/maps/tiles/rings/{z}/{x}/{y}.png");
+}
+
+TEST(SiteAllowedHostsTest, AnswersOnlyToTheNamesThatAreAllowed) {
+  testing::SampleSite sample(true, {}, {.allowed_hosts = {"maps.example", "*.cdn.example"}});
+  const auto json = nlohmann::json::parse(*sample.get("/tiles/rings.json").body);
+  EXPECT_EQ(json["tiles"][0], "http://maps.example:8080/tiles/rings/{z}/{x}/{y}.png");
+  for (const char* target : {"/tiles/rings.json", "/catalog", "/ogc", "/wmts.xml"}) {
+    const auto response = sample.handle({"GET", target, "evil.example", ""});
+    EXPECT_EQ(response.status, 400) << target;
+    EXPECT_EQ(nlohmann::json::parse(*response.body)["parameter"], "Host") << target;
+    EXPECT_EQ(sample.handle({"GET", target, "a.cdn.example", ""}).status, 200) << target;
+  }
 }
 
 TEST_F(SiteTest, TheCatalogListsLayersAndParameters) {

@@ -85,5 +85,20 @@ TEST(UrlTest, RefusesHostsThatWouldBreakOutOfAUrl) {
   EXPECT_FALSE(is_valid_host(std::string(300, 'a')));
 }
 
+TEST(UrlTest, AllowsTheHostsThatAreNamed) {
+  const std::vector<std::string> allowed = {"maps.example.org", "*.tiles.example.org",
+                                            "localhost:8080", "[::1]"};
+  for (const char* host :
+       {"maps.example.org", "MAPS.example.ORG", "maps.example.org:8443", "a.tiles.example.org",
+        "a.b.tiles.example.org:80", "localhost:8080", "[::1]", "[::1]:8080"}) {
+    EXPECT_TRUE(is_allowed_host(host, allowed)) << host;
+  }
+  for (const char* host :
+       {"example.org", "xmaps.example.org", "maps.example.org.evil.net", "tiles.example.org",
+        ".tiles.example.org", "atiles.example.org", "localhost", "localhost:80", "[::2]"}) {
+    EXPECT_FALSE(is_allowed_host(host, allowed)) << host;
+  }
+}
+
 }  // namespace
 }  // namespace trapeze

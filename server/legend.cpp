@@ -1,0 +1,174 @@
+#include "server/legend.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "render/bitmap_text.h"
+#include "render/png.h"
+#include "server/json_text.h"
+#include "server/layer_style.h"
+#include "server/layer_summary.h"
+#include "server/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kPattern = "/legend/{layers}.json or /legend/{layers}[@{1-4}x].png";
+constexpr std::string_view kJson = ".json";
+
+struct LegendEntry {
+  std::string label;
+  Rgba fill;
+};
+
+struct LayerLegend {
+  std::string name;
+  std::string title;
+  std::vector<LegendEntry> entries;
+};
+
+LayerLegend legend_of_layer(const ServedLayer& served, std::size_t position,
+                            const StyleQuery& query) {
+  const LayerStyle style = layer_style(query, served.config, position);
+  return {served.config.name, served.config.title, {{served.config.title, style.fill}}};
+}
+
+OrProblem<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
+                                              const DocumentRequest& request) {
+  const auto style = StyleQuery::parse(request.query, layers);
+  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  std::vector<LayerLegend> legend;
+  for (auto name = layers.rbegin(); name != layers.rend(); ++name) {
+    const auto position = request.dataset.find(*name);
+    if (!position) return unknown_layer(*name, request.dataset);
+    legend.push_back(legend_of_layer(request.dataset.layers()[*position], *position,
+                                     std::get<StyleQuery>(style)));
+  }
+  return legend;
+}
+
+std::string legend_json(const std::vector<LayerLegend>& legend) {
+  Json layers = Json::array();
+  for (const LayerLegend& layer : legend) {
+    Json entries = Json::array();
+    for (const LegendEntry& entry : layer.entries) {
+      entries.push_back({{"label", entry.label},
+                         {"fill", css_colour(entry.fill)},
+                         {"fill-opacity", entry.fill.a / 255.0}});
+    }
+    layers.push_back({{"name", layer.name}, {"title", layer.title}, {"entries", entries}});
+  }
+  return to_text({{"layers", layers}});
+}
+
+// Pixels at scale 1.
+constexpr int kMargin = 6;
+constexpr int kRowHeight = 16;
+constexpr int kSwatchWidth = 20;
+constexpr int kSwatchHeight = 12;
+constexpr int kSwatchGap = 6;
+constexpr int kMaxLabelWidth = 320;
+constexpr Rgba kPaper{255, 255, 255, 255};
+constexpr Rgba kInk{0x22, 0x22, 0x22, 255};
+constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
+
+/// A line of the picture: a title, or a swatch with its label.
+struct LegendRow {
+  std::string_view label;
+  const LegendEntry* entry = nullptr;  // null for a title
+};
+
+std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
+  std::vector<LegendRow> rows;
+  for (const LayerLegend& layer : legend) {
+    // The only entry of a layer is labelled with its title.
+    if (layer.entries.size() > 1) rows.push_back({layer.title, nullptr});
+    for (const LegendEntry& entry : layer.entries) rows.push_back({entry.label, &entry});
+  }
+  return rows;
+}
+
+int left_of_label(const LegendRow& row) {
+  return row.entry == nullptr ? kMargin : kMargin + kSwatchWidth + kSwatchGap;
+}
+
+Rgba over_paper(Rgba colour) {
+  const auto mix = [&](std::uint8_t c) {
+    return static_cast<std::uint8_t>((c * colour.a + 255 * (255 - colour.a) + 127) / 255);
+  };
+  return {mix(colour.r), mix(colour.g), mix(colour.b), 255};
+}
+
+void fill_box(Picture& picture, int left, int top, int width, int height, Rgba colour) {
+  for (int y = top; y < top + height; ++y) {
+    const auto row = picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.width + left;
+    std::fill(row, row + width, colour);
+  }
+}
+
+void draw_swatch(const LegendEntry& entry, int top, int scale, Picture& picture) {
+  const int left = kMargin * scale;
+  const int width = kSwatchWidth * scale;
+  const int height = kSwatchHeight * scale;
+  fill_box(picture, left, top, width, height, kFrame);
+  fill_box(picture, left + scale, top + scale, width - 2 * scale, height - 2 * scale,
+           over_paper(entry.fill));
+}
+
+Picture draw_legend(const std::vector<LayerLegend>& legend, int scale) {
+  const std::vector<LegendRow> rows = rows_of(legend);
+  int width = 0;
+  for (const LegendRow& row : rows) {
+    const int label = std::min(text_width(row.label), kMaxLabelWidth);
+    width = std::max(width, left_of_label(row) + label + kMargin);
+  }
+  Picture picture;
+  picture.width = width * scale;
+  picture.height = (static_cast<int>(rows.size()) * kRowHeight + 2 * kMargin) * scale;
+  picture.pixels.assign(
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kPaper);
+  int top = kMargin * scale;
+  for (const LegendRow& row : rows) {
+    if (row.entry != nullptr) {
+      draw_swatch(*row.entry, top + (kRowHeight - kSwatchHeight) / 2 * scale, scale, picture);
+    }
+    draw_text(row.label, left_of_label(row) * scale, top + (kRowHeight - kTextAscent) / 2 * scale,
+              scale, kInk, picture);
+    top += kRowHeight * scale;
+  }
+  return picture;
+}
+
+OrProblem<Document> legend_as_json(std::string_view file, const DocumentRequest& request) {
+  file.remove_suffix(kJson.size());
+  const auto layers = parse_layer_list(file);
+  if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
+  const auto legend = legend_of(std::get<0>(layers), request);
+  if (const auto* problem = std::get_if<Problem>(&legend)) return *problem;
+  return Document{"application/json", legend_json(std::get<0>(legend))};
+}
+
+OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& request) {
+  const auto name = parse_picture_name(file);
+  if (const auto* problem = std::get_if<Problem>(&name)) return *problem;
+  const auto layers = parse_layer_list(std::get<PictureName>(name).stem);
+  if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
+  const auto legend = legend_of(std::get<0>(layers), request);
+  if (const auto* problem = std::get_if<Problem>(&legend)) return *problem;
+  return Document{"image/png", PngEncoder().encode(draw_legend(std::get<0>(legend),
+                                                               std::get<PictureName>(name).scale))};
+}
+
+}  // namespace
+
+OrProblem<Document> legend_document(const DocumentRequest& request) {
+  if (request.path.size() == 2) {
+    const std::string& file = request.path[1];
+    if (file.ends_with(kJson)) return legend_as_json(file, request);
+    if (file.ends_with(".png")) return legend_as_png(file, request);
+  }
+  return Problem{404, fmt::format("There is nothing here. Legends are at {}.", kPattern)};
+}
+
+}  // namespace trapeze

@@ -1,0 +1,13 @@
+// Text on its way into an XML document.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace trapeze {
+
+/// Safe between tags and in attributes: markup is escaped; what is not UTF-8, and the characters
+/// that XML 1.0 does not allow, become U+FFFD.
+std::string xml_escape(std::string_view text);
+
+}  // namespace trapeze
