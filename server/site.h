@@ -18,9 +18,9 @@ namespace trapeze {
 
 struct SiteOptions {
   /// What documents call this server, without a '/' at the end; empty: by the Host of each request.
-  std::string public_url;
+  std::string public_url = {};
   /// The Host headers that will do for that, as is_allowed_host() takes them; empty: all.
-  std::vector<std::string> allowed_hosts;
+  std::vector<std::string> allowed_hosts = {};
   /// What caches between here and the client may do with tiles.
   std::string cache_control = "public, max-age=3600";
 };
