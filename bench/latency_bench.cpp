@@ -27,18 +27,23 @@ constexpr int kLastZoom = 22;
 struct Options {
   std::vector<std::string> renderers{"egl", "software"};
   std::string program = built_trapeze();
+  std::vector<std::string> layers;  // empty: all
   std::size_t tiles = 30;
   int rounds = 3;
   std::string json = "out/bench/latency.json";
 };
 
-std::vector<TripLayer> layers_of(const std::string& folder) {
+std::vector<TripLayer> layers_of(const std::string& folder,
+                                 const std::vector<std::string>& chosen) {
   std::vector<TripLayer> layers;
+  const auto is_chosen = [&](const std::string& name) {
+    return chosen.empty() || std::ranges::find(chosen, name) != chosen.end();
+  };
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".fgb") continue;
+    if (entry.path().extension() != ".fgb" || !is_chosen(entry.path().stem().string())) continue;
     layers.push_back({entry.path().stem().string(), entry.path().string(), "a05040"});
   }
-  if (layers.empty()) throw std::runtime_error("there is no FlatGeobuf file in " + folder);
+  if (layers.empty()) throw std::runtime_error("there is no such FlatGeobuf file in " + folder);
   std::ranges::sort(layers, {}, &TripLayer::name);
   return layers;
 }
@@ -57,12 +62,14 @@ std::vector<TileTime> middle_times(const std::vector<TileTime>& times, std::size
   return middle;
 }
 
-TileRun measure_layer(const TrapezeServer& server, const Trip& trip, int rounds) {
+TileRun measure_layer(const TrapezeServer& server, const Trip& trip, int rounds, Figure& figure) {
   // With one connection the answers come in the order of the requests.
   TileRun run = uncached_run(server, trip, {.connections = 1}, rounds);
+  figure.set("longest answer, ms", std::ranges::max(run.tiles, {}, &TileTime::ms).ms);
   run.tiles = middle_times(run.tiles, static_cast<std::size_t>(rounds));
   run.seconds /= rounds;
   run.cpu_seconds /= rounds;
+  figure.add(run);
   return run;
 }
 
@@ -91,9 +98,7 @@ std::vector<Figure> measure_renderer(const Options& options, const std::string& 
     const Trip trip{layer.name, alone,
                     tiles_at_vertices(read_places(alone), 0, kLastZoom, options.tiles)};
     figures.emplace_back("latency/trapeze-" + renderer + "/" + layer.name);
-    const TileRun run = measure_layer(server, trip, options.rounds);
-    figures.back().add(run);
-    all.add(run);
+    all.add(measure_layer(server, trip, options.rounds, figures.back()));
     print_line(figures.back());
     print_zooms(figures.back());
   }
@@ -109,6 +114,7 @@ int run(int argc, char** argv) {
   Options options;
   CLI::App app("How long one tile takes, of any layer of TRAPEZE_DATA at any zoom");
   app.add_option("--renderer", options.renderers)->delimiter(',')->capture_default_str();
+  app.add_option("--layer", options.layers, "Only these: file names without .fgb")->delimiter(',');
   app.add_option("--server", options.program, "The program trapeze")->capture_default_str();
   app.add_option("--tiles", options.tiles, "Tiles of every layer and zoom")
       ->check(CLI::Range(1, 10000))
@@ -118,7 +124,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--json", options.json, "Where the figures go")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  const auto layers = layers_of(real_data_folder());
+  const auto layers = layers_of(real_data_folder(), options.layers);
   std::vector<Figure> figures;
   print_table_head();
   for (const std::string& renderer : options.renderers) {

@@ -62,7 +62,8 @@ MapServer::MapServer(const std::string& map_file)
 }
 
 void MapServer::await_answer() {
-  const auto request = requests({"", {}, std::vector<TileId>{TileId{}}});
+  const TileId in_the_corner_of_the_world{18, 0, 0};  // where there is nothing to draw
+  const auto request = requests({"", {}, {in_the_corner_of_the_world}});
   for (int tries = 0; tries < 1000 && process_.is_running(); ++tries) {
     try {
       if (load_http(port_, request, {.connections = 1}).exchanges.front().is_png) return;

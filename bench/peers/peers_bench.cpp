@@ -131,13 +131,23 @@ class Contest {
     return some;
   }
 
-  /// Who needs too long for the first tile has no figure; who would need minutes for all of them
-  /// has that of some.
+  /// Why the contestant cannot take part; empty if it can.
+  std::string failure_of(const Contestant& contestant) const {
+    try {
+      const double seconds = contestant.draw(some_of_trip(trip_.tiles.size())).seconds;
+      if (seconds < kHopelessSeconds) return {};
+      return "the first tile took " + std::to_string(static_cast<int>(seconds)) + " seconds";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  }
+
+  /// Who fails at the first tile has no figure; who would need minutes for all of them has that of
+  /// some.
   void try_out(Contestant& contestant) const {
-    if (contestant.draw(some_of_trip(trip_.tiles.size())).seconds > kHopelessSeconds) {
+    if (const std::string failure = failure_of(contestant); !failure.empty()) {
       contestant.is_slow = true;
-      contestant.figure.note("too slow: a tile takes more than " +
-                             std::to_string(kHopelessSeconds) + " seconds");
+      contestant.figure.note("takes no part: " + failure);
       return;
     }
     TileRun run = contestant.draw(some_of_trip(kOneOf));
