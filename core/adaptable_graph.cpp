@@ -175,4 +175,16 @@ void AdaptableGraph::adapt_to(double epsilon) {
   }
 }
 
+AdaptableGraph::Unchanged AdaptableGraph::unchanged() const {
+  const std::size_t applied = log_.applied();
+  Unchanged unchanged;
+  if (applied > 0) unchanged.above = epsilon_of_edit_[applied - 1];
+  if (applied < log_.size()) {
+    unchanged.up_to = epsilon_of_edit_[applied];
+  } else if (exhausted_) {
+    unchanged.up_to = std::numeric_limits<double>::infinity();
+  }
+  return unchanged;
+}
+
 }  // namespace trapeze

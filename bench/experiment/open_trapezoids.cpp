@@ -1,0 +1,166 @@
+#include "bench/experiment/open_trapezoids.h"
+
+#include <algorithm>
+
+namespace trapeze::experiment {
+namespace {
+
+// Fewer than this are sorted and searched one by one.
+constexpr std::size_t kFew = 16;
+
+constexpr std::uint64_t sweep_key(Point p) {
+  const auto biased = [](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) + 0x80000000u);
+  };
+  return biased(p.y) << 32 | biased(p.x);
+}
+
+constexpr Point point_of_key(std::uint64_t key) {
+  const auto unbiased = [](std::uint64_t v) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) - 0x80000000u);
+  };
+  return {unbiased(key & 0xffffffff), unbiased(key >> 32)};
+}
+
+void append(const TrapezoidRecord& record, const Box& view,
+            std::vector<TrapezoidRecord>& records) {
+  const bool is_in_view =
+      record.top < view.max_y && record.bottom > view.min_y &&
+      std::min(record.left_upper.x, record.left_lower.x) <= view.max_x &&
+      std::max(record.right_upper.x, record.right_lower.x) >= view.min_x;
+  if (is_in_view && record.top < record.bottom) records.push_back(record);
+}
+
+}  // namespace
+
+void OpenTrapezoids::tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                                const Box& view, Boundary boundary,
+                                std::vector<TrapezoidRecord>& records) {
+  const std::size_t size_before = records.size();
+  collect(rings, first, last);
+  if (sweep(view, boundary, records)) return;
+  records.resize(size_before);
+  tessellate_noded(rings, first, last, view, records);
+}
+
+void OpenTrapezoids::collect(const Rings& rings, std::uint32_t first, std::uint32_t last) {
+  edges_.clear();
+  visits_.clear();
+  for (std::uint32_t r = first; r < last; ++r) {
+    const auto ring = rings[r];
+    const auto base = static_cast<std::uint32_t>(edges_.size());
+    const auto size = static_cast<std::uint32_t>(ring.size());
+    for (std::uint32_t i = 0; i < size; ++i) {
+      const Point a = ring[i];
+      const Point b = ring[i + 1 < size ? i + 1 : 0];
+      edges_.push_back(is_above(a, b) ? Edge{a, b} : Edge{b, a});
+      visits_.push_back({sweep_key(a), base + i, base + (i == 0 ? size : i) - 1});
+    }
+  }
+}
+
+bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
+                           std::vector<TrapezoidRecord>& records) {
+  const auto is_before = [](const Visit& a, const Visit& b) { return a.key < b.key; };
+  std::sort(visits_.begin(), visits_.end(), is_before);
+  status_.clear();
+  for (std::size_t begin = 0; begin < visits_.size();) {
+    std::size_t end = begin + 1;
+    while (end < visits_.size() && visits_[end].key == visits_[begin].key) ++end;
+    if (!sweep_vertex(begin, end, boundary, view, records)) return false;
+    begin = end;
+  }
+  return status_.empty();
+}
+
+bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary,
+                                  const Box& view, std::vector<TrapezoidRecord>& records) {
+  const Point p = point_of_key(visits_[begin].key);
+  starting_.clear();
+  for (std::size_t i = begin; i < end; ++i) {
+    for (const std::uint32_t e : {visits_[i].edge, visits_[i].edge_before}) {
+      if (edges_[e].upper == p) starting_.push_back(edges_[e]);
+    }
+  }
+  const std::size_t ending = 2 * (end - begin) - starting_.size();
+  const std::size_t position = locate(p);
+  if (position + ending > status_.size()) return false;
+  for (std::size_t i = position; i < position + ending; ++i) {
+    if (status_[i].edge.lower != p) return false;
+  }
+  // Between the first and the second edge is inside, between the second and the third outside.
+  const std::size_t first_interval = position == 0 ? 0 : position - 1;
+  for (std::size_t i = first_interval; i < position + ending && i + 1 < status_.size(); ++i) {
+    if (i % 2 != 0) continue;
+    const Edge& left = status_[i].edge;
+    const Edge& right = status_[i + 1].edge;
+    append({status_[i].top, p.y, left.upper, left.lower, right.upper, right.lower}, view, records);
+  }
+  if (!replace(position, ending, p)) return false;
+  if (boundary == Boundary::simple) return true;
+  const std::size_t last = position + starting_.size();
+  if (position > 0 && !is_apart(position - 1)) return false;
+  return last == position || is_apart(last - 1);
+}
+
+/// The place of the first edge that does not pass p on the left.
+std::size_t OpenTrapezoids::locate(Point p) const {
+  const auto is_left = [p](const Slot& slot) {
+    return orientation(slot.edge.upper, slot.edge.lower, p) < 0;
+  };
+  const auto found = status_.size() < kFew
+                         ? std::find_if_not(status_.begin(), status_.end(), is_left)
+                         : std::partition_point(status_.begin(), status_.end(), is_left);
+  return static_cast<std::size_t>(found - status_.begin());
+}
+
+/// Puts the starting edges in the place of `count` that end at p. False if two of them overlap.
+bool OpenTrapezoids::replace(std::size_t position, std::size_t count, Point p) {
+  const auto is_left = [p](const Edge& a, const Edge& b) {
+    return orientation(p, a.lower, b.lower) < 0;
+  };
+  std::sort(starting_.begin(), starting_.end(), is_left);
+  for (std::size_t i = 1; i < starting_.size(); ++i) {
+    if (!is_left(starting_[i - 1], starting_[i])) return false;
+  }
+  const auto at = status_.begin() + static_cast<std::ptrdiff_t>(position);
+  if (starting_.size() < count) {
+    status_.erase(at, at + static_cast<std::ptrdiff_t>(count - starting_.size()));
+  } else if (starting_.size() > count) {
+    status_.insert(at, starting_.size() - count, Slot{});
+  }
+  for (std::size_t i = 0; i < starting_.size(); ++i) status_[position + i] = {starting_[i], p.y};
+  if (position > 0) status_[position - 1].top = p.y;
+  return true;
+}
+
+/// The edge in slot `left` and the one right of it do not meet below the sweep line, but for a
+/// common end.
+bool OpenTrapezoids::is_apart(std::size_t left) const {
+  if (left + 1 >= status_.size()) return true;
+  const Edge& west = status_[left].edge;
+  const Edge& east = status_[left + 1].edge;
+  if (west.lower == east.lower) return orientation(west.lower, west.upper, east.upper) != 0;
+  return is_above(west.lower, east.lower) ? orientation(east.upper, east.lower, west.lower) > 0
+                                          : orientation(west.upper, west.lower, east.lower) < 0;
+}
+
+void OpenTrapezoids::tessellate_noded(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                                      const Box& view, std::vector<TrapezoidRecord>& records) {
+  ++noded_;
+  noded_rings_.clear();
+  for (std::uint32_t r = first; r < last; ++r) noded_rings_.add(rings[r]);
+  if (!builder_.build(noded_rings_, graph_).built) return;
+  for (const NodeId n : graph_.inside_nodes()) {
+    const Node& node = graph_.node(n);
+    const Edge left{graph_.point(graph_.edge(node.edge[kLeft]).end[kUp]),
+                    graph_.point(graph_.edge(node.edge[kLeft]).end[kDown])};
+    const Edge right{graph_.point(graph_.edge(node.edge[kRight]).end[kUp]),
+                     graph_.point(graph_.edge(node.edge[kRight]).end[kDown])};
+    append({graph_.point(node.end[kUp]).y, graph_.point(node.end[kDown]).y, left.upper, left.lower,
+            right.upper, right.lower},
+           view, records);
+  }
+}
+
+}  // namespace trapeze::experiment

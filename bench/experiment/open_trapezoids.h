@@ -1,0 +1,67 @@
+// Trapezoidation by open trapezoids (Zalik and others 2003) for those who need the trapezoids alone
+// and no graph: a plane sweep that keeps the edges on the sweep line in order, and closes and opens
+// trapezoids as it passes vertices.
+//
+// Small polygons have few edges on the sweep line, so these lie in an array. Trapezoids that do not
+// meet the view are not written down.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bench/experiment/trapezoid_record.h"
+#include "core/graph_builder.h"
+
+namespace trapeze::experiment {
+
+/// Belongs to one thread; memory is kept between uses.
+class OpenTrapezoids {
+ public:
+  enum class Boundary : std::uint8_t {
+    simple,     // edges meet at common vertices only; found out only where it gets in the way
+    uncertain,  // edges that come to lie side by side are tested, and noded if need be
+  };
+
+  /// Appends the trapezoids, by even-odd, of rings `first` .. `last` - 1 that meet `view`.
+  void tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
+                  Boundary boundary, std::vector<TrapezoidRecord>& records);
+
+  /// Polygons that had to be noded so far.
+  std::uint64_t noded() const { return noded_; }
+
+ private:
+  struct Edge {
+    Point upper;
+    Point lower;
+  };
+  struct Visit {
+    std::uint64_t key;   // of the vertex in sweep order
+    std::uint32_t edge;  // that leaves it
+    std::uint32_t edge_before;
+  };
+  struct Slot {
+    Edge edge;
+    std::int32_t top;  // level at which what lies right of the edge was opened
+  };
+
+  void collect(const Rings& rings, std::uint32_t first, std::uint32_t last);
+  bool sweep(const Box& view, Boundary boundary, std::vector<TrapezoidRecord>& records);
+  bool sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary, const Box& view,
+                    std::vector<TrapezoidRecord>& records);
+  std::size_t locate(Point p) const;
+  bool replace(std::size_t position, std::size_t count, Point p);
+  bool is_apart(std::size_t left) const;
+  void tessellate_noded(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                        const Box& view, std::vector<TrapezoidRecord>& records);
+
+  std::vector<Edge> edges_;
+  std::vector<Visit> visits_;
+  std::vector<Slot> status_;
+  std::vector<Edge> starting_;
+  GraphBuilder builder_;
+  TrapezoidalGraph graph_;
+  Rings noded_rings_;
+  std::uint64_t noded_ = 0;
+};
+
+}  // namespace trapeze::experiment
