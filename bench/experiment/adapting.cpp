@@ -22,7 +22,7 @@ AdaptingLayer::AdaptingLayer(const PolygonSet& polygons, Topology topology, Scre
     for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
       vertices_.push_back(graph.point(VertexId(v)));
     }
-    polygons_.push_back({.box = polygons.boxes[p], .first_vertex = first});
+    polygons_.push_back({polygons.boxes[p], first, false, {}, {}});
     graphs_.emplace_back(std::move(graph), GeneralizationOptions{.topology = topology});
     graphs_.back().adapt_to(std::numeric_limits<double>::max());
   }

@@ -22,6 +22,13 @@ constexpr Point point_of_key(std::uint64_t key) {
   return {unbiased(key & 0xffffffff), unbiased(key >> 32)};
 }
 
+/// Exact at the lower end.
+double x_at(Point upper, Point lower, std::int32_t y) {
+  const double slope =
+      (static_cast<double>(lower.x) - upper.x) / (static_cast<double>(lower.y) - upper.y);
+  return lower.x - slope * (static_cast<double>(lower.y) - y);
+}
+
 void append(const TrapezoidRecord& record, const Box& view,
             std::vector<TrapezoidRecord>& records) {
   const bool is_in_view =
@@ -37,15 +44,17 @@ void OpenTrapezoids::tessellate(const Rings& rings, std::uint32_t first, std::ui
                                 const Box& view, Boundary boundary,
                                 std::vector<TrapezoidRecord>& records) {
   const std::size_t size_before = records.size();
-  collect(rings, first, last);
+  collect(rings, first, last, view);
   if (sweep(view, boundary, records)) return;
   records.resize(size_before);
   tessellate_noded(rings, first, last, view, records);
 }
 
-void OpenTrapezoids::collect(const Rings& rings, std::uint32_t first, std::uint32_t last) {
+void OpenTrapezoids::collect(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                             const Box& view) {
   edges_.clear();
   visits_.clear();
+  crossing_.clear();
   for (std::uint32_t r = first; r < last; ++r) {
     const auto ring = rings[r];
     const auto base = static_cast<std::uint32_t>(edges_.size());
@@ -53,24 +62,57 @@ void OpenTrapezoids::collect(const Rings& rings, std::uint32_t first, std::uint3
     for (std::uint32_t i = 0; i < size; ++i) {
       const Point a = ring[i];
       const Point b = ring[i + 1 < size ? i + 1 : 0];
-      edges_.push_back(is_above(a, b) ? Edge{a, b} : Edge{b, a});
-      visits_.push_back({sweep_key(a), base + i, base + (i == 0 ? size : i) - 1});
+      const Edge edge = is_above(a, b) ? Edge{a, b} : Edge{b, a};
+      edges_.push_back(edge);
+      if (view.min_y <= a.y && a.y <= view.max_y) {
+        visits_.push_back({sweep_key(a), base + i, base + (i == 0 ? size : i) - 1});
+      }
+      if (edge.upper.y < view.min_y && edge.lower.y >= view.min_y) {
+        crossing_.emplace_back(x_at(edge.upper, edge.lower, view.min_y), edge);
+      }
     }
   }
+}
+
+/// Puts the edges that cross the top of the view on the sweep line.
+bool OpenTrapezoids::start(const Box& view, Boundary boundary) {
+  const auto is_left = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::sort(crossing_.begin(), crossing_.end(), is_left);
+  status_.clear();
+  for (const auto& [x, edge] : crossing_) status_.push_back({edge, view.min_y});
+  if (boundary == Boundary::simple) return true;
+  for (std::size_t i = 0; i < status_.size(); ++i) {
+    if (!is_apart(i)) return false;
+  }
+  return true;
 }
 
 bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
                            std::vector<TrapezoidRecord>& records) {
   const auto is_before = [](const Visit& a, const Visit& b) { return a.key < b.key; };
   std::sort(visits_.begin(), visits_.end(), is_before);
-  status_.clear();
+  if (!start(view, boundary)) return false;
   for (std::size_t begin = 0; begin < visits_.size();) {
     std::size_t end = begin + 1;
     while (end < visits_.size() && visits_[end].key == visits_[begin].key) ++end;
     if (!sweep_vertex(begin, end, boundary, view, records)) return false;
     begin = end;
   }
-  return status_.empty();
+  close_intervals(0, status_.size(), view.max_y, view, records);
+  return status_.size() % 2 == 0;
+}
+
+/// Writes down what is open right of slots `begin` .. `end` - 1: between the first and the second
+/// edge is inside, between the second and the third outside.
+void OpenTrapezoids::close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom,
+                                     const Box& view,
+                                     std::vector<TrapezoidRecord>& records) const {
+  for (std::size_t i = begin + begin % 2; i < end && i + 1 < status_.size(); i += 2) {
+    const Edge& left = status_[i].edge;
+    const Edge& right = status_[i + 1].edge;
+    append({status_[i].top, bottom, left.upper, left.lower, right.upper, right.lower}, view,
+           records);
+  }
 }
 
 bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary,
@@ -88,14 +130,7 @@ bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary b
   for (std::size_t i = position; i < position + ending; ++i) {
     if (status_[i].edge.lower != p) return false;
   }
-  // Between the first and the second edge is inside, between the second and the third outside.
-  const std::size_t first_interval = position == 0 ? 0 : position - 1;
-  for (std::size_t i = first_interval; i < position + ending && i + 1 < status_.size(); ++i) {
-    if (i % 2 != 0) continue;
-    const Edge& left = status_[i].edge;
-    const Edge& right = status_[i + 1].edge;
-    append({status_[i].top, p.y, left.upper, left.lower, right.upper, right.lower}, view, records);
-  }
+  close_intervals(position == 0 ? 0 : position - 1, position + ending, p.y, view, records);
   if (!replace(position, ending, p)) return false;
   if (boundary == Boundary::simple) return true;
   const std::size_t last = position + starting_.size();

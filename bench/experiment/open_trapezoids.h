@@ -2,8 +2,8 @@
 // and no graph: a plane sweep that keeps the edges on the sweep line in order, and closes and opens
 // trapezoids as it passes vertices.
 //
-// Small polygons have few edges on the sweep line, so these lie in an array. Trapezoids that do not
-// meet the view are not written down.
+// Small polygons have few edges on the sweep line, so these lie in an array. The sweep goes from the
+// top of the view to its bottom, and trapezoids that do not meet the view are not written down.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ class OpenTrapezoids {
     uncertain,  // edges that come to lie side by side are tested, and noded if need be
   };
 
-  /// Appends the trapezoids, by even-odd, of rings `first` .. `last` - 1 that meet `view`.
+  /// Appends the trapezoids, by even-odd, of rings `first` .. `last` - 1 that meet `view`, cut at
+  /// its top and bottom.
   void tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
                   Boundary boundary, std::vector<TrapezoidRecord>& records);
 
@@ -44,10 +45,13 @@ class OpenTrapezoids {
     std::int32_t top;  // level at which what lies right of the edge was opened
   };
 
-  void collect(const Rings& rings, std::uint32_t first, std::uint32_t last);
+  void collect(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view);
+  bool start(const Box& view, Boundary boundary);
   bool sweep(const Box& view, Boundary boundary, std::vector<TrapezoidRecord>& records);
   bool sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary, const Box& view,
                     std::vector<TrapezoidRecord>& records);
+  void close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom, const Box& view,
+                       std::vector<TrapezoidRecord>& records) const;
   std::size_t locate(Point p) const;
   bool replace(std::size_t position, std::size_t count, Point p);
   bool is_apart(std::size_t left) const;
@@ -56,6 +60,7 @@ class OpenTrapezoids {
 
   std::vector<Edge> edges_;
   std::vector<Visit> visits_;
+  std::vector<std::pair<double, Edge>> crossing_;  // the top of the view, and where
   std::vector<Slot> status_;
   std::vector<Edge> starting_;
   GraphBuilder builder_;

@@ -99,10 +99,12 @@ void TopologyKeeper::keep(const PolygonSet& polygons, std::size_t polygon,
   const auto has_dropped = [](const Chain& chain) { return chain.has_dropped(); };
   if (std::none_of(chains.chains.begin(), chains.chains.end(), has_dropped)) return;
   const std::uint32_t first_ring = polygons.first_ring(polygon);
-  // What is split keeps vertices that may lie in what other chains enclose.
-  do {
-    collect_kept(polygons, first_ring, chains);
-  } while (!kept_.empty() && split_inconsistent(polygons, first_ring, simplifier, chains));
+  // What is split keeps vertices that may lie in what other chains enclose; only these are new to
+  // chains that have been found consistent.
+  for (collect_kept(polygons, first_ring, chains); !kept_.empty(); kept_.swap(newly_kept_)) {
+    index_kept();
+    split_inconsistent(polygons, first_ring, simplifier, chains);
+  }
 }
 
 void TopologyKeeper::collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
@@ -115,14 +117,16 @@ void TopologyKeeper::collect_kept(const PolygonSet& polygons, std::uint32_t firs
       kept_.push_back(ring[chains.chains[c].begin]);
     }
   }
+}
+
+void TopologyKeeper::index_kept() {
   has_grid_ = kept_.size() > kFew;
   if (has_grid_) grid_.assign(kept_);
 }
 
-/// Whether there were any.
-bool TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
+void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
                                         RingSimplifier& simplifier, PolygonChains& chains) {
-  const std::uint64_t splits_before = splits_;
+  newly_kept_.clear();
   next_.clear();
   for (std::uint32_t r = 0; r < chains.ends.size(); ++r) {
     const std::uint32_t ring = first_ring + r;
@@ -136,6 +140,7 @@ bool TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_
           next_.chains.push_back(chain);
           continue;
         }
+        newly_kept_.push_back(points[chain.split]);
         const auto [before, after] = simplifier.split(ring, chain);
         pending_.push_back(after);
         pending_.push_back(before);
@@ -143,10 +148,11 @@ bool TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_
       }
     }
     next_.ends.push_back(static_cast<std::uint32_t>(next_.chains.size()));
+    if (chains.has_gone(r) && !next_.has_gone(r)) {
+      newly_kept_.insert(newly_kept_.end(), {points[0], points[polygons.second_anchors[ring]]});
+    }
   }
-  if (splits_ == splits_before) return false;
-  std::swap(chains, next_);
-  return true;
+  if (!newly_kept_.empty()) std::swap(chains, next_);
 }
 
 // Everything that the chain and its chord enclose is as near to the chord as the farthest vertex.

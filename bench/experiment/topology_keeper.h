@@ -65,11 +65,13 @@ class TopologyKeeper {
  private:
   void collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
                     const PolygonChains& chains);
-  bool split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
+  void index_kept();
+  void split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
                           RingSimplifier& simplifier, PolygonChains& chains);
   bool is_consistent(std::span<const Point> ring, const Chain& chain) const;
 
-  std::vector<Point> kept_;
+  std::vector<Point> kept_;       // what chains are to be tested against
+  std::vector<Point> newly_kept_;  // by splitting
   bool has_grid_ = false;
   PointGrid grid_;
   PolygonChains next_;
