@@ -29,13 +29,21 @@ struct ViewCost {
   double simplify_ms = 0;
   double tessellate_ms = 0;  // 0 where it is one with simplifying
   double send_ms = 0;
-  double draw_ms = 0;  // until the coverages of all layers are in memory
+  double draw_ms = 0;            // until the device has added up what is covered
+  double read_ms = 0;            // until the coverages are in memory: much the same for all
+  // Processor time of all threads of the program, those of a software device among them.
+  double cpu_before_draw_ms = 0;
+  double cpu_ms = 0;
   std::uint64_t vertices = 0;    // of the simplified polygons; 0 where nobody counts them
   std::uint64_t trapezoids = 0;  // drawn
   std::uint64_t bytes = 0;       // sent to the device
 
   double before_draw_ms() const { return simplify_ms + tessellate_ms + send_ms; }
-  double total_ms() const { return before_draw_ms() + draw_ms; }
+  double total_ms() const { return before_draw_ms() + draw_ms + read_ms; }
+  void add(const DrawTimes& times) {
+    draw_ms += times.draw_ms;
+    read_ms += times.read_ms + times.resolve_ms;
+  }
 };
 
 /// Belongs to one thread.

@@ -1,6 +1,7 @@
 #include "bench/experiment/lifespans.h"
 
-#include "bench/experiment/stopwatch.h"
+#include "bench/experiment/cpu_clock.h"
+#include "render/stopwatch.h"
 
 namespace trapeze::experiment {
 
@@ -8,33 +9,36 @@ Lifespans::Lifespans(Method method, Topology topology, const Map& map, Screen& s
     : screen_(screen), method_(method) {
   for (const MapLayer& layer : map.layers) {
     layers_.push_back(build_layer(layer, topology));
-    screen.send(layers_.back()->mesh());
+    meshes_.push_back(layers_.back()->mesh());
+    screen.send(meshes_.back());
   }
 }
 
 Lifespans::~Lifespans() {
-  for (const auto& layer : layers_) screen_.forget(layer->mesh());
+  for (const MeshView& mesh : meshes_) screen_.forget(mesh.id);
 }
 
 std::uint64_t Lifespans::sent_before() const {
   std::uint64_t bytes = 0;
-  for (const auto& layer : layers_) bytes += layer->mesh().trapezoids.size() * sizeof(TrapezoidRecord);
+  for (const MeshView& mesh : meshes_) bytes += mesh.trapezoids.size() * sizeof(TrapezoidRecord);
   return bytes;
 }
 
 ViewCost Lifespans::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
   const Layer::Selection selection = selection_of(view);
   ViewCost cost;
-  coverages.resize(layers_.size());
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    Stopwatch stopwatch;
-    layers_[i]->select(selection, ranges_);
-    cost.simplify_ms += stopwatch.lap_ms();
-    // The ranges are sent by the call that draws them.
-    screen_.renderer().draw(layers_[i]->mesh(), ranges_, view.view, coverages[i]);
-    cost.draw_ms += stopwatch.lap_ms();
-    for (const TrapezoidRange& range : ranges_) cost.trapezoids += range.count;
-    cost.bytes += ranges_.size() * sizeof(TrapezoidRange);
+  const double cpu_begin = cpu_clock_ms();
+  {
+    const Stopwatch stopwatch(cost.simplify_ms);
+    ranges_.resize(layers_.size());
+    for (std::size_t i = 0; i < layers_.size(); ++i) layers_[i]->select(selection, ranges_[i]);
+  }
+  cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
+  cost.add(screen_.draw(meshes_, ranges_, view.view, coverages));
+  cost.cpu_ms = cpu_clock_ms() - cpu_begin;
+  for (const Ranges& ranges : ranges_) {
+    for (const TrapezoidRange& range : ranges) cost.trapezoids += range.count;
+    cost.bytes += ranges.size() * sizeof(TrapezoidRange);
   }
   return cost;
 }

@@ -25,7 +25,8 @@ class Lifespans final : public Contestant {
   Screen& screen_;
   const Method method_;
   std::vector<std::unique_ptr<Layer>> layers_;
-  std::vector<TrapezoidRange> ranges_;
+  std::vector<MeshView> meshes_;  // by layer
+  std::vector<Ranges> ranges_;    // by layer
 };
 
 }  // namespace trapeze::experiment

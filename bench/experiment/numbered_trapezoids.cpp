@@ -84,11 +84,11 @@ void NumberedTrapezoids::make_program() {
   count_location_ = gl.GetUniformLocation(program_, "count");
 }
 
-void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers) {
+void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
+                              std::span<const std::uint8_t> sizes) {
   if (numbers.empty()) return;
   const CurrentContext current(screen_.context());
   const GlFunctions& gl = screen_.context().gl();
-  trapezoids_.reserve(numbers.size());
   gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, numbers_);
   if (room_ < numbers.size_bytes()) {
     room_ = 2 * numbers.size_bytes();
@@ -109,8 +109,7 @@ void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers) {
   for (std::size_t first = 0; first < numbers.size(); first += trapezoids_.chunk_size()) {
     const std::size_t count = std::min<std::size_t>(numbers.size() - first,
                                                     trapezoids_.chunk_size());
-    const GLuint records =
-        trapezoids_.chunk_buffer(static_cast<std::uint32_t>(first / trapezoids_.chunk_size()));
+    const GLuint records = trapezoids_.open(first, sizes.subspan(first, count));
     const auto bind = [&](GLuint binding, GLuint buffer, std::size_t from, std::size_t bytes) {
       functions_->bind_buffer_range(GL_SHADER_STORAGE_BUFFER, binding, buffer,
                                     static_cast<GLintptr>(from), static_cast<GLsizeiptr>(bytes));

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "bench/experiment/screen.h"
 
@@ -28,12 +30,14 @@ class NumberedTrapezoids {
   NumberedTrapezoids(const NumberedTrapezoids&) = delete;
   NumberedTrapezoids& operator=(const NumberedTrapezoids&) = delete;
 
-  /// Sends the numbers, and waits until the device has made trapezoids of them.
-  void send(std::span<const VertexNumbers> numbers);
+  /// Sends the numbers, and waits until the device has made trapezoids of them. `sizes` are those
+  /// of the trapezoids.
+  void send(std::span<const VertexNumbers> numbers, std::span<const std::uint8_t> sizes);
 
-  /// Draws the first `count`.
-  void draw(std::size_t count, const View& view, Coverage& out) {
-    trapezoids_.draw(count, view, out);
+  /// As DeviceTrapezoids.
+  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
+                 std::vector<Coverage>& coverages) {
+    return trapezoids_.draw(ends, view, coverages);
   }
 
  private:

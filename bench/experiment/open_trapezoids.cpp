@@ -22,32 +22,16 @@ constexpr Point point_of_key(std::uint64_t key) {
   return {unbiased(key & 0xffffffff), unbiased(key >> 32)};
 }
 
-/// Exact at the lower end.
-double x_at(Point upper, Point lower, std::int32_t y) {
-  const double slope =
-      (static_cast<double>(lower.x) - upper.x) / (static_cast<double>(lower.y) - upper.y);
-  return lower.x - slope * (static_cast<double>(lower.y) - y);
-}
-
-void append(const TrapezoidRecord& record, const Box& view,
-            std::vector<TrapezoidRecord>& records) {
-  const bool is_in_view =
-      record.top < view.max_y && record.bottom > view.min_y &&
-      std::min(record.left_upper.x, record.left_lower.x) <= view.max_x &&
-      std::max(record.right_upper.x, record.right_lower.x) >= view.min_x;
-  if (is_in_view && record.top < record.bottom) records.push_back(record);
-}
-
 }  // namespace
 
 void OpenTrapezoids::tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last,
                                 const Box& view, Boundary boundary,
-                                std::vector<TrapezoidRecord>& records) {
-  const std::size_t size_before = records.size();
+                                TrapezoidList& trapezoids) {
+  const std::size_t size_before = trapezoids.size();
   collect(rings, first, last, view);
-  if (sweep(view, boundary, records)) return;
-  records.resize(size_before);
-  tessellate_noded(rings, first, last, view, records);
+  if (sweep(view, boundary, trapezoids)) return;
+  trapezoids.cut(size_before);
+  tessellate_noded(rings, first, last, view, trapezoids);
 }
 
 void OpenTrapezoids::collect(const Rings& rings, std::uint32_t first, std::uint32_t last,
@@ -88,17 +72,17 @@ bool OpenTrapezoids::start(const Box& view, Boundary boundary) {
 }
 
 bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
-                           std::vector<TrapezoidRecord>& records) {
+                           TrapezoidList& trapezoids) {
   const auto is_before = [](const Visit& a, const Visit& b) { return a.key < b.key; };
   std::sort(visits_.begin(), visits_.end(), is_before);
   if (!start(view, boundary)) return false;
   for (std::size_t begin = 0; begin < visits_.size();) {
     std::size_t end = begin + 1;
     while (end < visits_.size() && visits_[end].key == visits_[begin].key) ++end;
-    if (!sweep_vertex(begin, end, boundary, view, records)) return false;
+    if (!sweep_vertex(begin, end, boundary, view, trapezoids)) return false;
     begin = end;
   }
-  close_intervals(0, status_.size(), view.max_y, view, records);
+  close_intervals(0, status_.size(), view.max_y, view, trapezoids);
   return status_.size() % 2 == 0;
 }
 
@@ -106,17 +90,17 @@ bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
 /// edge is inside, between the second and the third outside.
 void OpenTrapezoids::close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom,
                                      const Box& view,
-                                     std::vector<TrapezoidRecord>& records) const {
+                                     TrapezoidList& trapezoids) const {
   for (std::size_t i = begin + begin % 2; i < end && i + 1 < status_.size(); i += 2) {
     const Edge& left = status_[i].edge;
     const Edge& right = status_[i + 1].edge;
-    append({status_[i].top, bottom, left.upper, left.lower, right.upper, right.lower}, view,
-           records);
+    trapezoids.append({status_[i].top, bottom, left.upper, left.lower, right.upper, right.lower},
+                      view);
   }
 }
 
 bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary,
-                                  const Box& view, std::vector<TrapezoidRecord>& records) {
+                                  const Box& view, TrapezoidList& trapezoids) {
   const Point p = point_of_key(visits_[begin].key);
   starting_.clear();
   for (std::size_t i = begin; i < end; ++i) {
@@ -130,7 +114,7 @@ bool OpenTrapezoids::sweep_vertex(std::size_t begin, std::size_t end, Boundary b
   for (std::size_t i = position; i < position + ending; ++i) {
     if (status_[i].edge.lower != p) return false;
   }
-  close_intervals(position == 0 ? 0 : position - 1, position + ending, p.y, view, records);
+  close_intervals(position == 0 ? 0 : position - 1, position + ending, p.y, view, trapezoids);
   if (!replace(position, ending, p)) return false;
   if (boundary == Boundary::simple) return true;
   const std::size_t last = position + starting_.size();
@@ -181,7 +165,7 @@ bool OpenTrapezoids::is_apart(std::size_t left) const {
 }
 
 void OpenTrapezoids::tessellate_noded(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                                      const Box& view, std::vector<TrapezoidRecord>& records) {
+                                      const Box& view, TrapezoidList& trapezoids) {
   ++noded_;
   noded_rings_.clear();
   for (std::uint32_t r = first; r < last; ++r) noded_rings_.add(rings[r]);
@@ -192,9 +176,9 @@ void OpenTrapezoids::tessellate_noded(const Rings& rings, std::uint32_t first, s
                     graph_.point(graph_.edge(node.edge[kLeft]).end[kDown])};
     const Edge right{graph_.point(graph_.edge(node.edge[kRight]).end[kUp]),
                      graph_.point(graph_.edge(node.edge[kRight]).end[kDown])};
-    append({graph_.point(node.end[kUp]).y, graph_.point(node.end[kDown]).y, left.upper, left.lower,
-            right.upper, right.lower},
-           view, records);
+    trapezoids.append({graph_.point(node.end[kUp]).y, graph_.point(node.end[kDown]).y, left.upper,
+                       left.lower, right.upper, right.lower},
+                      view);
   }
 }
 

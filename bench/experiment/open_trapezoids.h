@@ -9,8 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/experiment/trapezoid_record.h"
+#include "bench/experiment/trapezoid_list.h"
 #include "core/graph_builder.h"
+#include "core/rings.h"
 
 namespace trapeze::experiment {
 
@@ -25,7 +26,7 @@ class OpenTrapezoids {
   /// Appends the trapezoids, by even-odd, of rings `first` .. `last` - 1 that meet `view`, cut at
   /// its top and bottom.
   void tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
-                  Boundary boundary, std::vector<TrapezoidRecord>& records);
+                  Boundary boundary, TrapezoidList& trapezoids);
 
   /// Polygons that had to be noded so far.
   std::uint64_t noded() const { return noded_; }
@@ -47,16 +48,16 @@ class OpenTrapezoids {
 
   void collect(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view);
   bool start(const Box& view, Boundary boundary);
-  bool sweep(const Box& view, Boundary boundary, std::vector<TrapezoidRecord>& records);
+  bool sweep(const Box& view, Boundary boundary, TrapezoidList& trapezoids);
   bool sweep_vertex(std::size_t begin, std::size_t end, Boundary boundary, const Box& view,
-                    std::vector<TrapezoidRecord>& records);
+                    TrapezoidList& trapezoids);
   void close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom, const Box& view,
-                       std::vector<TrapezoidRecord>& records) const;
+                       TrapezoidList& trapezoids) const;
   std::size_t locate(Point p) const;
   bool replace(std::size_t position, std::size_t count, Point p);
   bool is_apart(std::size_t left) const;
   void tessellate_noded(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                        const Box& view, std::vector<TrapezoidRecord>& records);
+                        const Box& view, TrapezoidList& trapezoids);
 
   std::vector<Edge> edges_;
   std::vector<Visit> visits_;

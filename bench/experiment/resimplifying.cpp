@@ -4,7 +4,8 @@
 
 #include "bench/experiment/blg_tree.h"
 #include "bench/experiment/douglas_peucker.h"
-#include "bench/experiment/stopwatch.h"
+#include "bench/experiment/cpu_clock.h"
+#include "render/stopwatch.h"
 
 namespace trapeze::experiment {
 
@@ -59,35 +60,48 @@ std::size_t Resimplifying::shared_memory() const {
 ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
   const Box box = view.view.box();
   ViewCost cost;
-  coverages.resize(layers_.size());
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    Stopwatch stopwatch;
-    layers_[i].simplify(box, view.epsilon(), simplified_);
-    cost.simplify_ms += stopwatch.lap_ms();
-    tessellate(box);
-    cost.tessellate_ms += stopwatch.lap_ms();
-    device_.send(records_);
-    cost.send_ms += stopwatch.lap_ms();
-    device_.draw(records_.size(), view.view, coverages[i]);
-    cost.draw_ms += stopwatch.lap_ms();
-    cost.vertices += simplified_.rings.points.size();
-    cost.trapezoids += records_.size();
-    cost.bytes += records_.size() * sizeof(TrapezoidRecord);
+  const double cpu_begin = cpu_clock_ms();
+  {
+    const Stopwatch stopwatch(cost.simplify_ms);
+    simplified_.resize(layers_.size());
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      layers_[i].simplify(box, view.epsilon(), simplified_[i]);
+    }
   }
+  {
+    const Stopwatch stopwatch(cost.tessellate_ms);
+    trapezoids_.cut(0);
+    ends_.clear();
+    for (const SimplifiedPolygons& simplified : simplified_) {
+      tessellate(simplified, box);
+      ends_.push_back(static_cast<std::uint32_t>(trapezoids_.size()));
+    }
+  }
+  {
+    const Stopwatch stopwatch(cost.send_ms);
+    device_.send(trapezoids_);
+  }
+  cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
+  cost.add(device_.draw(ends_, view.view, coverages));
+  cost.cpu_ms = cpu_clock_ms() - cpu_begin;
+  for (const SimplifiedPolygons& simplified : simplified_) {
+    cost.vertices += simplified.rings.points.size();
+  }
+  cost.trapezoids = trapezoids_.size();
+  cost.bytes = trapezoids_.size() * sizeof(TrapezoidRecord);
   return cost;
 }
 
-void Resimplifying::tessellate(const Box& box) {
-  records_.clear();
+void Resimplifying::tessellate(const SimplifiedPolygons& simplified, const Box& box) {
   const auto boundary = topology_ == Topology::strict ? OpenTrapezoids::Boundary::simple
                                                       : OpenTrapezoids::Boundary::uncertain;
-  for (std::size_t p = 0; p < simplified_.size(); ++p) {
-    const std::uint32_t first = simplified_.first_ring(p);
-    const std::uint32_t last = simplified_.ends[p];
+  for (std::size_t p = 0; p < simplified.size(); ++p) {
+    const std::uint32_t first = simplified.first_ring(p);
+    const std::uint32_t last = simplified.ends[p];
     if (triangulation_) {
-      triangulation_->triangulate(simplified_.rings, first, last, box, records_);
+      triangulation_->triangulate(simplified.rings, first, last, box, trapezoids_);
     } else {
-      open_trapezoids_.tessellate(simplified_.rings, first, last, box, boundary, records_);
+      open_trapezoids_.tessellate(simplified.rings, first, last, box, boundary, trapezoids_);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "bench/experiment/contestant.h"
 #include "bench/experiment/open_trapezoids.h"
+#include "bench/experiment/simplified_polygons.h"
 #include "bench/experiment/topology_keeper.h"
 #include "bench/experiment/triangulation.h"
 
@@ -47,7 +48,7 @@ class Resimplifying final : public Contestant {
   ViewCost draw(const ScaledView& view, std::vector<Coverage>& coverages) override;
 
  private:
-  void tessellate(const Box& box);
+  void tessellate(const SimplifiedPolygons& simplified, const Box& box);
 
   const Map& map_;
   const Topology topology_;
@@ -55,8 +56,9 @@ class Resimplifying final : public Contestant {
   OpenTrapezoids open_trapezoids_;
   std::unique_ptr<Triangulation> triangulation_;  // null for those who draw trapezoids
   DeviceTrapezoids device_;
-  SimplifiedPolygons simplified_;
-  std::vector<TrapezoidRecord> records_;
+  std::vector<SimplifiedPolygons> simplified_;  // by layer
+  TrapezoidList trapezoids_;                    // of all layers
+  std::vector<std::uint32_t> ends_;             // by layer
 };
 
 }  // namespace trapeze::experiment

@@ -31,46 +31,60 @@ void Screen::send(const MeshView& mesh) {
   for (std::uint32_t i = 0; i < chunks; ++i) store_->chunk(context().gl(), mesh, i);
 }
 
-void Screen::forget(const MeshView& mesh) {
-  store_->forget(mesh.id);
+void Screen::forget(std::uint64_t mesh_id) {
+  store_->forget(mesh_id);
   const CurrentContext current(context());
   store_->delete_forgotten(context().gl());
 }
 
-MeshView DeviceTrapezoids::mesh() const { return {mesh_id_, vertices_, edges_, trapezoids_}; }
-
-void DeviceTrapezoids::reserve(std::size_t count) {
-  const std::size_t chunks = std::max<std::size_t>(1, (count + chunk_size() - 1) / chunk_size());
-  if (trapezoids_.size() < chunks * chunk_size()) trapezoids_.resize(chunks * chunk_size());
+DrawTimes Screen::draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges,
+                       const View& view, std::vector<Coverage>& coverages) {
+  coverages.resize(meshes.size());
+  parts_.clear();
+  tasks_.clear();
+  for (std::size_t i = 0; i < meshes.size(); ++i) parts_.push_back({meshes[i], ranges[i]});
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    tasks_.push_back({std::span(parts_).subspan(i, 1), view, &coverages[i]});
+  }
+  return renderer_->draw(tasks_);
 }
 
-GLuint DeviceTrapezoids::chunk_buffer(std::uint32_t chunk) {
-  return screen_.store().chunk(screen_.context().gl(), mesh(), chunk)->buffer;
+GLuint DeviceTrapezoids::open(std::size_t first, std::span<const std::uint8_t> sizes) {
+  GlMeshStore::Chunk& chunk =
+      screen_.store().changing_chunk(screen_.context().gl(), mesh_id_,
+                                     static_cast<std::uint32_t>(first / chunk_size()));
+  std::copy(sizes.begin(), sizes.end(),
+            chunk.sizes.begin() + static_cast<std::ptrdiff_t>(first % chunk_size()));
+  return chunk.buffer;
 }
 
-void DeviceTrapezoids::send(std::span<const TrapezoidRecord> records) {
+void DeviceTrapezoids::send(const TrapezoidList& trapezoids) {
   const CurrentContext current(screen_.context());
   const GlFunctions& gl = screen_.context().gl();
-  reserve(records.size());
-  for (std::uint32_t chunk = 0; !records.empty(); ++chunk) {
-    const auto part = records.first(std::min<std::size_t>(records.size(), chunk_size()));
-    records = records.subspan(part.size());
-    gl.BindBuffer(GL_TEXTURE_BUFFER, chunk_buffer(chunk));
+  for (std::size_t first = 0; first < trapezoids.size(); first += chunk_size()) {
+    const std::size_t count = std::min<std::size_t>(trapezoids.size() - first, chunk_size());
+    gl.BindBuffer(GL_TEXTURE_BUFFER, open(first, std::span(trapezoids.sizes).subspan(first, count)));
     // Every view ends with reading it back, so the device is done with what was there.
+    const std::size_t bytes = count * sizeof(TrapezoidRecord);
     void* room = gl.MapBufferRange(
-        GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(part.size_bytes()),
+        GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
         GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_UNSYNCHRONIZED_BIT);
     if (room == nullptr) throw std::runtime_error("the device gives no access to its memory");
-    std::memcpy(room, part.data(), part.size_bytes());
+    std::memcpy(room, trapezoids.records.data() + first, bytes);
     gl.UnmapBuffer(GL_TEXTURE_BUFFER);
   }
   gl.Finish();
 }
 
-void DeviceTrapezoids::draw(std::size_t count, const View& view, Coverage& out) {
-  const TrapezoidRange range{0, static_cast<std::uint32_t>(count)};
-  const std::size_t ranges = count == 0 ? 0 : 1;
-  screen_.renderer().draw(mesh(), std::span(&range, ranges), view, out);
+DrawTimes DeviceTrapezoids::draw(std::span<const std::uint32_t> ends, const View& view,
+                                 std::vector<Coverage>& coverages) {
+  meshes_.assign(ends.size(), MeshView{mesh_id_, {}, {}, {}});
+  ranges_.resize(ends.size());
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const std::uint32_t begin = i == 0 ? 0 : ends[i - 1];
+    ranges_[i].assign(1, {begin, ends[i] - begin});
+  }
+  return screen_.draw(meshes_, ranges_, view, coverages);
 }
 
 }  // namespace trapeze::experiment

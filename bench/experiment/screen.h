@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/experiment/trapezoid_record.h"
+#include "bench/experiment/trapezoid_list.h"
 #include "core/trapezoid_mesh.h"
 #include "render/coverage.h"
 #include "render/gl_context.h"
@@ -18,6 +18,9 @@ namespace trapeze::experiment {
 
 constexpr int kScreenWidth = 1600;   // pixels
 constexpr int kScreenHeight = 1200;  // pixels
+
+/// What is drawn of one layer.
+using Ranges = std::vector<TrapezoidRange>;
 
 /// One GlRenderer on the EGL device that works first. Belongs to one thread.
 class Screen {
@@ -31,44 +34,46 @@ class Screen {
 
   /// Sends a mesh that does not change, once for all.
   void send(const MeshView& mesh);
-  void forget(const MeshView& mesh);
+  void forget(std::uint64_t mesh_id);
+
+  /// Draws layers in one pass, each into its own coverage; meshes[i] is that of layer i.
+  DrawTimes draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges,
+                 const View& view, std::vector<Coverage>& coverages);
 
  private:
   std::shared_ptr<GlMeshStore> store_;
   std::unique_ptr<GlRenderer> renderer_;
+  std::vector<MeshPart> parts_;
+  std::vector<CoverageTask> tasks_;
 };
 
-/// Room on the device for trapezoids that each view writes anew. The room is kept between views,
-/// and written to directly.
+/// Room on the device for the trapezoids of a map that each view writes anew. The room is kept
+/// between views, and written to directly.
 class DeviceTrapezoids {
  public:
   /// `screen` must outlive this.
   explicit DeviceTrapezoids(Screen& screen) : screen_(screen), mesh_id_(new_mesh_id()) {}
-  ~DeviceTrapezoids() { screen_.renderer().forget(mesh_id_); }
+  ~DeviceTrapezoids() { screen_.forget(mesh_id_); }
   DeviceTrapezoids(const DeviceTrapezoids&) = delete;
   DeviceTrapezoids& operator=(const DeviceTrapezoids&) = delete;
 
-  /// Writes the records over what was there, and waits until the device has them.
-  void send(std::span<const TrapezoidRecord> records);
+  /// Writes the trapezoids over what was there, and waits until the device has them.
+  void send(const TrapezoidList& trapezoids);
 
-  /// For whoever fills the records on the device: makes room for `count`, and returns the buffer of
-  /// a chunk of `chunk_size()` of them. A context of the screen is current.
-  void reserve(std::size_t count);
-  GLuint chunk_buffer(std::uint32_t chunk);
+  /// For whoever fills in the records on the device: notes the sizes of trapezoids `first` and
+  /// after it, all of one chunk, and returns the chunk's buffer. A context of the screen is current.
+  GLuint open(std::size_t first, std::span<const std::uint8_t> sizes);
   std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
 
-  /// Draws the first `count`.
-  void draw(std::size_t count, const View& view, Coverage& out);
+  /// Draws layers: trapezoids ends[i - 1] .. ends[i] - 1 are those of layer i.
+  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
+                 std::vector<Coverage>& coverages);
 
  private:
-  MeshView mesh() const;
-
   Screen& screen_;
   const std::uint64_t mesh_id_;
-  // Stand-ins for the store, which asks for a mesh when it makes a chunk.
-  std::vector<Point> vertices_ = std::vector<Point>(1);
-  std::vector<MeshEdge> edges_ = std::vector<MeshEdge>(1);
-  std::vector<MeshTrapezoid> trapezoids_;
+  std::vector<MeshView> meshes_;
+  std::vector<Ranges> ranges_;
 };
 
 }  // namespace trapeze::experiment

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include "bench/experiment/trapezoid_record.h"
+#include "bench/experiment/trapezoid_list.h"
+#include "core/rings.h"
 
 namespace trapeze::experiment {
 
@@ -20,10 +20,10 @@ class Triangulation {
   ~Triangulation();
 
   /// Appends the triangles that lie inside, by even-odd, of rings `first` .. `last` - 1 and that
-  /// meet `view`; each is cut at the level of its middle vertex into two trapezoids. Returns the
-  /// number of triangles. No two edges cross.
-  std::size_t triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                          const Box& view, std::vector<TrapezoidRecord>& records);
+  /// meet `view`; each is cut at the level of its middle vertex into two trapezoids. No two edges
+  /// cross.
+  void triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                          const Box& view, TrapezoidList& trapezoids);
 
  private:
   struct State;

@@ -2,7 +2,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 
-#include "bench/experiment/triangle_records.h"
+#include "bench/experiment/trapezoid_list.h"
 #include "bench/experiment/triangulation.h"
 
 namespace trapeze::experiment {
@@ -55,11 +55,12 @@ bool has_triangulation() { return true; }
 Triangulation::Triangulation() : state_(std::make_unique<State>()) {}
 Triangulation::~Triangulation() = default;
 
-std::size_t Triangulation::triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                                       const Box& view, std::vector<TrapezoidRecord>& records) {
+void Triangulation::triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
+                                       const Box& view, TrapezoidList& trapezoids) {
   if (last - first == 1 && rings[first].size() == 3) {
     const auto ring = rings[first];
-    return append_triangle({ring[0], ring[1], ring[2]}, view, records) ? 1 : 0;
+    trapezoids.append_triangle({ring[0], ring[1], ring[2]}, view);
+    return;
   }
   State& state = *state_;
   state.cdt.clear();
@@ -69,15 +70,13 @@ std::size_t Triangulation::triangulate(const Rings& rings, std::uint32_t first, 
     state.cdt.insert_constraint(state.points.begin(), state.points.end(), true);
   }
   state.find_inside();
-  std::size_t triangles = 0;
   for (const auto face : state.cdt.finite_face_handles()) {
     if (face->info() != Place::inside) continue;
     const std::array<Point, 3> corners{grid_point(face->vertex(0)->point()),
                                        grid_point(face->vertex(1)->point()),
                                        grid_point(face->vertex(2)->point())};
-    triangles += append_triangle(corners, view, records) ? 1 : 0;
+    trapezoids.append_triangle(corners, view);
   }
-  return triangles;
 }
 
 }  // namespace trapeze::experiment

@@ -13,9 +13,7 @@ Triangulation::Triangulation() {
 }
 Triangulation::~Triangulation() = default;
 
-std::size_t Triangulation::triangulate(const Rings&, std::uint32_t, std::uint32_t, const Box&,
-                                       std::vector<TrapezoidRecord>&) {
-  return 0;
-}
+void Triangulation::triangulate(const Rings&, std::uint32_t, std::uint32_t, const Box&,
+                                       TrapezoidList&) {}
 
 }  // namespace trapeze::experiment
