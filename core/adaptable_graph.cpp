@@ -28,7 +28,8 @@ std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
   for (std::size_t i = 0; i < 3; ++i) {
     const Point a = graph.point(triangle[i]);
     const Point b = graph.point(triangle[(i + 1) % 3]);
-    const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
+    const double length =
+        std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
     if (length > greatest) longest = {triangle[i], triangle[(i + 1) % 3]};
     greatest = std::max(greatest, length);
   }
@@ -114,7 +115,8 @@ std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, 
     const Corner gone = graph.corner(c);
     const VertexId prev = graph.corner(gone.prev).vertex;
     const VertexId next = graph.corner(gone.next).vertex;
-    if (decision.removal == Removal::loop) last_side_ = longest_side(graph, {prev, gone.vertex, next});
+    if (decision.removal == Removal::loop)
+      last_side_ = longest_side(graph, {prev, gone.vertex, next});
     generalization.remove(c, decision.removal);
     ++counts_.removals;
     counts_.touched += log.touched_nodes().size();

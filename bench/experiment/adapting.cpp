@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/graph_builder.h"
 #include "bench/experiment/cpu_clock.h"
+#include "core/graph_builder.h"
 #include "render/stopwatch.h"
 
 namespace trapeze::experiment {

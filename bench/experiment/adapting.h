@@ -1,6 +1,6 @@
-// The paper's contestant: one mutable trapezoidal graph a polygon, adapted in place to the tolerance
-// of the view, forward and back. Vertices are sent once; a view sends the numbers of the vertices of
-// its trapezoids.
+// The paper's contestant: one mutable trapezoidal graph a polygon, adapted in place to the
+// tolerance of the view, forward and back. Vertices are sent once; a view sends the numbers of the
+// vertices of its trapezoids.
 //
 // The sequence of removals is found while the map is prepared; views play it forward and back. The
 // top of its priority stack tells of a polygon whether a tolerance changes it at all, and its

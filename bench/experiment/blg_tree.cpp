@@ -70,7 +70,9 @@ void BlgTrees::simplify(std::uint32_t ring, double epsilon, std::vector<Chain>& 
   }
 }
 
-std::pair<Chain, Chain> BlgTrees::split(std::uint32_t, const Chain& chain) { return halves(chain); }
+std::pair<Chain, Chain> BlgTrees::split(std::uint32_t, const Chain& chain) {
+  return halves(chain);
+}
 
 Chain BlgTrees::chain(std::uint32_t begin, std::uint32_t end, std::uint32_t node) const {
   if (node == kNoVertex) return {.begin = begin, .end = end};

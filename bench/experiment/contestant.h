@@ -29,8 +29,8 @@ struct ViewCost {
   double simplify_ms = 0;
   double tessellate_ms = 0;  // 0 where it is one with simplifying
   double send_ms = 0;
-  double draw_ms = 0;            // until the device has added up what is covered
-  double read_ms = 0;            // until the coverages are in memory: much the same for all
+  double draw_ms = 0;  // until the device has added up what is covered
+  double read_ms = 0;  // until the coverages are in memory: much the same for all
   // Processor time of all threads of the program, those of a software device among them.
   double cpu_before_draw_ms = 0;
   double cpu_ms = 0;

@@ -26,10 +26,8 @@ View middle_of(const View& view) {
   View middle = view;
   middle.width = kWidth;
   middle.height = kHeight;
-  middle.origin_x +=
-      static_cast<std::int64_t>(view.cells_per_pixel * (view.width - kWidth) / 2);
-  middle.origin_y +=
-      static_cast<std::int64_t>(view.cells_per_pixel * (view.height - kHeight) / 2);
+  middle.origin_x += static_cast<std::int64_t>(view.cells_per_pixel * (view.width - kWidth) / 2);
+  middle.origin_y += static_cast<std::int64_t>(view.cells_per_pixel * (view.height - kHeight) / 2);
   return middle;
 }
 

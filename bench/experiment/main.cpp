@@ -183,8 +183,7 @@ int run(const Arguments& a) {
     std::cout << "experiment: growth" << std::endl;
     report.growth = measure_growth(a.most_vertices, screen);
   }
-  report.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string path = (std::filesystem::path(a.output) / "experiment.json").string();
   write_report(report, path);
   std::cout << "experiment: the figures are in " << path << std::endl;

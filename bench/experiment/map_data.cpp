@@ -89,11 +89,11 @@ MapSource sample_world(const std::string& sample) {
     return (std::filesystem::path(sample) / (name + ".fgb")).string();
   };
   const std::string packages = "geo-maps 0.6.0 by Simone Primarosa, December 2017";
-  MapSource world{"world",
-                  "The sample world: countries, and bodies of water",
-                  kOpenStreetMap,
-                  {{file("countries"), "countries", packages, ""},
-                   {file("water"), "water", packages, ""}}};
+  MapSource world{
+      "world",
+      "The sample world: countries, and bodies of water",
+      kOpenStreetMap,
+      {{file("countries"), "countries", packages, ""}, {file("water"), "water", packages, ""}}};
   // The outlines are exact to about a kilometre.
   world.smallest_scale *= 400;
   world.largest_scale *= 400;
@@ -101,9 +101,8 @@ MapSource sample_world(const std::string& sample) {
 }
 
 bool is_there(const MapSource& map) {
-  return std::all_of(map.layers.begin(), map.layers.end(), [](const LayerSource& layer) {
-    return std::filesystem::exists(layer.file);
-  });
+  return std::all_of(map.layers.begin(), map.layers.end(),
+                     [](const LayerSource& layer) { return std::filesystem::exists(layer.file); });
 }
 
 }  // namespace

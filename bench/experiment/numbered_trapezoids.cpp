@@ -43,8 +43,7 @@ struct NumberedTrapezoids::Functions {
       function_named<PFNGLBINDBUFFERRANGEPROC>("glBindBufferRange");
   PFNGLDISPATCHCOMPUTEPROC dispatch_compute =
       function_named<PFNGLDISPATCHCOMPUTEPROC>("glDispatchCompute");
-  PFNGLMEMORYBARRIERPROC memory_barrier =
-      function_named<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier");
+  PFNGLMEMORYBARRIERPROC memory_barrier = function_named<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier");
   PFNGLPROGRAMUNIFORM1UIPROC program_uniform =
       function_named<PFNGLPROGRAMUNIFORM1UIPROC>("glProgramUniform1ui");
 };
@@ -95,9 +94,9 @@ void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
     gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(room_), nullptr,
                   GL_STREAM_DRAW);
   }
-  void* room = gl.MapBufferRange(
-      GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(numbers.size_bytes()),
-      GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_UNSYNCHRONIZED_BIT);
+  void* room =
+      gl.MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(numbers.size_bytes()),
+                        GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_UNSYNCHRONIZED_BIT);
   if (room == nullptr) throw std::runtime_error("the device gives no access to its memory");
   std::memcpy(room, numbers.data(), numbers.size_bytes());
   gl.UnmapBuffer(GL_SHADER_STORAGE_BUFFER);
@@ -107,8 +106,8 @@ void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
   gl.UseProgram(program_);
   functions_->bind_buffer_base(GL_SHADER_STORAGE_BUFFER, 0, vertices_);
   for (std::size_t first = 0; first < numbers.size(); first += trapezoids_.chunk_size()) {
-    const std::size_t count = std::min<std::size_t>(numbers.size() - first,
-                                                    trapezoids_.chunk_size());
+    const std::size_t count =
+        std::min<std::size_t>(numbers.size() - first, trapezoids_.chunk_size());
     const GLuint records = trapezoids_.open(first, sizes.subspan(first, count));
     const auto bind = [&](GLuint binding, GLuint buffer, std::size_t from, std::size_t bytes) {
       functions_->bind_buffer_range(GL_SHADER_STORAGE_BUFFER, binding, buffer,

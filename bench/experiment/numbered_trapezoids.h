@@ -1,5 +1,5 @@
-// The paper's way to the device: vertices are sent once; a view sends the numbers of the vertices of
-// its trapezoids, and the device looks up where these are.
+// The paper's way to the device: vertices are sent once; a view sends the numbers of the vertices
+// of its trapezoids, and the device looks up where these are.
 #pragma once
 
 #include <cstdint>

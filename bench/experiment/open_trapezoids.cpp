@@ -25,8 +25,7 @@ constexpr Point point_of_key(std::uint64_t key) {
 }  // namespace
 
 void OpenTrapezoids::tessellate(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                                const Box& view, Boundary boundary,
-                                TrapezoidList& trapezoids) {
+                                const Box& view, Boundary boundary, TrapezoidList& trapezoids) {
   const std::size_t size_before = trapezoids.size();
   collect(rings, first, last, view);
   if (sweep(view, boundary, trapezoids)) return;
@@ -71,8 +70,7 @@ bool OpenTrapezoids::start(const Box& view, Boundary boundary) {
   return true;
 }
 
-bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
-                           TrapezoidList& trapezoids) {
+bool OpenTrapezoids::sweep(const Box& view, Boundary boundary, TrapezoidList& trapezoids) {
   const auto is_before = [](const Visit& a, const Visit& b) { return a.key < b.key; };
   std::sort(visits_.begin(), visits_.end(), is_before);
   if (!start(view, boundary)) return false;
@@ -89,8 +87,7 @@ bool OpenTrapezoids::sweep(const Box& view, Boundary boundary,
 /// Writes down what is open right of slots `begin` .. `end` - 1: between the first and the second
 /// edge is inside, between the second and the third outside.
 void OpenTrapezoids::close_intervals(std::size_t begin, std::size_t end, std::int32_t bottom,
-                                     const Box& view,
-                                     TrapezoidList& trapezoids) const {
+                                     const Box& view, TrapezoidList& trapezoids) const {
   for (std::size_t i = begin + begin % 2; i < end && i + 1 < status_.size(); i += 2) {
     const Edge& left = status_[i].edge;
     const Edge& right = status_[i + 1].edge;

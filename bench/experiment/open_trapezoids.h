@@ -2,8 +2,8 @@
 // and no graph: a plane sweep that keeps the edges on the sweep line in order, and closes and opens
 // trapezoids as it passes vertices.
 //
-// Small polygons have few edges on the sweep line, so these lie in an array. The sweep goes from the
-// top of the view to its bottom, and trapezoids that do not meet the view are not written down.
+// Small polygons have few edges on the sweep line, so these lie in an array. The sweep goes from
+// the top of the view to its bottom, and trapezoids that do not meet the view are not written down.
 #pragma once
 
 #include <cstdint>

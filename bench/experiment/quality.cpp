@@ -153,8 +153,7 @@ void measure_graph(Rings rings, const ScaledView& view, Quality& quality, Areas&
   quality.invalid += is_valid ? 0 : 1;
 }
 
-void measure_graphs(const MapLayer& layer, const ScaledView& view, Quality& quality,
-                    Areas& areas) {
+void measure_graphs(const MapLayer& layer, const ScaledView& view, Quality& quality, Areas& areas) {
   const Box box = view.view.box();
   if (quality.method == Method::adapting) {
     const PolygonSet& polygons = layer.polygons;

@@ -33,7 +33,8 @@ Quality measure_quality(Method method, Topology topology, const Map& map, const 
 
 /// The discrete Hausdorff distance between rings and what simplification left of them, cells. Only
 /// those of the source's rings count of which three vertices are left. As simplified vertices are
-/// vertices of the source, it is the greatest distance of one of these from the simplified boundary.
+/// vertices of the source, it is the greatest distance of one of these from the simplified
+/// boundary.
 double distance_between(const Rings& source, const Rings& simplified);
 
 /// Whether a shell with its holes, rings `first` .. `last` - 1, is a valid polygon.

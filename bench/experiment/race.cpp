@@ -119,8 +119,8 @@ PictureError compare(std::span<const ScaledView> views,
   const auto pixels = static_cast<double>(error.pixels);
   error.mean = static_cast<double>(difference) / pixels;
   error.share_over_64 = static_cast<double>(plainly_different) / pixels;
-  error.area = static_cast<double>(covered) / static_cast<double>(std::max<std::uint64_t>(
-                                                  1, covered_in_full)) -
+  error.area = static_cast<double>(covered) /
+                   static_cast<double>(std::max<std::uint64_t>(1, covered_in_full)) -
                1;
   return error;
 }

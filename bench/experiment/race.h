@@ -25,10 +25,10 @@ struct RaceResult {
 /// What pictures of one scale are off those of full detail.
 struct PictureError {
   double scale = 0;
-  std::size_t pixels = 0;   // that are not empty in both pictures
-  double mean = 0;          // absolute difference of these, 255ths
+  std::size_t pixels = 0;    // that are not empty in both pictures
+  double mean = 0;           // absolute difference of these, 255ths
   double share_over_64 = 0;  // of these, those off by more than 64
-  double area = 0;          // covered in all, relative to full detail, less 1
+  double area = 0;           // covered in all, relative to full detail, less 1
 };
 
 /// With one treatment of topology. All contestants are prepared and stay so, and take turns run by

@@ -93,30 +93,26 @@ json to_json(const MapReport& map) {
   for (const PictureErrors& errors : map.pictures) pictures.push_back(to_json(errors));
   json quality = json::array();
   for (const Quality& q : map.quality) quality.push_back(to_json(q));
-  return {{"name", map.source.name},
-          {"title", map.source.title},
-          {"licence", map.source.licence},
-          {"layers", std::move(layers)},
-          {"smallest_scale", map.source.smallest_scale},
-          {"largest_scale", map.source.largest_scale},
-          {"trip", {{"scales", map.trip_scales}, {"tolerances", map.trip_tolerances}}},
-          {"empty_view",
-           {{"draw_ms", map.empty_view.draw_ms}, {"read_ms", map.empty_view.read_ms}}},
-          {"races", std::move(races)},
-          {"pictures", std::move(pictures)},
-          {"quality", std::move(quality)},
-          {"figures", map.figures}};
+  return {
+      {"name", map.source.name},
+      {"title", map.source.title},
+      {"licence", map.source.licence},
+      {"layers", std::move(layers)},
+      {"smallest_scale", map.source.smallest_scale},
+      {"largest_scale", map.source.largest_scale},
+      {"trip", {{"scales", map.trip_scales}, {"tolerances", map.trip_tolerances}}},
+      {"empty_view", {{"draw_ms", map.empty_view.draw_ms}, {"read_ms", map.empty_view.read_ms}}},
+      {"races", std::move(races)},
+      {"pictures", std::move(pictures)},
+      {"quality", std::move(quality)},
+      {"figures", map.figures}};
 }
 
 json to_json(const GrowthPoint& point) {
-  return {{"vertices", point.vertices},
-          {"build_ms", point.build_ms},
-          {"weigh_ms", point.weigh_ms},
-          {"generalize_ms", point.generalize_ms},
-          {"undo_ms", point.undo_ms},
-          {"load_ms", point.load_ms},
-          {"view_ms", point.view_ms},
-          {"graph_memory", point.graph_memory},
+  return {{"vertices", point.vertices},        {"build_ms", point.build_ms},
+          {"weigh_ms", point.weigh_ms},        {"generalize_ms", point.generalize_ms},
+          {"undo_ms", point.undo_ms},          {"load_ms", point.load_ms},
+          {"view_ms", point.view_ms},          {"graph_memory", point.graph_memory},
           {"layer_memory", point.layer_memory}};
 }
 
@@ -175,17 +171,16 @@ std::string summary_of(const MapReport& map) {
                     "read", "total ms", "CPU ms"));
   for (const RaceResult& race : map.races) {
     const auto of = [&](double (*value)(const ViewCost&)) { return mean(race.views, value); };
-    add(std::snprintf(line.data(), line.size(),
-                      "%-20s %-8s %9.2f %10.2f %8.2f %8.2f %8.2f %9.2f %9.2f\n",
-                      std::string(title_of(race.method)).c_str(),
-                      std::string(name_of(race.topology)).c_str(),
-                      of([](const ViewCost& v) { return v.simplify_ms; }),
-                      of([](const ViewCost& v) { return v.tessellate_ms; }),
-                      of([](const ViewCost& v) { return v.send_ms; }),
-                      of([](const ViewCost& v) { return v.draw_ms; }),
-                      of([](const ViewCost& v) { return v.read_ms; }),
-                      of([](const ViewCost& v) { return v.total_ms(); }),
-                      of([](const ViewCost& v) { return v.cpu_ms; })));
+    add(std::snprintf(
+        line.data(), line.size(), "%-20s %-8s %9.2f %10.2f %8.2f %8.2f %8.2f %9.2f %9.2f\n",
+        std::string(title_of(race.method)).c_str(), std::string(name_of(race.topology)).c_str(),
+        of([](const ViewCost& v) { return v.simplify_ms; }),
+        of([](const ViewCost& v) { return v.tessellate_ms; }),
+        of([](const ViewCost& v) { return v.send_ms; }),
+        of([](const ViewCost& v) { return v.draw_ms; }),
+        of([](const ViewCost& v) { return v.read_ms; }),
+        of([](const ViewCost& v) { return v.total_ms(); }),
+        of([](const ViewCost& v) { return v.cpu_ms; })));
   }
   return text;
 }

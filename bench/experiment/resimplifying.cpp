@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "bench/experiment/blg_tree.h"
-#include "bench/experiment/douglas_peucker.h"
 #include "bench/experiment/cpu_clock.h"
+#include "bench/experiment/douglas_peucker.h"
 #include "render/stopwatch.h"
 
 namespace trapeze::experiment {

@@ -37,8 +37,8 @@ class Screen {
   void forget(std::uint64_t mesh_id);
 
   /// Draws layers in one pass, each into its own coverage; meshes[i] is that of layer i.
-  DrawTimes draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges,
-                 const View& view, std::vector<Coverage>& coverages);
+  DrawTimes draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges, const View& view,
+                 std::vector<Coverage>& coverages);
 
  private:
   std::shared_ptr<GlMeshStore> store_;
@@ -61,7 +61,8 @@ class DeviceTrapezoids {
   void send(const TrapezoidList& trapezoids);
 
   /// For whoever fills in the records on the device: notes the sizes of trapezoids `first` and
-  /// after it, all of one chunk, and returns the chunk's buffer. A context of the screen is current.
+  /// after it, all of one chunk, and returns the chunk's buffer. A context of the screen is
+  /// current.
   GLuint open(std::size_t first, std::span<const std::uint8_t> sizes);
   std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
 

@@ -70,7 +70,7 @@ class TopologyKeeper {
                           RingSimplifier& simplifier, PolygonChains& chains);
   bool is_consistent(std::span<const Point> ring, const Chain& chain) const;
 
-  std::vector<Point> kept_;       // what chains are to be tested against
+  std::vector<Point> kept_;        // what chains are to be tested against
   std::vector<Point> newly_kept_;  // by splitting
   bool has_grid_ = false;
   PointGrid grid_;

@@ -22,8 +22,8 @@ class Triangulation {
   /// Appends the triangles that lie inside, by even-odd, of rings `first` .. `last` - 1 and that
   /// meet `view`; each is cut at the level of its middle vertex into two trapezoids. No two edges
   /// cross.
-  void triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                          const Box& view, TrapezoidList& trapezoids);
+  void triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last, const Box& view,
+                   TrapezoidList& trapezoids);
 
  private:
   struct State;

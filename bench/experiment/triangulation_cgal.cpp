@@ -16,8 +16,8 @@ using FaceBase =
                                               CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using DataStructure =
     CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_2<Kernel>, FaceBase>;
-using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure,
-                                                       CGAL::Exact_predicates_tag>;
+using Cdt =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure, CGAL::Exact_predicates_tag>;
 
 Point grid_point(const Kernel::Point_2& p) {
   return {static_cast<std::int32_t>(p.x()), static_cast<std::int32_t>(p.y())};
@@ -50,13 +50,15 @@ struct Triangulation::State {
   }
 };
 
-bool has_triangulation() { return true; }
+bool has_triangulation() {
+  return true;
+}
 
 Triangulation::Triangulation() : state_(std::make_unique<State>()) {}
 Triangulation::~Triangulation() = default;
 
 void Triangulation::triangulate(const Rings& rings, std::uint32_t first, std::uint32_t last,
-                                       const Box& view, TrapezoidList& trapezoids) {
+                                const Box& view, TrapezoidList& trapezoids) {
   if (last - first == 1 && rings[first].size() == 3) {
     const auto ring = rings[first];
     trapezoids.append_triangle({ring[0], ring[1], ring[2]}, view);

@@ -6,7 +6,9 @@ namespace trapeze::experiment {
 
 struct Triangulation::State {};
 
-bool has_triangulation() { return false; }
+bool has_triangulation() {
+  return false;
+}
 
 Triangulation::Triangulation() {
   throw std::runtime_error("this program was built without CGAL (libcgal-dev)");
@@ -14,6 +16,6 @@ Triangulation::Triangulation() {
 Triangulation::~Triangulation() = default;
 
 void Triangulation::triangulate(const Rings&, std::uint32_t, std::uint32_t, const Box&,
-                                       TrapezoidList&) {}
+                                TrapezoidList&) {}
 
 }  // namespace trapeze::experiment
