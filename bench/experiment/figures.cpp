@@ -13,10 +13,10 @@
 namespace trapeze::experiment {
 namespace {
 
-constexpr int kWidth = 800;  // pixels: half the screen, at the same scale
-constexpr int kHeight = 600;
+constexpr int kWidth = 640;  // pixels: a part of the screen, at the same scale
+constexpr int kHeight = 480;
 constexpr Rgba kPaper{0xfa, 0xf8, 0xf2, 0xff};
-constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 0xb0};
+constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 0x70};
 constexpr std::array<Rgba, 3> kFills{
     {{0xe3, 0xd5, 0xa8, 0xff}, {0x8f, 0xbf, 0x8a, 0xff}, {0xb0, 0x52, 0x4a, 0xff}}};
 constexpr std::array<Rgba, 3> kPaleFills{

@@ -30,6 +30,8 @@ unset output
 `
 }
 
+const keyBelow = height => `set key at screen 0.5, screen ${height} center center horizontal samplen 2`
+
 const block = (name, rows) => `$${name} << EOD\n${rows.map(row => row.join(' ')).join('\n')}\nEOD\n`
 
 function viewPanel(map, topology, title, value) {
@@ -52,9 +54,9 @@ export function plotViews(map, folder) {
     viewPanel(map, 'fast', 'a view, without topology', total),
     viewPanel(map, 'strict', 'before drawing, with topology', beforeDraw),
     viewPanel(map, 'fast', 'before drawing, without topology', beforeDraw)]
-  const key = ['set key outside bottom center horizontal', 'unset key', 'unset key', 'unset key']
+  const key = [`${keyBelow(0.055)} maxrows 4`, 'unset key', 'unset key', 'unset key']
   const script = `
-set multiplot layout 2,2
+set multiplot layout 2,2 margins 0.07,0.98,0.18,0.95 spacing 0.07,0.12
 set logscale y
 set xrange [1:72]
 set xlabel "view"
@@ -74,10 +76,10 @@ export function plotStages(maps, folder) {
     .filter(a => a.topology === 'strict')
     .sort((a, b) => inOrder.indexOf(a.method) - inOrder.indexOf(b.method))
     .map(a => [`"${a.title}"`, ...stages.map(stage => a[stage])])))
-  const panels = maps.map(map => `set title "${map.name}, with topology"
+  const panels = maps.map((map, i) => `${i > 0 ? 'unset key\n' : ''}set title "${map.name}, with topology"
 plot ${stages.map((stage, i) => `$stages_${map.name} using ${i + 2}${i === 0 ? ':xtic(1)' : ''} lc rgb "${stageColours[stage]}" title "${stageTitles[stage]}"`).join(', \\\n     ')}`)
   const script = `
-set multiplot layout 1,${maps.length}
+set multiplot layout 1,${maps.length} margins 0.06,0.98,0.34,0.92 spacing 0.06,0
 set style data histograms
 set style histogram rowstacked
 set style fill solid 0.9 border lc rgb "white"
@@ -85,11 +87,11 @@ set boxwidth 0.75
 set yrange [0:*]
 set ylabel "ms a view"
 set xtics rotate by -50
-set key outside bottom center horizontal maxrows 2
+${keyBelow(0.04)} maxrows 1
 set grid ytics lc rgb "#dddddd"
 ${panels.join('\n')}
 unset multiplot`
-  return data.join('') + inBothFormats(folder, 'stages', 420 * maps.length, 560, script)
+  return data.join('') + inBothFormats(folder, 'stages', 1100, 520, script)
 }
 
 export function plotGrowth(growth, folder) {
@@ -105,6 +107,8 @@ export function plotGrowth(growth, folder) {
 set multiplot layout 1,2
 set logscale xy
 set format x "10^{%L}"
+set format y "%g"
+set xrange [${growth[0].vertices}:${last.vertices}]
 set xlabel "vertices"
 set grid lc rgb "#dddddd"
 set key top left
