@@ -28,7 +28,8 @@ std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
   for (std::size_t i = 0; i < 3; ++i) {
     const Point a = graph.point(triangle[i]);
     const Point b = graph.point(triangle[(i + 1) % 3]);
-    const double length = std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
+    const double length =
+        std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
     if (length > greatest) longest = {triangle[i], triangle[(i + 1) % 3]};
     greatest = std::max(greatest, length);
   }
@@ -114,7 +115,8 @@ std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, 
     const Corner gone = graph.corner(c);
     const VertexId prev = graph.corner(gone.prev).vertex;
     const VertexId next = graph.corner(gone.next).vertex;
-    if (decision.removal == Removal::loop) last_side_ = longest_side(graph, {prev, gone.vertex, next});
+    if (decision.removal == Removal::loop)
+      last_side_ = longest_side(graph, {prev, gone.vertex, next});
     generalization.remove(c, decision.removal);
     ++counts_.removals;
     counts_.touched += log.touched_nodes().size();
@@ -173,6 +175,18 @@ void AdaptableGraph::adapt_to(double epsilon) {
       return;
     }
   }
+}
+
+AdaptableGraph::Unchanged AdaptableGraph::unchanged() const {
+  const std::size_t applied = log_.applied();
+  Unchanged unchanged;
+  if (applied > 0) unchanged.above = epsilon_of_edit_[applied - 1];
+  if (applied < log_.size()) {
+    unchanged.up_to = epsilon_of_edit_[applied];
+  } else if (exhausted_) {
+    unchanged.up_to = std::numeric_limits<double>::infinity();
+  }
+  return unchanged;
 }
 
 }  // namespace trapeze

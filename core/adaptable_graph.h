@@ -109,6 +109,15 @@ class AdaptableGraph {
   /// Makes the graph the one of tolerance `epsilon` (cells, >= 0), forward or back.
   void adapt_to(double epsilon);
 
+  /// The tolerances at which the graph is as it is now: those greater than `above`, up to `up_to`.
+  struct Unchanged {
+    double above = -1;  // below zero: nothing has been removed
+    double up_to = 0;
+
+    bool contains(double epsilon) const { return above < epsilon && epsilon <= up_to; }
+  };
+  Unchanged unchanged() const;
+
   const TrapezoidalGraph& graph() const { return graph_; }
   const PriorityStack& stack() const { return stack_; }
   std::size_t memory() const { return graph_.memory() + log_.memory(); }

@@ -48,51 +48,73 @@ GlMeshStore::GlMeshStore(const GlFunctions& gl) {
   if (chunk_size_ == 0) throw std::runtime_error("the GL device has no buffer textures");
 }
 
+GlMeshStore::MutableChunkPointer& GlMeshStore::place(std::uint64_t mesh_id, std::uint32_t index) {
+  std::vector<MutableChunkPointer>& chunks = meshes_[mesh_id];
+  if (index >= chunks.size()) chunks.resize(std::size_t{index} + 1);
+  return chunks[index];
+}
+
 GlMeshStore::ChunkPointer GlMeshStore::chunk(const GlFunctions& gl, const MeshView& mesh,
                                              std::uint32_t index) {
   // Held during an upload: whoever needs the same chunk has to wait for it anyway.
   const std::lock_guard lock(mutex_);
-  std::vector<ChunkPointer>& chunks = meshes_[mesh.id];
-  if (index >= chunks.size()) chunks.resize(std::size_t{index} + 1);
-  if (!chunks[index]) chunks[index] = upload(gl, mesh, index);
-  return chunks[index];
+  MutableChunkPointer& chunk = place(mesh.id, index);
+  if (!chunk) chunk = upload(gl, mesh, index);
+  return chunk;
 }
 
-GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshView& mesh,
-                                              std::uint32_t index) const {
-  const std::size_t first = std::size_t{index} * chunk_size_;
-  const auto trapezoids = mesh.trapezoids.subspan(
-      first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
-  const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
+GlMeshStore::Chunk& GlMeshStore::changing_chunk(const GlFunctions& gl, std::uint64_t mesh_id,
+                                                std::uint32_t index) {
+  const std::lock_guard lock(mutex_);
+  MutableChunkPointer& chunk = place(mesh_id, index);
+  if (!chunk) chunk = make_chunk(gl, chunk_size_);
+  return *chunk;
+}
 
-  const std::shared_ptr<Chunk> chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
+GlMeshStore::MutableChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
+                                                         std::size_t trapezoids) const {
+  const MutableChunkPointer chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
     const std::lock_guard lock(graveyard->mutex);
     graveyard->buffers.push_back(dead->buffer);
     graveyard->textures.push_back(dead->texture);
     delete dead;
   });
-  chunk->sizes.reserve(trapezoids.size());
+  chunk->sizes.assign(trapezoids, kNoSize);
+  const std::size_t bytes = trapezoids * kIntegersPerTrapezoid * sizeof(std::int32_t);
   gl.GenBuffers(1, &chunk->buffer);
   gl.BindBuffer(GL_TEXTURE_BUFFER, chunk->buffer);
   gl.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STATIC_DRAW);
-  auto* integers = static_cast<std::int32_t*>(
-      gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
-                        GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
-  if (integers == nullptr) {
+  gl.GenTextures(1, &chunk->texture);
+  gl.BindTexture(GL_TEXTURE_BUFFER, chunk->texture);
+  gl.TexBuffer(GL_TEXTURE_BUFFER, GL_RG32I, chunk->buffer);
+  if (gl.GetError() != GL_NO_ERROR) {
     gl.BindBuffer(GL_TEXTURE_BUFFER, 0);
     while (gl.GetError() != GL_NO_ERROR) {
     }
     throw std::runtime_error("the GL device has no memory for " + std::to_string(bytes) +
                              " bytes of trapezoids");
   }
-  for (std::size_t i = 0; i < trapezoids.size(); ++i) {
-    write(mesh, trapezoids[i], integers + i * kIntegersPerTrapezoid);
-    chunk->sizes.push_back(size_of(mesh, trapezoids[i]));
+  return chunk;
+}
+
+GlMeshStore::MutableChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshView& mesh,
+                                                     std::uint32_t index) const {
+  const std::size_t first = std::size_t{index} * chunk_size_;
+  const auto trapezoids = mesh.trapezoids.subspan(
+      first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
+  const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
+  MutableChunkPointer chunk = make_chunk(gl, trapezoids.size());
+  auto* integers = static_cast<std::int32_t*>(
+      gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
+                        GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
+  bool is_intact = integers != nullptr;
+  if (is_intact) {
+    for (std::size_t i = 0; i < trapezoids.size(); ++i) {
+      write(mesh, trapezoids[i], integers + i * kIntegersPerTrapezoid);
+      chunk->sizes[i] = size_of(mesh, trapezoids[i]);
+    }
+    is_intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
   }
-  const bool is_intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
-  gl.GenTextures(1, &chunk->texture);
-  gl.BindTexture(GL_TEXTURE_BUFFER, chunk->texture);
-  gl.TexBuffer(GL_TEXTURE_BUFFER, GL_RG32I, chunk->buffer);
   gl.BindBuffer(GL_TEXTURE_BUFFER, 0);
   // Other contexts of the group see what is finished here once they bind it.
   gl.Finish();

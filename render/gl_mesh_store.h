@@ -44,6 +44,11 @@ class GlMeshStore {
   /// the device has no memory left.
   ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index);
 
+  /// That chunk of a mesh that changes: it has room for chunk_size() trapezoids of no size, which
+  /// the caller writes into the buffer, and their sizes. Nobody may draw from it meanwhile, and
+  /// draws that follow find the chunk under the id. Throws like chunk().
+  Chunk& changing_chunk(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
+
   /// Lets go of the chunks of a mesh; a draw in progress still finds those that it holds.
   void forget(std::uint64_t mesh_id);
 
@@ -58,12 +63,17 @@ class GlMeshStore {
     std::vector<GLuint> textures;
   };
 
-  ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;
+  using MutableChunkPointer = std::shared_ptr<Chunk>;
+
+  MutableChunkPointer& place(std::uint64_t mesh_id, std::uint32_t index);
+  MutableChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids) const;
+  MutableChunkPointer upload(const GlFunctions& gl, const MeshView& mesh,
+                             std::uint32_t index) const;
 
   std::uint32_t chunk_size_ = 0;
   std::shared_ptr<Graveyard> graveyard_ = std::make_shared<Graveyard>();
   std::mutex mutex_;
-  std::unordered_map<std::uint64_t, std::vector<ChunkPointer>> meshes_;  // by MeshView::id
+  std::unordered_map<std::uint64_t, std::vector<MutableChunkPointer>> meshes_;  // by MeshView::id
 };
 
 }  // namespace trapeze

@@ -58,4 +58,12 @@ struct RenderArguments {
 };
 int run_render(const RenderArguments& arguments);
 
+struct BenchArguments {
+  std::string name;
+  std::vector<std::string> options;  // for the benchmark
+};
+/// Becomes the program trapeze-NAME: benchmarks need libraries that whoever serves does not. Returns
+/// never.
+int run_bench(const BenchArguments& arguments);
+
 }  // namespace trapeze

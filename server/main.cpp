@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "server/build_id.h"
 #include "server/commands.h"
@@ -64,6 +66,13 @@ constexpr const char* kRenderFooter =
     "  trapeze render countries.fgb --tile 3/4/2 --output tile.png\n"
     "  trapeze render land.fgb lakes.fgb --tile 0/0/0 --scale 2 \\\n"
     "      --style 'lakes.fill=6fa8c9&background=white' --output world.png";
+
+constexpr const char* kBenchFooter =
+    "\nExamples:\n"
+    "  trapeze bench experiment                    the paper's experiment\n"
+    "  trapeze bench experiment --help             what it can be asked for\n\n"
+    "Benchmarks are programs of their own, trapeze-NAME in the folder bench beside this program:\n"
+    "they need libraries that this one does not. They are built with the release preset.";
 
 constexpr const char* kRendererHelp =
     "What draws: auto, egl, osmesa or software (auto tries them in this order)";
@@ -173,7 +182,23 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
       ->type_name("F.png");
 }
 
+/// What follows the name of a benchmark is for the benchmark, --help included.
+std::optional<trapeze::BenchArguments> bench_arguments(int argc, char** argv) {
+  if (argc < 3 || std::string_view(argv[1]) != "bench" || argv[2][0] == '-') return std::nullopt;
+  return trapeze::BenchArguments{argv[2], {argv + 3, argv + argc}};
+}
+
+/// For help, and for want of a name.
+void add_bench(CLI::App& app, std::string& name) {
+  CLI::App* bench =
+      app.add_subcommand("bench", "Run a benchmark: trapeze bench NAME [OPTION OF NAME ...]");
+  bench->footer(kBenchFooter);
+  bench->add_option("NAME", name, "The benchmark; what follows it is for the benchmark")
+      ->required();
+}
+
 int run(int argc, char** argv) {
+  if (const auto benchmark = bench_arguments(argc, argv)) return trapeze::run_bench(*benchmark);
   CLI::App app(kDescription, "trapeze");
   app.require_subcommand(0, 1);  // none is reported below, with what there is
   app.set_version_flag("--version", "trapeze " + trapeze::version());
@@ -185,11 +210,13 @@ int run(int argc, char** argv) {
   trapeze::PrepareArguments prepare;
   trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
+  std::string bench;
   add_serve(app, serve);
   add_check(app, check);
   add_prepare(app, prepare);
   add_export(app, to_export);
   add_render(app, render);
+  add_bench(app, bench);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -204,6 +231,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("check")) return trapeze::run_check(check);
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);
+  if (app.got_subcommand("bench")) return trapeze::run_bench({bench, {}});
   return trapeze::run_render(render);
 }
 

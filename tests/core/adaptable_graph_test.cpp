@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -48,6 +49,33 @@ TEST(AdaptableGraph, EveryRemovalLeavesTheMapOfTheRingsThatAreLeft) {
       } else {
         ASSERT_EQ(plain_trapezoids(*graph), plain_trapezoids(rebuilt(*graph)))
             << "after " << log.size() << " removals";
+      }
+    }
+  }
+}
+
+TEST(AdaptableGraph, SaysAtWhichTolerancesItIsAsItIs) {
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    auto graph = graph_of(random_shape(seed));
+    if (!graph) continue;
+    AdaptableGraph adaptable(*graph);
+    EXPECT_TRUE(adaptable.unchanged().contains(0));
+    for (const double epsilon : {0.0, 0.7, 12.0, 500.0, 12.0, 0.7}) {
+      adaptable.adapt_to(epsilon);
+      const AdaptableGraph::Unchanged unchanged = adaptable.unchanged();
+      EXPECT_TRUE(unchanged.contains(epsilon));
+      const TrapezoidalGraph before = adaptable.graph();
+      const bool has_end = unchanged.up_to < kAll;
+      adaptable.adapt_to(has_end ? unchanged.up_to : 1e12);
+      EXPECT_EQ(adaptable.graph(), before);
+      if (unchanged.above >= 0) {
+        adaptable.adapt_to(unchanged.above);
+        EXPECT_NE(adaptable.graph(), before);
+      }
+      if (has_end) {
+        adaptable.adapt_to(std::nextafter(unchanged.up_to, kAll));
+        EXPECT_NE(adaptable.graph(), before);
       }
     }
   }

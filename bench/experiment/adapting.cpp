@@ -1,0 +1,149 @@
+#include "bench/experiment/adapting.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "bench/experiment/cpu_clock.h"
+#include "core/graph_builder.h"
+#include "render/stopwatch.h"
+
+namespace trapeze::experiment {
+
+AdaptingLayer::AdaptingLayer(const PolygonSet& polygons, Topology topology,
+                             std::vector<Point>& vertices)
+    : vertices_(vertices) {
+  GraphBuilder builder;
+  Rings rings;
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    rings.clear();
+    for (std::uint32_t r = polygons.first_ring(p); r < polygons.ends[p]; ++r) {
+      rings.add(polygons.rings[r]);
+    }
+    TrapezoidalGraph graph;
+    if (!builder.build(rings, graph).built) continue;
+    polygons_.emplace_back();
+    polygons_.back().box = polygons.boxes[p];
+    polygons_.back().first_vertex = static_cast<std::uint32_t>(vertices.size());
+    for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
+      vertices.push_back(graph.point(VertexId(v)));
+    }
+    graphs_.emplace_back(std::move(graph), GeneralizationOptions{.topology = topology});
+    graphs_.back().adapt_to(std::numeric_limits<double>::max());
+  }
+  start_run();
+}
+
+void AdaptingLayer::start_run() {
+  for (std::size_t p = 0; p < polygons_.size(); ++p) adapt(p, 0);
+}
+
+void AdaptingLayer::adapt(const Box& box, double epsilon) {
+  for (std::size_t p = 0; p < polygons_.size(); ++p) {
+    if (polygons_[p].unchanged.contains(epsilon) || !polygons_[p].box.intersects(box)) continue;
+    adapt(p, epsilon);
+  }
+}
+
+void AdaptingLayer::adapt(std::size_t polygon, double epsilon) {
+  graphs_[polygon].adapt_to(epsilon);
+  polygons_[polygon].unchanged = graphs_[polygon].unchanged();
+  polygons_[polygon].is_listed = false;
+}
+
+void AdaptingLayer::append_trapezoids(const Box& box, NumberedList& trapezoids) {
+  for (std::size_t p = 0; p < polygons_.size(); ++p) {
+    const Polygon& polygon = polygons_[p];
+    if (!polygon.box.intersects(box)) continue;
+    if (!polygon.is_listed) list(p);
+    const NumberedList& own = polygon.trapezoids;
+    if (own.numbers.empty()) continue;
+    if (box.min_y <= polygon.box.min_y && polygon.box.max_y <= box.max_y) {
+      trapezoids.numbers.insert(trapezoids.numbers.end(), own.numbers.begin(), own.numbers.end());
+      trapezoids.sizes.insert(trapezoids.sizes.end(), own.sizes.begin(), own.sizes.end());
+    } else {
+      const auto count = static_cast<std::uint32_t>(graphs_[p].graph().vertex_count());
+      append_between(polygon, count, box, trapezoids);
+    }
+  }
+}
+
+void AdaptingLayer::list(std::size_t p) {
+  const TrapezoidalGraph& graph = graphs_[p].graph();
+  Polygon& polygon = polygons_[p];
+  const auto number = [&](VertexId v) { return polygon.first_vertex + v.value - 1; };
+  polygon.trapezoids.clear();
+  for (const Node& node : graph.nodes()) {
+    if (!node.is_alive() || graph.face(node) == kOutside) continue;
+    const std::int32_t top = graph.point(node.end[kUp]).y;
+    const std::int32_t bottom = graph.point(node.end[kDown]).y;
+    if (top == bottom) continue;
+    const Edge& left = graph.edge(node.edge[kLeft]);
+    const Edge& right = graph.edge(node.edge[kRight]);
+    polygon.trapezoids.numbers.push_back({number(node.end[kUp]), number(node.end[kDown]),
+                                          number(left.end[kUp]), number(left.end[kDown]),
+                                          number(right.end[kUp]), number(right.end[kDown])});
+    polygon.trapezoids.sizes.push_back(
+        size_of({top, bottom, graph.point(left.end[kUp]), graph.point(left.end[kDown]),
+                 graph.point(right.end[kUp]), graph.point(right.end[kDown])}));
+  }
+  polygon.is_listed = true;
+}
+
+// Numbers of vertices follow each other from top to bottom, so that levels are compared by numbers.
+void AdaptingLayer::append_between(const Polygon& polygon, std::uint32_t vertex_count,
+                                   const Box& box, NumberedList& trapezoids) const {
+  const auto first = vertices_.begin() + polygon.first_vertex;
+  const auto number_at = [&](std::int32_t y) {
+    const auto found =
+        std::partition_point(first, first + vertex_count, [y](Point q) { return q.y < y; });
+    return static_cast<std::uint32_t>(found - vertices_.begin());
+  };
+  const std::uint32_t from = number_at(box.min_y);
+  const std::uint32_t to = number_at(box.max_y);
+  const NumberedList& own = polygon.trapezoids;
+  for (std::size_t i = 0; i < own.numbers.size(); ++i) {
+    if (own.numbers[i].bottom < from || own.numbers[i].top > to) continue;
+    trapezoids.numbers.push_back(own.numbers[i]);
+    trapezoids.sizes.push_back(own.sizes[i]);
+  }
+}
+
+Adapting::Adapting(Topology topology, const Map& map, Screen& screen) {
+  for (const MapLayer& layer : map.layers) {
+    layers_.emplace_back(layer.polygons, topology, vertices_);
+  }
+  device_ = std::make_unique<NumberedTrapezoids>(screen, vertices_);
+}
+
+void Adapting::start_run() {
+  for (AdaptingLayer& layer : layers_) layer.start_run();
+}
+
+ViewCost Adapting::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
+  const Box box = view.view.box();
+  ViewCost cost;
+  const double cpu_begin = cpu_clock_ms();
+  {
+    const Stopwatch stopwatch(cost.simplify_ms);
+    for (AdaptingLayer& layer : layers_) layer.adapt(box, view.epsilon());
+  }
+  {
+    const Stopwatch stopwatch(cost.send_ms);
+    trapezoids_.clear();
+    ends_.clear();
+    for (AdaptingLayer& layer : layers_) {
+      layer.append_trapezoids(box, trapezoids_);
+      ends_.push_back(static_cast<std::uint32_t>(trapezoids_.numbers.size()));
+    }
+    device_->send(trapezoids_.numbers, trapezoids_.sizes);
+  }
+  cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
+  cost.add(device_->draw(ends_, view.view, coverages));
+  cost.cpu_ms = cpu_clock_ms() - cpu_begin;
+  cost.trapezoids = trapezoids_.numbers.size();
+  cost.bytes = trapezoids_.numbers.size() * sizeof(VertexNumbers);
+  return cost;
+}
+
+}  // namespace trapeze::experiment

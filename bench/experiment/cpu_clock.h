@@ -1,0 +1,15 @@
+// Processor time, which other programs on the machine hardly disturb.
+#pragma once
+
+#include <ctime>
+
+namespace trapeze::experiment {
+
+/// Milliseconds that all threads of the program have used so far.
+inline double cpu_clock_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace trapeze::experiment

@@ -1,0 +1,126 @@
+#include "bench/experiment/numbered_trapezoids.h"
+
+#include <EGL/egl.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace trapeze::experiment {
+namespace {
+
+// Writes TrapezoidRecords.
+constexpr const char* kShader = R"(#version 430 core
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Vertices { ivec2 vertices[]; };
+layout(std430, binding = 1) readonly buffer Numbers { uint numbers[]; };
+layout(std430, binding = 2) writeonly buffer Records { ivec2 records[]; };
+uniform uint count;
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  records[5 * i] = ivec2(vertices[numbers[6 * i]].y, vertices[numbers[6 * i + 1]].y);
+  for (uint k = 1; k < 5; ++k) records[5 * i + k] = vertices[numbers[6 * i + 1 + k]];
+}
+)";
+constexpr GLuint kGroup = 64;
+
+template <class Function>
+Function function_named(const char* name) {
+  const auto function = reinterpret_cast<Function>(eglGetProcAddress(name));
+  if (function == nullptr) throw std::runtime_error(std::string(name) + " is missing");
+  return function;
+}
+
+}  // namespace
+
+struct NumberedTrapezoids::Functions {
+  PFNGLBINDBUFFERBASEPROC bind_buffer_base =
+      function_named<PFNGLBINDBUFFERBASEPROC>("glBindBufferBase");
+  PFNGLBINDBUFFERRANGEPROC bind_buffer_range =
+      function_named<PFNGLBINDBUFFERRANGEPROC>("glBindBufferRange");
+  PFNGLDISPATCHCOMPUTEPROC dispatch_compute =
+      function_named<PFNGLDISPATCHCOMPUTEPROC>("glDispatchCompute");
+  PFNGLMEMORYBARRIERPROC memory_barrier = function_named<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier");
+  PFNGLPROGRAMUNIFORM1UIPROC program_uniform =
+      function_named<PFNGLPROGRAMUNIFORM1UIPROC>("glProgramUniform1ui");
+};
+
+NumberedTrapezoids::NumberedTrapezoids(Screen& screen, std::span<const Point> vertices)
+    : screen_(screen), trapezoids_(screen), functions_(std::make_unique<const Functions>()) {
+  const CurrentContext current(screen.context());
+  const GlFunctions& gl = screen.context().gl();
+  make_program();
+  gl.GenBuffers(1, &vertices_);
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, vertices_);
+  gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(vertices.size_bytes()),
+                vertices.data(), GL_STATIC_DRAW);
+  gl.GenBuffers(1, &numbers_);
+}
+
+NumberedTrapezoids::~NumberedTrapezoids() {
+  const CurrentContext current(screen_.context());
+  const GlFunctions& gl = screen_.context().gl();
+  gl.DeleteBuffers(1, &vertices_);
+  gl.DeleteBuffers(1, &numbers_);
+  gl.DeleteProgram(program_);
+}
+
+void NumberedTrapezoids::make_program() {
+  const GlFunctions& gl = screen_.context().gl();
+  const GLuint shader = gl.CreateShader(GL_COMPUTE_SHADER);
+  gl.ShaderSource(shader, 1, &kShader, nullptr);
+  gl.CompileShader(shader);
+  program_ = gl.CreateProgram();
+  gl.AttachShader(program_, shader);
+  gl.LinkProgram(program_);
+  gl.DeleteShader(shader);
+  GLint linked = GL_FALSE;
+  gl.GetProgramiv(program_, GL_LINK_STATUS, &linked);
+  if (linked != GL_TRUE) throw std::runtime_error("the device rejects the program that looks up");
+  count_location_ = gl.GetUniformLocation(program_, "count");
+}
+
+void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
+                              std::span<const std::uint8_t> sizes) {
+  if (numbers.empty()) return;
+  const CurrentContext current(screen_.context());
+  const GlFunctions& gl = screen_.context().gl();
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, numbers_);
+  if (room_ < numbers.size_bytes()) {
+    room_ = 2 * numbers.size_bytes();
+    gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(room_), nullptr,
+                  GL_STREAM_DRAW);
+  }
+  void* room =
+      gl.MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(numbers.size_bytes()),
+                        GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT | GL_MAP_UNSYNCHRONIZED_BIT);
+  if (room == nullptr) throw std::runtime_error("the device gives no access to its memory");
+  std::memcpy(room, numbers.data(), numbers.size_bytes());
+  gl.UnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+
+  GLint program_before = 0;  // the renderer's
+  gl.GetIntegerv(GL_CURRENT_PROGRAM, &program_before);
+  gl.UseProgram(program_);
+  functions_->bind_buffer_base(GL_SHADER_STORAGE_BUFFER, 0, vertices_);
+  for (std::size_t first = 0; first < numbers.size(); first += trapezoids_.chunk_size()) {
+    const std::size_t count =
+        std::min<std::size_t>(numbers.size() - first, trapezoids_.chunk_size());
+    const GLuint records = trapezoids_.open(first, sizes.subspan(first, count));
+    const auto bind = [&](GLuint binding, GLuint buffer, std::size_t from, std::size_t bytes) {
+      functions_->bind_buffer_range(GL_SHADER_STORAGE_BUFFER, binding, buffer,
+                                    static_cast<GLintptr>(from), static_cast<GLsizeiptr>(bytes));
+    };
+    bind(1, numbers_, first * sizeof(VertexNumbers), count * sizeof(VertexNumbers));
+    bind(2, records, 0, count * sizeof(TrapezoidRecord));
+    functions_->program_uniform(program_, count_location_, static_cast<GLuint>(count));
+    functions_->dispatch_compute((static_cast<GLuint>(count) + kGroup - 1) / kGroup, 1, 1);
+  }
+  functions_->memory_barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  gl.Finish();
+  gl.UseProgram(static_cast<GLuint>(program_before));
+}
+
+}  // namespace trapeze::experiment

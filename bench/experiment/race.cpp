@@ -1,0 +1,147 @@
+#include "bench/experiment/race.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "render/stopwatch.h"
+
+namespace trapeze::experiment {
+namespace {
+
+constexpr int kEmptyViews = 15;
+constexpr int kPlainlyDifferent = 64;  // 255ths
+
+std::size_t heap_in_use() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+ViewCost median_by_total(std::vector<ViewCost> costs) {
+  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>((costs.size() - 1) / 2);
+  std::nth_element(costs.begin(), middle, costs.end(), [](const ViewCost& a, const ViewCost& b) {
+    return a.total_ms() < b.total_ms();
+  });
+  return *middle;
+}
+
+}  // namespace
+
+Race::Race(const Map& map, Topology topology, Screen& screen) : map_(map), screen_(screen) {
+  cost_of_empty_view(map.layers.size(), screen);  // makes what all of them use
+  for (const Method method : kMethods) {
+    if (is_possible(method, topology)) prepare(method, topology);
+  }
+}
+
+void Race::prepare(Method method, Topology topology) {
+  Runner& runner = runners_.emplace_back();
+  runner.result.method = method;
+  runner.result.topology = topology;
+  const std::size_t heap_before = heap_in_use();
+  {
+    const Stopwatch stopwatch(runner.result.prepare_ms);
+    runner.contestant = make_contestant(method, topology, map_, screen_);
+  }
+  runner.result.memory =
+      heap_in_use() - std::min(heap_before, heap_in_use()) + runner.contestant->shared_memory();
+  runner.result.sent_before = runner.contestant->sent_before();
+}
+
+void Race::run(std::span<const ScaledView> trip, int runs) {
+  std::vector<Coverage> coverages;
+  for (Runner& runner : runners_) {
+    runner.costs.resize(trip.size());
+    runner.contestant->draw(trip.front(), coverages);  // makes room, which no run should pay for
+  }
+  for (int run = 0; run < runs; ++run) {
+    for (Runner& runner : runners_) {
+      if (run > 0 && runner.result.method == Method::triangulation) continue;
+      runner.contestant->start_run();
+      for (std::size_t i = 0; i < trip.size(); ++i) {
+        runner.costs[i].push_back(runner.contestant->draw(trip[i], coverages));
+      }
+      ++runner.result.runs;
+    }
+  }
+}
+
+std::vector<RaceResult> Race::results() const {
+  std::vector<RaceResult> results;
+  for (const Runner& runner : runners_) {
+    results.push_back(runner.result);
+    for (const std::vector<ViewCost>& of_view : runner.costs) {
+      results.back().views.push_back(median_by_total(of_view));
+    }
+  }
+  return results;
+}
+
+std::vector<std::vector<Coverage>> Race::pictures(Method method,
+                                                  std::span<const ScaledView> views) {
+  std::vector<std::vector<Coverage>> pictures;
+  for (Runner& runner : runners_) {
+    if (runner.result.method != method) continue;
+    for (const ScaledView& view : views) {
+      pictures.emplace_back();
+      runner.contestant->draw(view, pictures.back());
+    }
+  }
+  return pictures;
+}
+
+PictureError compare(std::span<const ScaledView> views,
+                     std::span<const std::vector<Coverage>> pictures,
+                     std::span<const std::vector<Coverage>> full_detail) {
+  PictureError error;
+  error.scale = views.front().scale;
+  std::uint64_t difference = 0;
+  std::uint64_t plainly_different = 0;
+  std::uint64_t covered = 0;
+  std::uint64_t covered_in_full = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    for (std::size_t layer = 0; layer < pictures[v].size(); ++layer) {
+      const auto drawn = pictures[v][layer].pixels();
+      const auto truth = full_detail[v][layer].pixels();
+      for (std::size_t i = 0; i < drawn.size(); ++i) {
+        if (drawn[i] == 0 && truth[i] == 0) continue;
+        const int off = std::abs(drawn[i] - truth[i]);
+        ++error.pixels;
+        difference += static_cast<std::uint64_t>(off);
+        plainly_different += off > kPlainlyDifferent ? 1 : 0;
+        covered += drawn[i];
+        covered_in_full += truth[i];
+      }
+    }
+  }
+  if (error.pixels == 0) return error;
+  const auto pixels = static_cast<double>(error.pixels);
+  error.mean = static_cast<double>(difference) / pixels;
+  error.share_over_64 = static_cast<double>(plainly_different) / pixels;
+  error.area = static_cast<double>(covered) /
+                   static_cast<double>(std::max<std::uint64_t>(1, covered_in_full)) -
+               1;
+  return error;
+}
+
+ViewCost cost_of_empty_view(std::size_t layers, Screen& screen) {
+  DeviceTrapezoids nothing(screen);
+  View view;
+  view.width = kScreenWidth;
+  view.height = kScreenHeight;
+  std::vector<Coverage> coverages;
+  std::vector<ViewCost> costs(kEmptyViews);
+  for (ViewCost& cost : costs) {
+    cost.add(nothing.draw(std::vector<std::uint32_t>(layers), view, coverages));
+  }
+  return median_by_total(std::move(costs));
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace trapeze::experiment

@@ -1,0 +1,54 @@
+// All that the experiment found, as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/experiment/growth.h"
+#include "bench/experiment/quality.h"
+#include "bench/experiment/race.h"
+#include "bench/experiment/trip.h"
+
+namespace trapeze::experiment {
+
+/// Of one method and treatment of topology, over the scales of Figure 7.
+struct PictureErrors {
+  Method method = Method::lifespans;
+  Topology topology = Topology::strict;
+  std::vector<PictureError> scales;
+};
+
+struct MapReport {
+  MapSource source;
+  std::vector<std::size_t> layer_polygons;
+  std::vector<std::size_t> layer_vertices;
+  std::vector<double> trip_scales;      // by view
+  std::vector<double> trip_tolerances;  // by view, pixels
+  ViewCost empty_view;
+  std::vector<RaceResult> races;
+  std::vector<PictureErrors> pictures;
+  std::vector<Quality> quality;
+  std::vector<std::string> figures;  // names of files
+};
+
+struct Report {
+  std::string commit;
+  std::string machine;
+  std::string device;
+  TripOptions options;
+  int runs = 0;
+  double seconds = 0;
+  std::vector<MapReport> maps;
+  std::vector<GrowthPoint> growth;
+};
+
+/// The processor, the number of cores, and the memory of this machine.
+std::string describe_machine();
+
+/// Writes it. Throws std::runtime_error if the file cannot be written.
+void write_report(const Report& report, const std::string& path);
+
+/// A short table for the terminal.
+std::string summary_of(const MapReport& map);
+
+}  // namespace trapeze::experiment

@@ -1,0 +1,80 @@
+// The device that all contestants draw with, and trapezoids on it that change from view to view.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/experiment/trapezoid_list.h"
+#include "core/trapezoid_mesh.h"
+#include "render/coverage.h"
+#include "render/gl_context.h"
+#include "render/gl_mesh_store.h"
+#include "render/gl_renderer.h"
+
+namespace trapeze::experiment {
+
+constexpr int kScreenWidth = 1600;   // pixels
+constexpr int kScreenHeight = 1200;  // pixels
+
+/// What is drawn of one layer.
+using Ranges = std::vector<TrapezoidRange>;
+
+/// One GlRenderer on the EGL device that works first. Belongs to one thread.
+class Screen {
+ public:
+  /// `device` as in RendererOptions. Throws std::runtime_error if there is no EGL device.
+  explicit Screen(const std::string& device = {});
+
+  CoverageRenderer& renderer() { return *renderer_; }
+  GlMeshStore& store() { return *store_; }
+  GlContext& context() { return renderer_->context(); }
+
+  /// Sends a mesh that does not change, once for all.
+  void send(const MeshView& mesh);
+  void forget(std::uint64_t mesh_id);
+
+  /// Draws layers in one pass, each into its own coverage; meshes[i] is that of layer i.
+  DrawTimes draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges, const View& view,
+                 std::vector<Coverage>& coverages);
+
+ private:
+  std::shared_ptr<GlMeshStore> store_;
+  std::unique_ptr<GlRenderer> renderer_;
+  std::vector<MeshPart> parts_;
+  std::vector<CoverageTask> tasks_;
+};
+
+/// Room on the device for the trapezoids of a map that each view writes anew. The room is kept
+/// between views, and written to directly.
+class DeviceTrapezoids {
+ public:
+  /// `screen` must outlive this.
+  explicit DeviceTrapezoids(Screen& screen) : screen_(screen), mesh_id_(new_mesh_id()) {}
+  ~DeviceTrapezoids() { screen_.forget(mesh_id_); }
+  DeviceTrapezoids(const DeviceTrapezoids&) = delete;
+  DeviceTrapezoids& operator=(const DeviceTrapezoids&) = delete;
+
+  /// Writes the trapezoids over what was there, and waits until the device has them.
+  void send(const TrapezoidList& trapezoids);
+
+  /// For whoever fills in the records on the device: notes the sizes of trapezoids `first` and
+  /// after it, all of one chunk, and returns the chunk's buffer. A context of the screen is
+  /// current.
+  GLuint open(std::size_t first, std::span<const std::uint8_t> sizes);
+  std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
+
+  /// Draws layers: trapezoids ends[i - 1] .. ends[i] - 1 are those of layer i.
+  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
+                 std::vector<Coverage>& coverages);
+
+ private:
+  Screen& screen_;
+  const std::uint64_t mesh_id_;
+  std::vector<MeshView> meshes_;
+  std::vector<Ranges> ranges_;
+};
+
+}  // namespace trapeze::experiment

@@ -1,0 +1,28 @@
+// Polygons as they are after simplification.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/rings.h"
+
+namespace trapeze::experiment {
+
+/// One after another, those that have gone left out.
+struct SimplifiedPolygons {
+  Rings rings;
+  std::vector<std::uint32_t> ends;    // polygon i is rings ends[i - 1] .. ends[i] - 1
+  std::vector<std::uint32_t> source;  // by polygon: its number in the PolygonSet
+
+  void clear() {
+    rings.clear();
+    ends.clear();
+    source.clear();
+  }
+  std::size_t size() const { return ends.size(); }
+  std::uint32_t first_ring(std::size_t polygon) const {
+    return polygon == 0 ? 0 : ends[polygon - 1];
+  }
+};
+
+}  // namespace trapeze::experiment

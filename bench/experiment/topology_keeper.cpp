@@ -1,0 +1,173 @@
+#include "bench/experiment/topology_keeper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/farthest_vertex.h"
+
+namespace trapeze::experiment {
+namespace {
+
+// So few are looked at one by one faster than they are put into a grid.
+constexpr std::size_t kFew = 24;
+
+Point vertex(std::span<const Point> ring, std::uint32_t i) {
+  return ring[i < ring.size() ? i : i - ring.size()];
+}
+
+bool is_on_segment(Point p, Point a, Point b) {
+  return orientation(a, b, p) == 0 && std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) &&
+         std::min(a.y, b.y) <= p.y && p.y <= std::max(a.y, b.y);
+}
+
+/// Whether the edge meets the half line that runs from p to the right; each upper end belongs to
+/// it.
+bool is_right_of(Point p, Point a, Point b) {
+  if ((a.y <= p.y) == (b.y <= p.y)) return false;
+  const std::int64_t side = orientation(a, b, p);
+  return a.y < b.y ? side > 0 : side < 0;
+}
+
+/// Even-odd, with the border.
+bool is_enclosed(Point p, std::span<const Point> ring, const Chain& chain) {
+  Point from = vertex(ring, chain.end);
+  bool is_inside = false;
+  for (std::uint32_t i = chain.begin; i <= chain.end; ++i) {
+    const Point to = vertex(ring, i);
+    if (is_on_segment(p, from, to)) return true;
+    is_inside ^= is_right_of(p, from, to);
+    from = to;
+  }
+  return is_inside;
+}
+
+Box grown_box(Point a, Point b, double by) {
+  Box box;
+  box.include(a);
+  box.include(b);
+  const double reach = std::ceil(by) + 1;
+  const auto moved = [](std::int32_t v, double d) {
+    return static_cast<std::int32_t>(std::clamp(v + d, double{kGridMin}, double{kGridMax}));
+  };
+  return {moved(box.min_x, -reach), moved(box.min_y, -reach), moved(box.max_x, reach),
+          moved(box.max_y, reach)};
+}
+
+bool holds(const Box& box, Point p) {
+  return box.min_x <= p.x && p.x <= box.max_x && box.min_y <= p.y && p.y <= box.max_y;
+}
+
+}  // namespace
+
+void PointGrid::assign(std::span<const Point> points) {
+  bounds_ = {};
+  for (const Point p : points) bounds_.include(p);
+  const std::int64_t width = std::int64_t{bounds_.max_x} - bounds_.min_x + 1;
+  const std::int64_t height = std::int64_t{bounds_.max_y} - bounds_.min_y + 1;
+  const double area = static_cast<double>(width) * static_cast<double>(height);
+  const double share = std::sqrt(2 * area / static_cast<double>(points.size()));
+  // A polygon that is as good as a line must not have more cells than points.
+  const auto longest = static_cast<double>(std::max(width, height));
+  side_ = static_cast<std::int64_t>(
+      std::ceil(std::max(share, 2 * longest / static_cast<double>(points.size()))));
+  columns_ = (width - 1) / side_ + 1;
+  rows_ = (height - 1) / side_ + 1;
+  begins_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  cell_of_.resize(points.size());
+  points_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    cell_of_[i] = static_cast<std::uint32_t>(row(points[i].y) * columns_ + column(points[i].x));
+    ++begins_[cell_of_[i] + 1];
+  }
+  for (std::size_t c = 1; c < begins_.size(); ++c) begins_[c] += begins_[c - 1];
+  // Each begin runs to the end of its cell, which is the begin of the next one; then all move on.
+  for (std::size_t i = 0; i < points.size(); ++i) points_[begins_[cell_of_[i]]++] = points[i];
+  std::rotate(begins_.begin(), begins_.end() - 1, begins_.end());
+  begins_[0] = 0;
+}
+
+std::int64_t PointGrid::column(std::int32_t x) const {
+  return (std::int64_t{std::clamp(x, bounds_.min_x, bounds_.max_x)} - bounds_.min_x) / side_;
+}
+
+std::int64_t PointGrid::row(std::int32_t y) const {
+  return (std::int64_t{std::clamp(y, bounds_.min_y, bounds_.max_y)} - bounds_.min_y) / side_;
+}
+
+void TopologyKeeper::keep(const PolygonSet& polygons, std::size_t polygon,
+                          RingSimplifier& simplifier, PolygonChains& chains) {
+  const auto has_dropped = [](const Chain& chain) { return chain.has_dropped(); };
+  if (std::none_of(chains.chains.begin(), chains.chains.end(), has_dropped)) return;
+  const std::uint32_t first_ring = polygons.first_ring(polygon);
+  // What is split keeps vertices that may lie in what other chains enclose; only these are new to
+  // chains that have been found consistent.
+  for (collect_kept(polygons, first_ring, chains); !kept_.empty(); kept_.swap(newly_kept_)) {
+    index_kept();
+    split_inconsistent(polygons, first_ring, simplifier, chains);
+  }
+}
+
+void TopologyKeeper::collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
+                                  const PolygonChains& chains) {
+  kept_.clear();
+  for (std::size_t r = 0; r < chains.ends.size(); ++r) {
+    if (chains.has_gone(r)) continue;
+    const auto ring = polygons.rings[first_ring + r];
+    for (std::uint32_t c = chains.first(r); c < chains.ends[r]; ++c) {
+      kept_.push_back(ring[chains.chains[c].begin]);
+    }
+  }
+}
+
+void TopologyKeeper::index_kept() {
+  has_grid_ = kept_.size() > kFew;
+  if (has_grid_) grid_.assign(kept_);
+}
+
+void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
+                                        RingSimplifier& simplifier, PolygonChains& chains) {
+  newly_kept_.clear();
+  next_.clear();
+  for (std::uint32_t r = 0; r < chains.ends.size(); ++r) {
+    const std::uint32_t ring = first_ring + r;
+    const auto points = polygons.rings[ring];
+    for (std::uint32_t c = chains.first(r); c < chains.ends[r]; ++c) {
+      pending_.push_back(chains.chains[c]);
+      while (!pending_.empty()) {
+        const Chain chain = pending_.back();
+        pending_.pop_back();
+        if (!chain.has_dropped() || is_consistent(points, chain)) {
+          next_.chains.push_back(chain);
+          continue;
+        }
+        newly_kept_.push_back(points[chain.split]);
+        const auto [before, after] = simplifier.split(ring, chain);
+        pending_.push_back(after);
+        pending_.push_back(before);
+        ++splits_;
+      }
+    }
+    next_.ends.push_back(static_cast<std::uint32_t>(next_.chains.size()));
+    if (chains.has_gone(r) && !next_.has_gone(r)) {
+      newly_kept_.insert(newly_kept_.end(), {points[0], points[polygons.second_anchors[ring]]});
+    }
+  }
+  if (!newly_kept_.empty()) std::swap(chains, next_);
+}
+
+// Everything that the chain and its chord enclose is as near to the chord as the farthest vertex.
+bool TopologyKeeper::is_consistent(std::span<const Point> ring, const Chain& chain) const {
+  const Point a = ring[chain.begin];
+  const Point b = vertex(ring, chain.end);
+  const Box box = grown_box(a, b, chain.distance);
+  const SegmentDistance distance(a, b);
+  const double reach = (chain.distance + 1) * (chain.distance + 1);
+  const auto is_in_the_way = [&](Point p) {
+    return holds(box, p) && distance.squared(p) <= reach && p != a && p != b &&
+           is_enclosed(p, ring, chain);
+  };
+  if (has_grid_) return !grid_.any_in(box, is_in_the_way);
+  return std::none_of(kept_.begin(), kept_.end(), is_in_the_way);
+}
+
+}  // namespace trapeze::experiment

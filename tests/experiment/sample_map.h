@@ -1,0 +1,17 @@
+// Maps that no file holds.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bench/experiment/map_data.h"
+
+namespace trapeze::experiment {
+
+/// The polygons of random_shape(0) to random_shape(count - 1), each on its own.
+std::vector<PolygonSet> random_polygon_sets(unsigned count);
+
+/// A town of so many buildings, beside a coast: two layers.
+Map sample_map(unsigned buildings);
+
+}  // namespace trapeze::experiment
