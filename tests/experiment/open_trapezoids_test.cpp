@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "bench/polygon_families.h"
+#include "core/clean_rings.h"
+#include "core/graph_builder.h"
 #include "tests/core/ring_text.h"
 #include "tests/core/shapes.h"
 #include "tests/experiment/sample_map.h"
