@@ -31,7 +31,7 @@ TEST(Quality, ValidIsWhatGeosCallsValid) {
 
 TEST(Quality, OfAMapIsWithinTheToleranceAndValid) {
   const Map map = sample_map(200);
-  const ScaledView view = view_around(map, {300000, 400000}, 50000, 1600, 1200, 1);
+  const ScaledView view = view_around(map, {300000, 400000}, 200000, 1600, 1200, 1);
   for (const Method method : {Method::douglas_peucker, Method::adapting, Method::lifespans}) {
     const Quality quality = measure_quality(method, Topology::strict, map, view);
     EXPECT_EQ(quality.polygons, 201u);
