@@ -46,7 +46,7 @@ TEST_P(ContestantsTest, DrawTheSame) {
     std::vector<Coverage> reference;
     const Point centre = map_.layers[1].polygons.rings[0][0];
     // In and out again, so that graphs go forward and back.
-    for (const double scale : {50000., 8000., 3000., 8000., 120000., 3000.}) {
+    for (const double scale : {50000., 8000., 6000., 8000., 120000., 6000.}) {
       const ScaledView view = view_around(map_, centre, scale, 800, 600, 1);
       const ViewCost cost = contestant->draw(view, drawn);
       expected->draw(view, reference);
