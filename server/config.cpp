@@ -170,6 +170,27 @@ ConfiguredStyle read_style(const std::string& path, const toml::table& table) {
   return style;
 }
 
+std::vector<ParameterId> read_locked(TableReader& reader) {
+  std::vector<std::string> names;
+  reader.read("locked", names);
+  std::vector<ParameterId> locked;
+  for (const std::string& name : names) {
+    const StyleParameter* parameter = find_style_parameter(name);
+    if (parameter == nullptr || !parameter->is_per_layer) {
+      std::vector<std::string_view> known;
+      for (const StyleParameter& p : all_style_parameters()) {
+        if (p.is_per_layer) known.push_back(p.name);
+      }
+      reader.fail(*reader.find("locked"),
+                  fmt::format("layer.locked takes names of parameters that are set for one layer, "
+                              "and \"{}\" is none; known are {}",
+                              name, fmt::join(known, ", ")));
+    }
+    locked.push_back(parameter->id);
+  }
+  return locked;
+}
+
 LayerConfig read_layer(const std::string& path, const toml::table& table) {
   LayerConfig layer;
   TableReader reader(path, table, "layer");
@@ -209,6 +230,7 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
     if (!style->is_table()) reader.fail(*style, "layer.style takes a table");
     layer.style = read_style(path, *style->as_table());
   }
+  layer.locked = read_locked(reader);
   reader.refuse_unknown_keys();
   return layer;
 }

@@ -11,6 +11,7 @@
 #include "core/web_mercator.h"
 #include "render/colour.h"
 #include "render/make_renderer.h"
+#include "server/style_parameters.h"
 
 namespace trapeze {
 
@@ -27,6 +28,7 @@ struct LayerConfig {
   std::string attribution;
   std::string description;
   ConfiguredStyle style;
+  std::vector<ParameterId> locked;    // what requests cannot set for the layer
   std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
   int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;

@@ -10,6 +10,7 @@
 #include "core/features_at.h"
 #include "render/coverage.h"
 #include "server/json_text.h"
+#include "server/layer_style.h"
 #include "server/layer_summary.h"
 #include "server/tile_plan.h"
 #include "server/tile_request.h"
@@ -120,6 +121,19 @@ Json feature_json(const ServedLayer& served, std::uint32_t row) {
   return json;
 }
 
+/// The rows of the features that are found, or what is wrong with the style.
+OrProblem<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
+                                                const ServedLayer& served, std::size_t position) {
+  const auto style = layer_style(request.style, served, position);
+  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
+  auto rows = features_at(*served.layer, request.place, level_of(request, served.config.name));
+  const FeatureClassifier classifier(std::get<LayerStyle>(style).classing,
+                                     served.layer->features());
+  std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });
+  return rows;
+}
+
 }  // namespace
 
 OrProblem<Document> identify_document(const DocumentRequest& request) {
@@ -132,9 +146,9 @@ OrProblem<Document> identify_document(const DocumentRequest& request) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
     const ServedLayer& served = request.dataset.layers()[*position];
-    if (!is_drawn(identify, served.config)) continue;
-    for (const std::uint32_t row :
-         features_at(*served.layer, identify.place, level_of(identify, *name))) {
+    const auto rows = find_rows(identify, served, *position);
+    if (const auto* problem = std::get_if<Problem>(&rows)) return *problem;
+    for (const std::uint32_t row : std::get<0>(rows)) {
       if (++matched <= kMaxIdentified) features.push_back(feature_json(served, row));
     }
   }

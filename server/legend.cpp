@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "render/bitmap_text.h"
 #include "render/png.h"
@@ -19,44 +20,86 @@ constexpr std::string_view kJson = ".json";
 
 struct LegendEntry {
   std::string label;
-  Rgba fill;
+  ClassPaint paint;
 };
 
 struct LayerLegend {
   std::string name;
   std::string title;
+  double stroke_width = 0;
+  double opacity = 1;
   std::vector<LegendEntry> entries;
 };
 
-LayerLegend legend_of_layer(const ServedLayer& served, std::size_t position,
-                            const StyleQuery& query) {
-  const LayerStyle style = layer_style(query, served.config, position);
-  return {served.config.name, served.config.title, {{served.config.title, style.fill}}};
+std::string label_of_value(const std::optional<FilterLiteral>& value) {
+  if (!value) return "no value";
+  if (const auto* integer = std::get_if<std::int64_t>(&*value)) return fmt::format("{}", *integer);
+  if (const auto* real = std::get_if<double>(&*value)) return fmt::format("{}", *real);
+  return std::get<std::string>(*value);
+}
+
+std::string label_between(const std::vector<double>& breaks, std::size_t i) {
+  if (i == 0) return fmt::format("below {}", breaks.front());
+  if (i == breaks.size()) return fmt::format("{} and more", breaks.back());
+  return fmt::format("{} to {}", breaks[i - 1], breaks[i]);
+}
+
+/// By number of class, as LayerStyle::paints.
+std::vector<std::string> labels_of(const Classing& classing, const std::string& title) {
+  std::vector<std::string> labels;
+  for (const auto& value : classing.values) labels.push_back(label_of_value(value));
+  if (!classing.breaks.empty()) {
+    for (std::size_t i = 0; i <= classing.breaks.size(); ++i) {
+      labels.push_back(label_between(classing.breaks, i));
+    }
+  }
+  labels.push_back(labels.empty() ? title : "others");
+  if (!classing.highlighted_ids.empty()) labels.emplace_back("highlighted");
+  return labels;
+}
+
+LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) {
+  LayerLegend legend{config.name, config.title, style.stroke.width, style.opacity, {}};
+  const std::vector<std::string> labels = labels_of(style.classing, config.title);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    legend.entries.push_back({labels[i], style.paints[i]});
+  }
+  return legend;
 }
 
 OrProblem<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
                                               const DocumentRequest& request) {
-  const auto style = StyleQuery::parse(request.query, layers);
-  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  const auto query = StyleQuery::parse(request.query, layers);
+  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
   std::vector<LayerLegend> legend;
   for (auto name = layers.rbegin(); name != layers.rend(); ++name) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
-    legend.push_back(legend_of_layer(request.dataset.layers()[*position], *position,
-                                     std::get<StyleQuery>(style)));
+    const ServedLayer& served = request.dataset.layers()[*position];
+    const auto style = layer_style(std::get<StyleQuery>(query), served, *position);
+    if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+    legend.push_back(legend_of_layer(served.config, std::get<LayerStyle>(style)));
   }
   return legend;
+}
+
+Json entry_json(const LegendEntry& entry, const LayerLegend& layer) {
+  Json json = {{"label", entry.label},
+               {"fill", css_colour(entry.paint.fill)},
+               {"fill-opacity", entry.paint.fill.a / 255.0 * layer.opacity}};
+  if (layer.stroke_width > 0) {
+    json["stroke"] = css_colour(entry.paint.stroke);
+    json["stroke-opacity"] = entry.paint.stroke.a / 255.0 * layer.opacity;
+    json["stroke-width"] = layer.stroke_width;
+  }
+  return json;
 }
 
 std::string legend_json(const std::vector<LayerLegend>& legend) {
   Json layers = Json::array();
   for (const LayerLegend& layer : legend) {
     Json entries = Json::array();
-    for (const LegendEntry& entry : layer.entries) {
-      entries.push_back({{"label", entry.label},
-                         {"fill", css_colour(entry.fill)},
-                         {"fill-opacity", entry.fill.a / 255.0}});
-    }
+    for (const LegendEntry& entry : layer.entries) entries.push_back(entry_json(entry, layer));
     layers.push_back({{"name", layer.name}, {"title", layer.title}, {"entries", entries}});
   }
   return to_text({{"layers", layers}});
@@ -77,14 +120,15 @@ constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
 struct LegendRow {
   std::string_view label;
   const LegendEntry* entry = nullptr;  // null for a title
+  const LayerLegend* layer = nullptr;
 };
 
 std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
   std::vector<LegendRow> rows;
   for (const LayerLegend& layer : legend) {
     // The only entry of a layer is labelled with its title.
-    if (layer.entries.size() > 1) rows.push_back({layer.title, nullptr});
-    for (const LegendEntry& entry : layer.entries) rows.push_back({entry.label, &entry});
+    if (layer.entries.size() > 1) rows.push_back({layer.title, nullptr, &layer});
+    for (const LegendEntry& entry : layer.entries) rows.push_back({entry.label, &entry, &layer});
   }
   return rows;
 }
@@ -107,13 +151,17 @@ void fill_box(Picture& picture, int left, int top, int width, int height, Rgba c
   }
 }
 
-void draw_swatch(const LegendEntry& entry, int top, int scale, Picture& picture) {
+void draw_swatch(const LegendRow& row, int top, int scale, Picture& picture) {
   const int left = kMargin * scale;
   const int width = kSwatchWidth * scale;
   const int height = kSwatchHeight * scale;
-  fill_box(picture, left, top, width, height, kFrame);
+  const ClassPaint& paint = row.entry->paint;
+  const bool is_outlined = row.layer->stroke_width > 0;
+  const double opacity = row.layer->opacity;
+  fill_box(picture, left, top, width, height,
+           is_outlined ? over_paper(with_opacity(paint.stroke, opacity)) : kFrame);
   fill_box(picture, left + scale, top + scale, width - 2 * scale, height - 2 * scale,
-           over_paper(entry.fill));
+           over_paper(with_opacity(paint.fill, opacity)));
 }
 
 Picture draw_legend(const std::vector<LayerLegend>& legend, int scale) {
@@ -131,7 +179,7 @@ Picture draw_legend(const std::vector<LayerLegend>& legend, int scale) {
   int top = kMargin * scale;
   for (const LegendRow& row : rows) {
     if (row.entry != nullptr) {
-      draw_swatch(*row.entry, top + (kRowHeight - kSwatchHeight) / 2 * scale, scale, picture);
+      draw_swatch(row, top + (kRowHeight - kSwatchHeight) / 2 * scale, scale, picture);
     }
     draw_text(row.label, left_of_label(row) * scale, top + (kRowHeight - kTextAscent) / 2 * scale,
               scale, kInk, picture);

@@ -11,6 +11,7 @@
 
 #include "server/build_id.h"
 #include "server/commands.h"
+#include "server/parameter_table.h"
 
 namespace {
 
@@ -197,6 +198,11 @@ void add_bench(CLI::App& app, std::string& name) {
       ->required();
 }
 
+/// For those who edit the README: not in the help.
+void add_parameters(CLI::App& app) {
+  app.add_subcommand("parameters", "Print the table of query parameters as Markdown")->group("");
+}
+
 int run(int argc, char** argv) {
   if (const auto benchmark = bench_arguments(argc, argv)) return trapeze::run_bench(*benchmark);
   CLI::App app(kDescription, "trapeze");
@@ -217,6 +223,7 @@ int run(int argc, char** argv) {
   add_export(app, to_export);
   add_render(app, render);
   add_bench(app, bench);
+  add_parameters(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -228,6 +235,10 @@ int run(int argc, char** argv) {
   }
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
   if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
+  if (app.got_subcommand("parameters")) {
+    std::cout << trapeze::parameter_table();
+    return 0;
+  }
   if (app.got_subcommand("check")) return trapeze::run_check(check);
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);

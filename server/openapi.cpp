@@ -25,17 +25,35 @@ Json words_json(std::string_view words) {
   return list;
 }
 
+Json list_schema(Json items, std::size_t max_items) {
+  return {{"type", "array"}, {"items", std::move(items)}, {"maxItems", max_items}};
+}
+
+Json number_schema(const StyleParameter& parameter) {
+  return {{"type", "number"}, {"minimum", parameter.min}, {"maximum", parameter.max}};
+}
+
 Json schema_of(const StyleParameter& parameter) {
   switch (parameter.type) {
-    case ParameterType::colour:
-      return {{"type", "string"}};
     case ParameterType::number:
-      return {{"type", "number"}, {"minimum", parameter.min}, {"maximum", parameter.max}};
+      return number_schema(parameter);
+    case ParameterType::numbers:
+    case ParameterType::ascending:
+      return list_schema(number_schema(parameter), parameter.max_items);
     case ParameterType::word:
       return {{"type", "string"}, {"enum", words_json(parameter.words)}};
     case ParameterType::words:
-      return {{"type", "array"},
-              {"items", {{"type", "string"}, {"enum", words_json(parameter.words)}}}};
+      return list_schema({{"type", "string"}, {"enum", words_json(parameter.words)}},
+                         words_json(parameter.words).size());
+    case ParameterType::ids:
+      return list_schema({{"type", "integer"}, {"format", "int64"}}, parameter.max_items);
+    case ParameterType::filter:
+      return {{"type", "string"}, {"maxLength", kMaxFilterLength}};
+    case ParameterType::colour:
+    case ParameterType::name:
+    case ParameterType::ramp:
+    case ParameterType::classes:
+      return {{"type", "string"}};
   }
   return Json::object();
 }
@@ -46,11 +64,13 @@ Json parameter_json(const StyleParameter& parameter) {
   if (parameter.is_per_layer) {
     description += fmt::format(" Of several layers, LAYER.{} sets it for one.", parameter.name);
   }
+  Json schema = schema_of(parameter);
+  const bool is_list = schema["type"] == "array";
   Json json = {{"name", parameter.name},
                {"in", "query"},
                {"description", description},
-               {"schema", schema_of(parameter)}};
-  if (parameter.type == ParameterType::words) {
+               {"schema", std::move(schema)}};
+  if (is_list) {
     json["style"] = "form";
     json["explode"] = false;
   }

@@ -85,9 +85,12 @@ OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const 
   for (const std::string& name : request.layers) {
     const auto layer = dataset->find(name);
     if (!layer) return unknown_layer(name, *dataset);
-    const LayerConfig& config = dataset->layers()[*layer].config;
+    const ServedLayer& served = dataset->layers()[*layer];
+    const auto style = layer_style(request.style, served, *layer);
+    if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+    const LayerConfig& config = served.config;
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
-    const Rgba fill = layer_style(request.style, config, *layer).fill;
+    const Rgba fill = std::get<LayerStyle>(style).paint_of_others().fill;
     if (fill.a == 0 && !plan.debug.any()) continue;
     plan.layers.push_back({*layer, fill, level_of_layer(request, name),
                            topology_of_layer(request.style, name),

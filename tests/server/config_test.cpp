@@ -160,6 +160,10 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
        ":4:26: ", "a number from 0 to 1"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nstyle = { fil = \"red\" }",
        ":4:11: ", "unknown key layer.style.fil"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"fil\"]",
+       ":4:10: ", "\"fil\" is none; known are breaks, classes"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"background\"]",
+       ":4:10: ", "\"background\" is none"},
       {"[server\n", ":1:", ""},
   };
   for (const BadConfig& config : bad) {

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <random>
+
 namespace trapeze {
 namespace {
 
@@ -135,6 +138,107 @@ TEST(StyleParametersTest, WrongGeneralizationsAreProblemsThatSayWhatIsAllowed) {
         << value;
   }
   EXPECT_EQ(problem_of("simplify=1&simplify=1").takes, "a number from 0 to 64, once");
+}
+
+/// With the parameters that nothing draws yet.
+OrProblem<StyleQuery> parse_all(std::string_view query) {
+  return StyleQuery::parse(decode_query(query).value(), kLayers, ParameterSet::all);
+}
+
+std::string canonical_of_all(std::string_view query) {
+  const auto parsed = parse_all(query);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return "problem: " + problem->detail;
+  return std::get<StyleQuery>(parsed).canonical_text();
+}
+
+TEST(StyleParametersTest, WhatNothingDrawsYetIsNotServed) {
+  for (const StyleParameter& parameter : all_style_parameters()) {
+    const bool is_served = std::ranges::find(style_parameters(), parameter.id,
+                                             &StyleParameter::id) != style_parameters().end();
+    EXPECT_EQ(is_served, parameter.is_drawn) << parameter.name;
+    EXPECT_EQ(find_style_parameter(parameter.name)->id, parameter.id);
+  }
+}
+
+TEST(StyleParametersTest, ListsHaveOneText) {
+  EXPECT_EQ(canonical_of_all("ids=3,1,2,1&highlight=-5"), "highlight=-5&ids=1%2C2%2C3");
+  EXPECT_EQ(canonical_of_all("breaks=1.0,2e0,3.50"), "breaks=1%2C2%2C3.5");
+  EXPECT_EQ(canonical_of_all("ramp=YLORRD-r"), "ramp=YlOrRd-r");
+  EXPECT_EQ(canonical_of_all("stroke-dasharray=4,2.0"), "stroke-dasharray=4%2C2");
+  EXPECT_EQ(canonical_of_all("classes='a':red,*:rgb(0,0,255),'null':lime,null:fff"),
+            canonical_of_all("classes=a:f00,*:blue,'null':00ff00,null:white"));
+  EXPECT_EQ(canonical_of_all("filter=a=1 and b=2"), canonical_of_all("filter=(b = 2)AND(a=1)"));
+}
+
+TEST(StyleParametersTest, EveryCanonicalTextReadsBackAsItself) {
+  for (const char* query :
+       {"ids=1,2&highlight=9223372036854775807", "breaks=-1e300,0.1,5&ramp=Set3",
+        "classes='it''s, a:b':red,plain:blue,'':lime,*:000,null:fff&color-by=a b",
+        "filter=\"a b\" LIKE '%25x' OR c IS NULL", "roads.pattern=dots&roads.pattern-angle=-360",
+        "lakes.stroke=red&stroke-dasharray=0,1&stroke-width=32&opacity=0.3"}) {
+    const std::string text = canonical_of_all(query);
+    EXPECT_EQ(canonical_of_all(text), text) << query;
+    EXPECT_THAT(text, ::testing::Not(::testing::StartsWith("problem"))) << query;
+  }
+}
+
+TEST(StyleParametersTest, WrongListsAreProblemsThatSayWhatIsAllowed) {
+  const std::string many_ids = [] {
+    std::string text = "0";
+    for (int i = 1; i < 300; ++i) text += "," + std::to_string(i);
+    return text;
+  }();
+  const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
+      {"ids", {"", "a", "1,", ",1", "1.5", "1 ,2", "9223372036854775808", many_ids}},
+      {"breaks", {"", "1,1", "2,1", "1,nan", "1,inf", "1,,2", "x"}},
+      {"ramp", {"", "Blue", "Blues-x", "blues-r-r"}},
+      {"stroke-dasharray", {"", "0", "0,0", "-1,2", "1,2,3,4,5,6,7,8,9", "257"}},
+      {"stroke-width", {"-1", "33", "nan"}},
+      {"stroke-linejoin", {"", "Round", "arcs"}},
+      {"pattern", {"", "plaid"}},
+      {"pattern-size", {"1", "65"}},
+      {"classes",
+       {"", "a", "a:", ":red", "a:red,", "a:red,a:blue", "a:red;b:blue", "'a:red", "a:rgb(1,2",
+        "*:red,*:blue", "a:nocolour", "a:red,,b:blue"}},
+      {"color-by", {"", std::string(200, 'x')}},
+      {"filter", {"", "a", "a==1", "a=1)", "SELECT 1"}}};
+  for (const auto& [name, values] : wrong) {
+    for (const std::string& value : values) {
+      const auto parsed = parse_all(name + "=" + percent_encode(value));
+      ASSERT_EQ(parsed.index(), 1u) << name << "=" << value;
+      const auto& problem = std::get<Problem>(parsed);
+      EXPECT_EQ(problem.status, 400);
+      EXPECT_EQ(problem.parameter, name);
+      EXPECT_EQ(problem.takes, describe_values(*find_style_parameter(name)));
+    }
+  }
+}
+
+TEST(StyleParametersTest, WhateverIsAskedIsAStyleOrAProblem) {
+  const std::vector<std::string> values = {
+      "red",   "f00",    "1",     "0.5", "-1", "1,2,3", "3,2",        "a:red,*:blue", "Blues",
+      "a = 1", "nan",    "",      "*",   "'",  "hatch", "rgb(1,2,3)", "none",         "mesh,tile",
+      "\xff",  "null:1", "1e308", ",",   ":",  "fast",  "a LIKE '%'", "round",        "a:rgb(,b:1"};
+  std::mt19937 random(3);
+  const auto pick = [&random](std::size_t size) {
+    return std::uniform_int_distribution<std::size_t>(0, size - 1)(random);
+  };
+  int styles = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    std::vector<QueryPair> pairs;
+    for (std::size_t k = pick(5); k > 0; --k) {
+      const auto parameters = all_style_parameters();
+      std::string name(parameters[pick(parameters.size())].name);
+      if (pick(4) == 0) name = "roads." + name;
+      pairs.emplace_back(std::move(name), values[pick(values.size())]);
+    }
+    const auto parsed = StyleQuery::parse(pairs, kLayers, ParameterSet::all);
+    if (parsed.index() != 0) continue;
+    ++styles;
+    const std::string text = std::get<StyleQuery>(parsed).canonical_text();
+    ASSERT_EQ(canonical_of_all(text), text);
+  }
+  EXPECT_GT(styles, 10'000);
 }
 
 }  // namespace
