@@ -173,8 +173,8 @@ Coverage sample_coverage(int count) {
 void compose_layers(benchmark::State& state) {
   const Coverage lower = sample_coverage(100);
   const Coverage upper = sample_coverage(700);
-  const std::vector<FilledLayer> all{{&lower, {200, 30, 30, 255}}, {&upper, {30, 30, 200, 128}}};
-  const std::span<const FilledLayer> layers(all.data(), static_cast<std::size_t>(state.range(0)));
+  const std::vector<PaintedClass> all{{&lower, {200, 30, 30, 255}}, {&upper, {30, 30, 200, 128}}};
+  const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(0))));
   Composer composer;
   Picture picture;
   for (auto _ : state) {
@@ -187,8 +187,9 @@ BENCHMARK(compose_layers)->ArgName("layers")->Arg(1)->Arg(2)->Unit(benchmark::kM
 void encode(benchmark::State& state) {
   const Coverage coverage = sample_coverage(static_cast<int>(state.range(0)));
   const Coverage other = sample_coverage(33);
-  const std::vector<FilledLayer> all{{&coverage, {200, 30, 30, 255}}, {&other, {30, 30, 200, 128}}};
-  const std::span<const FilledLayer> layers(all.data(), static_cast<std::size_t>(state.range(1)));
+  const std::vector<PaintedClass> all{{&coverage, {200, 30, 30, 255}},
+                                      {&other, {30, 30, 200, 128}}};
+  const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(1))));
   Picture picture;
   Composer().compose(layers, 256, 256, kTransparent, picture);
   PngEncoder encoder;

@@ -90,8 +90,10 @@ void draw_all(const Subject& subject, CoverageRenderer& renderer, std::vector<St
 }
 
 void compose_one(Composer& composer, StagedTile& tile) {
-  const FilledLayer filled{&tile.coverage, kFill};
-  composer.compose({&filled, 1}, tile.view.width, tile.view.height, kTransparent, tile.picture);
+  const PaintedClass filled{&tile.coverage, kFill};
+  PaintedLayer layer;
+  layer.classes = {&filled, 1};
+  composer.compose({&layer, 1}, tile.view.width, tile.view.height, kTransparent, tile.picture);
 }
 
 /// Does the step for one tile after the other.

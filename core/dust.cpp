@@ -9,7 +9,6 @@ namespace trapeze {
 namespace {
 
 constexpr double kSmallestArea = 0.5;  // cells squared
-constexpr int kMaxMotesOfGrain = 256;
 
 std::uint64_t spread_bits(std::uint64_t v) {
   v = (v | v << 16) & 0x0000ffff0000ffffull;
@@ -27,22 +26,6 @@ std::uint64_t morton(double x, double y) {
         std::clamp(std::floor(v) - kGridMin, 0.0, static_cast<double>(kGridSize)));
   };
   return spread_bits(biased(x)) | spread_bits(biased(y)) << 1;
-}
-
-/// A grain is laid out along its segment, a mote a pixel.
-void lay_out(const Grain& grain, std::vector<Mote>& motes) {
-  const double dx = static_cast<double>(grain.to.x) - grain.from.x;
-  const double dy = static_cast<double>(grain.to.y) - grain.from.y;
-  const double pixels = std::hypot(dx, dy) / pixel_of_level(grain.born);
-  const int count = std::clamp(static_cast<int>(std::ceil(pixels)), 1, kMaxMotesOfGrain);
-  for (int i = 0; i < count; ++i) {
-    const double along = (i + 0.5) / count;
-    motes.push_back({grain.from.x + along * dx,
-                     grain.from.y + along * dy,
-                     grain.area / count,
-                     {grain.born, kNeverDies},
-                     false});
-  }
 }
 
 Mote merged(const std::vector<Mote>& motes, Level level) {
@@ -65,7 +48,12 @@ class Settling {
  public:
   explicit Settling(const std::vector<Grain>& grains) {
     std::vector<Mote> motes;
-    for (const Grain& grain : grains) lay_out(grain, motes);
+    for (const Grain& grain : grains) {
+      lay_out(grain.from, grain.to, grain.area, pixel_of_level(grain.born),
+              [&](double x, double y, double area) {
+                motes.push_back({x, y, area, {grain.born, kNeverDies}, false});
+              });
+    }
     std::erase_if(motes, [](const Mote& m) { return m.area == 0; });
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     for (std::size_t i = 0; i < motes.size(); ++i) {
@@ -148,6 +136,17 @@ class Settling {
 
 double pixel_of_level(Level level) {
   return 4 * epsilon_of_level(level);
+}
+
+Box box_of_mote(double x, double y, double area) {
+  const double width = std::max(1.0, std::round(std::sqrt(area)));
+  const double height = std::max(1.0, std::round(area / width));
+  const auto cell = [](double v) {
+    return static_cast<std::int32_t>(std::clamp(std::round(v), double{kGridMin}, double{kGridMax}));
+  };
+  const std::int32_t min_x = cell(x - width / 2);
+  const std::int32_t min_y = cell(y - height / 2);
+  return {min_x, min_y, cell(min_x + width), cell(min_y + height)};
 }
 
 std::vector<Mote> settle(const std::vector<Grain>& grains) {

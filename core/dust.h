@@ -8,6 +8,8 @@
 // negative area.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/grid.h"
@@ -26,6 +28,24 @@ struct Mote {
 
 /// The side of a pixel, in cells, whose default tolerance is that of the level.
 double pixel_of_level(Level level);
+
+/// Calls visit(x, y, area) for the motes of a loop of that area, laid out along the segment that
+/// was left of it: one a pixel of so many cells.
+template <typename Visit>
+void lay_out(Point from, Point to, double area, double pixel, const Visit& visit) {
+  constexpr int kMaxMotes = 256;
+  const double dx = static_cast<double>(to.x) - from.x;
+  const double dy = static_cast<double>(to.y) - from.y;
+  const int count =
+      std::clamp(static_cast<int>(std::ceil(std::hypot(dx, dy) / pixel)), 1, kMaxMotes);
+  for (int i = 0; i < count; ++i) {
+    const double along = (i + 0.5) / count;
+    visit(from.x + along * dx, from.y + along * dy, area / count);
+  }
+}
+
+/// The square of a mote, or what comes near it in whole cells. `area` is positive.
+Box box_of_mote(double x, double y, double area);
 
 /// The motes of all levels. The sum of the areas alive at a level is that of the grains born by
 /// then, but for motes too small to matter (less than half a cell squared).

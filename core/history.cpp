@@ -7,12 +7,31 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNoVersion = 0xffffffff;
+constexpr std::uint32_t kLevelBit = 0x80000000;
 
 /// Equal but perhaps for another of two level vertices at the top or the bottom.
 bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
   const auto y = [&history](std::uint32_t vertex) { return history.vertices[vertex].y; };
   return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) &&
          y(a.bottom) == y(b.bottom);
+}
+
+bool has_height(const History& history, const MeshTrapezoid& t) {
+  return history.vertices[t.top].y != history.vertices[t.bottom].y;
+}
+
+/// The side of a trapezoid without height that is as level as it is, if there is one.
+std::optional<std::uint32_t> level_edge_of(const History& history, const MeshTrapezoid& t) {
+  for (const std::uint32_t side : {t.left, t.right}) {
+    const MeshEdge& edge = history.edges[side];
+    if (history.vertices[edge.upper].y == history.vertices[edge.lower].y) return side;
+  }
+  return std::nullopt;
+}
+
+Lifespan& lifespan_of(History& history, std::uint32_t version) {
+  return (version & kLevelBit) == 0 ? history.lifespans[version]
+                                    : history.level_edges[version ^ kLevelBit].lifespan;
 }
 
 /// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
@@ -167,26 +186,40 @@ void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
 void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
   const Node& node = graph.node(n);
   std::uint32_t& version = node_version_[n];
-  if (!node.is_alive() || graph.face(node) == kOutside) {
-    if (version != kNoVersion) history_->lifespans[version].dies = level;
-    version = kNoVersion;
-    return;
-  }
-  const MeshTrapezoid now{vertex_base_ + node.end[kUp].value - 1,
-                          vertex_base_ + node.end[kDown].value - 1, edge_version_[node.edge[kLeft]],
-                          edge_version_[node.edge[kRight]]};
+  const bool is_inside = node.is_alive() && graph.face(node) != kOutside;
+  const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
   if (version != kNoVersion) {
-    if (covers_the_same(*history_, history_->trapezoids[version], now)) return;
-    history_->lifespans[version].dies = level;
+    if (is_inside && is_open(version, now)) return;
+    lifespan_of(*history_, version).dies = level;
   }
-  // A trapezoid between level vertices has no area and is never drawn.
-  if (history_->vertices[now.top].y == history_->vertices[now.bottom].y) {
-    version = kNoVersion;
-    return;
+  version = is_inside ? open_node(now, level) : kNoVersion;
+}
+
+MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
+  return {vertex_base_ + node.end[kUp].value - 1, vertex_base_ + node.end[kDown].value - 1,
+          edge_version_[node.edge[kLeft]], edge_version_[node.edge[kRight]]};
+}
+
+bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid) const {
+  if ((version & kLevelBit) == 0) {
+    return covers_the_same(*history_, history_->trapezoids[version], trapezoid);
   }
-  version = static_cast<std::uint32_t>(history_->trapezoids.size());
-  history_->trapezoids.push_back(now);
-  history_->lifespans.push_back({level, kNeverDies});
+  const LevelEdge& open = history_->level_edges[version ^ kLevelBit];
+  return !has_height(*history_, trapezoid) && level_edge_of(*history_, trapezoid) == open.edge;
+}
+
+// A trapezoid between level vertices has no area and is never drawn; but the edge along it may be.
+std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, Level level) {
+  const Lifespan lifespan{level, kNeverDies};
+  if (has_height(*history_, trapezoid)) {
+    history_->trapezoids.push_back(trapezoid);
+    history_->lifespans.push_back(lifespan);
+    return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
+  }
+  const std::optional<std::uint32_t> edge = level_edge_of(*history_, trapezoid);
+  if (!edge) return kNoVersion;
+  history_->level_edges.push_back({*edge, lifespan});
+  return static_cast<std::uint32_t>(history_->level_edges.size() - 1) | kLevelBit;
 }
 
 }  // namespace trapeze

@@ -27,12 +27,20 @@ struct Grain {
   Level born = 0;   // the first level that does without the loop
 };
 
+/// A version of an edge whose ends are level, and when it is part of the boundary. The trapezoid
+/// along it has no height and is not stored, so that nothing else tells of it.
+struct LevelEdge {
+  std::uint32_t edge = 0;
+  Lifespan lifespan;
+};
+
 /// Versions of many graphs, one after another; indices are relative to the beginning of the arrays.
 struct History {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;  // by trapezoid
+  std::vector<LevelEdge> level_edges;
   std::vector<Grain> grains;
 };
 
@@ -54,13 +62,17 @@ class HistoryRecorder {
   void end_level(const TrapezoidalGraph& graph, Level level);
   void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
   void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
+  MeshTrapezoid trapezoid_of(const Node& node) const;
+  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid) const;
+  std::uint32_t open_node(const MeshTrapezoid& trapezoid, Level level);
   void open_edge(const TrapezoidalGraph& graph, EdgeId e);
   void touch(NodeId n);
 
   History* history_ = nullptr;
   std::uint32_t vertex_base_ = 0;
   PriorityStack stack_;
-  // The version that is open at present, by edge and by node; kNoVersion if there is none.
+  // The version that is open at present, by edge and by node; kNoVersion if there is none. That of
+  // a node without height is a level edge, flagged with kLevelBit, if it has one.
   Table<EdgeId, std::uint32_t> edge_version_;
   Table<NodeId, std::uint32_t> node_version_;
   // Touched since the last level.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/feature_table.h"
+#include "core/grains.h"
 #include "core/grid.h"
 #include "core/rings.h"
 #include "core/tolerance.h"
@@ -58,6 +59,15 @@ class Layer {
   /// that stands for holes, left and right edge have changed places: its area is negative.
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
+  /// Replaces `ranges` by what stands for the level edges of the boundary at the level that may
+  /// touch the box: trapezoids without height, whose left and right side are the edge. All other
+  /// edges of the boundary are sides of trapezoids that select() names.
+  void select_level_edges(const Box& box, Level level, std::vector<TrapezoidRange>& ranges) const;
+
+  /// What small polygons and holes left behind, feature by feature: the same dust as select()
+  /// names, before any of it is taken together.
+  const GrainIndex& grains() const;
+
   /// True only if the ranges that were selected cover the selection's box wholly, so that nothing
   /// need be drawn to know it; may be false though they do.
   bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
@@ -74,7 +84,8 @@ class Layer {
   /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
   void append_outline(std::uint32_t row, Rings& rings) const;
 
-  /// The row, in features(), of the polygon that a trapezoid is a part of; kNoFeature for dust.
+  /// The row, in features(), of the polygon that a trapezoid, or a level edge, is a part of;
+  /// kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 
   /// Figures for reports: vertices at full detail, and versions of trapezoids and of edges, dust

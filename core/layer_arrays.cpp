@@ -77,6 +77,12 @@ void check_features(const LayerArrays& a) {
   require(a.feature_of.size() <= a.trapezoids.size(), "there is dust that has a feature");
   require(all_of(a.feature_of, [rows](std::uint32_t row) { return row < rows; }),
           "the feature of a trapezoid is not there");
+  require(all_of(a.grains,
+                 [rows](const FeatureGrain& grain) {
+                   return grain.row < rows && grain.born <= kLastLevel && is_on_grid(grain.from) &&
+                          is_on_grid(grain.to);
+                 }),
+          "a grain of dust has no feature or no place");
   require(a.outline_ends.size() <= rows, "there are outlines without a feature");
   require(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
   require(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
@@ -85,7 +91,8 @@ void check_features(const LayerArrays& a) {
 
 void check_sums(const LayerArrays& a) {
   require(a.single_motes <= a.trapezoids.size() - a.feature_of.size(), "there is too much dust");
-  require(a.size.trapezoids == a.feature_of.size() &&
+  require(a.level_edges <= a.feature_of.size() &&
+              a.size.trapezoids == a.feature_of.size() - a.level_edges &&
               a.size.motes == a.trapezoids.size() - a.feature_of.size(),
           "the sums are not those of the trapezoids");
   const Box& box = a.bounds;
@@ -116,11 +123,14 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.polygon_index = c.polygon_index.entries();
   arrays.mote_index = c.mote_index.entries();
   arrays.merged_mote_index = c.merged_mote_index.entries();
+  arrays.level_edge_index = c.level_edge_index.entries();
+  arrays.grains = c.grains.grains();
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
   arrays.cells = c.features.cells();
   arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
+  arrays.level_edges = c.level_edge_index.range().count;
   arrays.single_motes = c.mote_index.range().count;
   arrays.size = c.size;
   arrays.bounds = c.bounds;
@@ -142,12 +152,15 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   look_at(arrays.outline_points, layer->outline_points);
   look_at(arrays.ring_ends, layer->ring_ends);
   look_at(arrays.outline_ends, layer->outline_ends);
-  const std::size_t polygons = arrays.feature_of.size();
-  const std::size_t singles = polygons + arrays.single_motes;
+  const std::size_t level_edges = arrays.feature_of.size();
+  const std::size_t polygons = level_edges - arrays.level_edges;
+  const std::size_t singles = level_edges + arrays.single_motes;
   layer->polygon_index = MeshIndex(between(0, polygons), arrays.polygon_index);
-  layer->mote_index = MeshIndex(between(polygons, singles), arrays.mote_index);
+  layer->level_edge_index = MeshIndex(between(polygons, level_edges), arrays.level_edge_index);
+  layer->mote_index = MeshIndex(between(level_edges, singles), arrays.mote_index);
   layer->merged_mote_index =
       MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index);
+  layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));
   layer->features = FeatureTable(arrays.fields, arrays.cells);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->size = arrays.size;

@@ -18,18 +18,22 @@ namespace trapeze {
 struct LayerArrays {
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
-  std::span<const MeshTrapezoid> trapezoids;  // of polygons, of single motes, of merged ones
+  // Of polygons, for level edges, of single motes, of merged ones.
+  std::span<const MeshTrapezoid> trapezoids;
   std::span<const Lifespan> lifespans;
-  std::span<const std::uint32_t> feature_of;  // as long as there are trapezoids of polygons
+  std::span<const std::uint32_t> feature_of;  // of those of polygons and for level edges
   std::span<const MeshIndex::Entry> polygon_index;
+  std::span<const MeshIndex::Entry> level_edge_index;
   std::span<const MeshIndex::Entry> mote_index;
   std::span<const MeshIndex::Entry> merged_mote_index;
+  std::span<const FeatureGrain> grains;
   std::span<const Point> outline_points;
   std::span<const std::uint32_t> ring_ends;
   std::span<const std::uint32_t> outline_ends;
   FeatureTable::Cells cells;
 
   std::vector<Field> fields;
+  std::uint64_t level_edges = 0;
   std::uint64_t single_motes = 0;
   Layer::Size size;
   Box bounds;

@@ -13,6 +13,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffff;
+constexpr double kMostDoubledArea = 9e18;  // what 64 bits hold
 
 /// What one builder holds: the histories of its features one after another.
 struct Stock {
@@ -21,6 +22,7 @@ struct Stock {
     std::size_t vertices;  // where its arrays begin
     std::size_t edges;
     std::size_t trapezoids;
+    std::size_t level_edges;
     std::size_t grains;
     std::size_t rings;
   };
@@ -53,6 +55,16 @@ std::span<const T> part_of(const std::vector<T>& all, const Stock& stock, std::s
   return std::span<const T>(all).subspan(from, to - from);
 }
 
+struct FeatureLevelEdge {
+  LevelEdge level_edge;
+  std::uint32_t row = 0;
+};
+
+FeatureGrain with_feature(const Grain& grain, std::uint32_t row) {
+  const double doubled = std::clamp(2 * grain.area, -kMostDoubledArea, kMostDoubledArea);
+  return {grain.from, grain.to, std::llround(doubled), row, grain.born};
+}
+
 /// The arrays of a layer while they grow.
 struct GrowingLayer {
   std::vector<Point> vertices;
@@ -60,13 +72,15 @@ struct GrowingLayer {
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
+  std::vector<FeatureLevelEdge> level_edges;
+  std::vector<Grain> grains;
+  std::vector<FeatureGrain> feature_grains;
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
 };
 
-/// Lays the histories one after another; returns their grains.
-std::vector<Grain> concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
-  std::vector<Grain> all_grains;
+/// Lays the histories one after another.
+void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
   for (const auto& [stock, p] : parts) {
     const History& history = stock->history;
     // From indices of the stock to indices of the layer; wraps around where that is negative.
@@ -86,8 +100,16 @@ std::vector<Grain> concatenate(const std::vector<PartOf>& parts, GrowingLayer& l
     }
     const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
-    const auto grains = part_of(history.grains, *stock, p, &Stock::Part::grains);
-    all_grains.insert(all_grains.end(), grains.begin(), grains.end());
+    const std::uint32_t row = stock->parts[p].row;
+    for (LevelEdge level_edge :
+         part_of(history.level_edges, *stock, p, &Stock::Part::level_edges)) {
+      level_edge.edge += edge_shift;
+      layer.level_edges.push_back({level_edge, row});
+    }
+    for (const Grain& grain : part_of(history.grains, *stock, p, &Stock::Part::grains)) {
+      layer.grains.push_back(grain);
+      layer.feature_grains.push_back(with_feature(grain, row));
+    }
     layer.outline_ends.resize(stock->parts[p].row,
                               static_cast<std::uint32_t>(layer.outlines.size()));
     const std::size_t rings_end =
@@ -96,7 +118,6 @@ std::vector<Grain> concatenate(const std::vector<PartOf>& parts, GrowingLayer& l
       layer.outlines.add(stock->outlines[r]);
     layer.outline_ends.push_back(static_cast<std::uint32_t>(layer.outlines.size()));
   }
-  return all_grains;
 }
 
 template <class T>
@@ -124,6 +145,27 @@ void order_trapezoids(GrowingLayer& layer) {
   permute(layer.trapezoids, order);
   permute(layer.lifespans, order);
   permute(layer.feature_of, order);
+}
+
+/// A level edge stands behind the trapezoids as one without height, between the edge and itself.
+void append_level_edges(GrowingLayer& layer) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+  for (std::size_t i = 0; i < layer.level_edges.size(); ++i) {
+    const LevelEdge& level_edge = layer.level_edges[i].level_edge;
+    const MeshEdge& edge = layer.edges[level_edge.edge];
+    Box box;
+    box.include(layer.vertices[edge.upper]);
+    box.include(layer.vertices[edge.lower]);
+    keys.emplace_back(order_key(box, level_edge.lifespan), static_cast<std::uint32_t>(i));
+  }
+  std::sort(keys.begin(), keys.end());
+  for (const auto& [key, i] : keys) {
+    const auto& [level_edge, row] = layer.level_edges[i];
+    const MeshEdge& edge = layer.edges[level_edge.edge];
+    layer.trapezoids.push_back({edge.upper, edge.lower, level_edge.edge, level_edge.edge});
+    layer.lifespans.push_back(level_edge.lifespan);
+    layer.feature_of.push_back(row);
+  }
 }
 
 /// Numbers edges and vertices anew in the order in which the trapezoids use them, so that what is
@@ -170,17 +212,8 @@ void order_edges_and_vertices(GrowingLayer& layer) {
 
 /// The square of a mote as a trapezoid; one of negative area has its edges changed round.
 void append_mote(const Mote& mote, GrowingLayer& layer) {
-  const double area = std::abs(mote.area);
-  const double width = std::max(1.0, std::round(std::sqrt(area)));
-  const double height = std::max(1.0, std::round(area / width));
-  const auto cell = [](double v) {
-    return static_cast<std::int32_t>(std::clamp(std::round(v), double{kGridMin}, double{kGridMax}));
-  };
-  const std::int32_t x0 = cell(mote.x - width / 2);
-  const std::int32_t y0 = cell(mote.y - height / 2);
-  const std::int32_t x1 = cell(x0 + width);
-  const std::int32_t y1 = cell(y0 + height);
-  append_box({x0, y0, x1, y1}, layer.vertices, layer.edges, layer.trapezoids);
+  append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), layer.vertices, layer.edges,
+             layer.trapezoids);
   if (mote.area < 0) std::swap(layer.trapezoids.back().left, layer.trapezoids.back().right);
   layer.lifespans.push_back(mote.lifespan);
 }
@@ -244,8 +277,8 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   if (!outcome.built) return outcome;
   Stock& stock = state_->stock;
   stock.parts.push_back({row, stock.history.vertices.size(), stock.history.edges.size(),
-                         stock.history.trapezoids.size(), stock.history.grains.size(),
-                         stock.outlines.size()});
+                         stock.history.trapezoids.size(), stock.history.level_edges.size(),
+                         stock.history.grains.size(), stock.outlines.size()});
   const Rings outline = rings_of(state_->graph);
   for (std::size_t r = 0; r < outline.size(); ++r) stock.outlines.add(outline[r]);
   state_->recorder.record(state_->graph, state_->options, stock.history);
@@ -260,17 +293,21 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   stocks.reserve(builders.size());
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
   GrowingLayer arrays;
-  const std::vector<Grain> grains = concatenate(in_order_of_rows(stocks), arrays);
+  concatenate(in_order_of_rows(stocks), arrays);
   for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);
 
   order_trapezoids(arrays);
+  const auto polygons = static_cast<std::uint32_t>(arrays.trapezoids.size());
+  append_level_edges(arrays);
+  const auto level_edges = static_cast<std::uint32_t>(arrays.trapezoids.size());
   order_edges_and_vertices(arrays);
   for (const Point p : arrays.vertices) layer->bounds.include(p);
-  const auto polygons = static_cast<std::uint32_t>(arrays.trapezoids.size());
-  layer->size = {arrays.vertices.size(), arrays.trapezoids.size(), arrays.edges.size(), 0};
-  const std::uint32_t motes = append_dust(settle(grains), arrays);
+  layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
+  const std::uint32_t motes = append_dust(settle(arrays.grains), arrays);
   const auto all = static_cast<std::uint32_t>(arrays.trapezoids.size());
-  layer->size.motes = all - polygons;
+  layer->size.motes = all - level_edges;
+  sort_for_index(arrays.feature_grains);
+  arrays.feature_grains.shrink_to_fit();
 
   move_arrays(arrays, *layer);
   layer->features = std::move(features);
@@ -279,8 +316,10 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
     return MeshIndex(layer->view, {from, to - from}, layer->lifespans);
   };
   layer->polygon_index = index(0, polygons);
-  layer->mote_index = index(polygons, polygons + motes);
-  layer->merged_mote_index = index(polygons + motes, all);
+  layer->level_edge_index = index(polygons, level_edges);
+  layer->mote_index = index(level_edges, level_edges + motes);
+  layer->merged_mote_index = index(level_edges + motes, all);
+  layer->grains = GrainIndex(std::move(arrays.feature_grains));
   return std::make_unique<Layer>(std::move(layer));
 }
 

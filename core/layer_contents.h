@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/adaptable_graph.h"
+#include "core/grains.h"
 #include "core/layer.h"
 #include "core/mesh_index.h"
 #include "core/stored_array.h"
@@ -19,10 +20,13 @@ struct Layer::Contents {
   StoredArray<Lifespan> lifespans;        // by trapezoid
   StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // looks at the arrays above
-  // Trapezoids of polygons come first, then those of single motes, then those of merged ones.
+  // Trapezoids of polygons come first, then those that stand for level edges, then those of single
+  // motes, then those of merged ones.
   MeshIndex polygon_index;
+  MeshIndex level_edge_index;
   MeshIndex mote_index;
   MeshIndex merged_mote_index;
+  GrainIndex grains;
   Size size;
   GeneralizationOptions options;
   // The rings of all features, in order of rows, as in Rings.

@@ -20,6 +20,9 @@ struct Paint {
   float g = 0;
   float b = 0;
   float a = 0;
+  // Within a layer only: how much of the pixel its classes cover, and how many there are.
+  float covered = 0;
+  float classes = 0;
 };
 
 Paint to_paint(Rgba colour, float coverage) {
@@ -29,10 +32,42 @@ Paint to_paint(Rgba colour, float coverage) {
           static_cast<float>(colour.b) * scale, a};
 }
 
+// `above` times a factor, and `below` times a factor.
+Paint mixed(const Paint& above, float of_above, const Paint& below, float of_below) {
+  return {above.r * of_above + below.r * of_below,
+          above.g * of_above + below.g * of_below,
+          above.b * of_above + below.b * of_below,
+          above.a * of_above + below.a * of_below,
+          below.covered,
+          below.classes};
+}
+
 Paint over(const Paint& above, const Paint& below) {
-  const float through = 1.0f - above.a;
-  return {above.r + below.r * through, above.g + below.g * through, above.b + below.b * through,
-          above.a + below.a * through};
+  return mixed(above, 1, below, 1.0f - above.a);
+}
+
+Paint beside(const Paint& one, float coverage, const Paint& other) {
+  Paint sum = mixed(one, 1, other, 1);
+  sum.covered += coverage;
+  sum.classes += 1;
+  return sum;
+}
+
+// A pattern's paint, wherever the classes below it are.
+Paint within(const Paint& above, const Paint& below) {
+  return mixed(above, below.covered, below, 1.0f - above.a);
+}
+
+// Where classes overlap, each has its share. And where they join, each level was rounded; the pixel
+// is wholly covered all the same.
+Paint settled(const Paint& sum) {
+  constexpr float kHalfLevel = 0.5f / 255;
+  const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfLevel * sum.classes;
+  if (!is_whole && sum.covered <= 1) return sum;
+  const float share = 1 / sum.covered;
+  Paint paint = mixed(sum, share, {}, 0);
+  paint.covered = 1;
+  return paint;
 }
 
 std::uint8_t to_byte(float share) {
@@ -46,13 +81,17 @@ Rgba to_rgba(const Paint& paint) {
   return {to_byte(paint.r * scale), to_byte(paint.g * scale), to_byte(paint.b * scale), a};
 }
 
-// The paint of one layer at every level of coverage.
-std::array<Paint, kLevels> paints_of(Rgba fill) {
+// The paint of one class at every level of coverage.
+std::array<Paint, kLevels> paints_of(Rgba colour, float opacity = 1) {
   std::array<Paint, kLevels> paints;
   for (std::size_t level = 0; level < kLevels; ++level) {
-    paints[level] = to_paint(fill, static_cast<float>(level) / 255.0f);
+    paints[level] = to_paint(colour, static_cast<float>(level) / 255.0f * opacity);
   }
   return paints;
+}
+
+float share_of(std::uint8_t level) {
+  return static_cast<float>(level) / 255.0f;
 }
 
 std::uint32_t to_bits(Rgba colour) {
@@ -139,24 +178,62 @@ class Composer::Canvas {
     pixels_.resize(blocks_.size() * kBlock);
   }
 
-  void paint_all(Rgba fill) {
-    const Paint paint = to_paint(fill, 1);
-    for (Paint& mixture : mixtures_) mixture = over(paint, mixture);
-  }
-
-  void paint(const Coverage& coverage, Rgba fill) {
-    const std::array<Paint, kLevels> paints = paints_of(fill);
+  /// Changes every pixel, by mix(mixture, level). Nothing is changed where the level is 0.
+  template <typename Mix>
+  void paint(const Coverage* coverage, const Mix& mix) {
+    if (coverage == nullptr) {
+      for (Paint& mixture : mixtures_) mixture = mix(mixture, std::uint8_t{255});
+      return;
+    }
     mixed_.clear();
-    const std::uint8_t* levels = coverage.pixels().data();
+    const std::uint8_t* levels = coverage->pixels().data();
     const std::size_t whole_blocks = size_ / kBlock;
-    for (std::size_t i = 0; i < whole_blocks; ++i, levels += kBlock) paint_block(i, levels, paints);
+    for (std::size_t i = 0; i < whole_blocks; ++i, levels += kBlock) paint_block(i, levels, mix);
     if (whole_blocks < blocks_.size()) {
       std::array<std::uint8_t, kBlock> rest{};
       std::copy_n(levels, size_ - whole_blocks * kBlock, rest.begin());
-      paint_block(whole_blocks, rest.data(), paints);
+      paint_block(whole_blocks, rest.data(), mix);
     }
     last_key_ = 0;  // what it stands for ends with the layer
   }
+
+  /// Changes the mixtures themselves, by change(mixture).
+  template <typename Change>
+  void change_all(const Change& change) {
+    for (Paint& mixture : mixtures_) mixture = change(mixture);
+  }
+
+  /// Paints another canvas of the same size over this one, with that opacity.
+  void paint_over(const Canvas& other, float opacity) {
+    mixed_.clear();
+    last_key_ = 0;
+    const auto mix_pixel = [&](std::uint32_t below, std::uint32_t above) {
+      // Counted from 1, so that no key is that of nothing.
+      return number_of(std::uint64_t{below} << 32 | (above + 1), [&] {
+        return over(mixed(other.mixtures_[above], opacity, {}, 0), mixtures_[below]);
+      });
+    };
+    const bool begins_empty = other.mixtures_[0].a == 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const std::uint32_t above = other.blocks_[i];
+      if (above == 0 && begins_empty) continue;
+      if (above != kMixed && blocks_[i] != kMixed) {
+        blocks_[i] = mix_pixel(blocks_[i], above);
+        continue;
+      }
+      std::uint32_t* pixels = pixels_.data() + i * kBlock;
+      const std::uint32_t* others = other.pixels_.data() + i * kBlock;
+      if (blocks_[i] != kMixed) std::fill_n(pixels, kBlock, blocks_[i]);
+      blocks_[i] = kMixed;
+      for (std::size_t k = 0; k < kBlock; ++k) {
+        pixels[k] = mix_pixel(pixels[k], above == kMixed ? others[k] : above);
+      }
+    }
+    last_key_ = 0;
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
 
   void finish(Picture& picture) {
     picture.width = width_;
@@ -171,32 +248,38 @@ class Composer::Canvas {
   static constexpr std::uint32_t kMixed = 0xffffffff;  // a block of several mixtures
   static constexpr std::uint16_t kNoIndex = 0xffff;    // a mixture that was not met yet
 
-  void paint_block(std::size_t i, const std::uint8_t* levels,
-                   const std::array<Paint, kLevels>& paints) {
+  template <typename Mix>
+  void paint_block(std::size_t i, const std::uint8_t* levels, const Mix& mix) {
     const std::uint64_t block = block_at(levels);
     if (block == 0) return;
     std::uint32_t& mixture = blocks_[i];
     if (mixture != kMixed && block == (block & 0xff) * kEachByte) {
-      mixture = mixture_for(mixture, levels[0], paints);
+      mixture = mixture_for(mixture, levels[0], mix);
       return;
     }
     std::uint32_t* pixels = pixels_.data() + i * kBlock;
     if (mixture != kMixed) std::fill_n(pixels, kBlock, mixture);
     mixture = kMixed;
     for (std::size_t k = 0; k < kBlock; ++k) {
-      if (levels[k] != 0) pixels[k] = mixture_for(pixels[k], levels[k], paints);
+      if (levels[k] != 0) pixels[k] = mixture_for(pixels[k], levels[k], mix);
     }
   }
 
-  // The mixture that the paint at that level makes of the one below.
-  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t level,
-                            const std::array<Paint, kLevels>& paints) {
-    const std::uint64_t key = std::uint64_t{below} << 8 | level;
+  // What becomes of a mixture at that level.
+  template <typename Mix>
+  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t level, const Mix& mix) {
+    return number_of(std::uint64_t{below} << 8 | level,
+                     [&] { return mix(mixtures_[below], level); });
+  }
+
+  // The mixture of that key, which make() makes if it is new.
+  template <typename Make>
+  std::uint32_t number_of(std::uint64_t key, const Make& make) {
     if (key == last_key_) return last_mixture_;
     std::uint32_t& number = mixed_[key];
     if (number == 0) {
       number = static_cast<std::uint32_t>(mixtures_.size());
-      const Paint mixture = over(paints[level], mixtures_[below]);
+      const Paint mixture = make();
       mixtures_.push_back(mixture);
     }
     last_key_ = key;
@@ -258,7 +341,7 @@ class Composer::Canvas {
   int width_ = 0;
   int height_ = 0;
   std::size_t size_ = 0;               // in pixels
-  std::vector<Paint> mixtures_;        // of number 0: the background
+  std::vector<Paint> mixtures_;        // of number 0: what it begins with
   std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
   std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
   NumberTable mixed_;                  // by mixture below and level, for the layer of now
@@ -271,10 +354,23 @@ class Composer::Canvas {
 
 namespace {
 
-void require_size(const FilledLayer& layer, int width, int height) {
-  if (layer.coverage->width() != width || layer.coverage->height() != height) {
+void require_size(const Coverage* coverage, int width, int height) {
+  if (coverage == nullptr) return;
+  if (coverage->width() != width || coverage->height() != height) {
     throw std::invalid_argument("a coverage is not as large as the picture");
   }
+}
+
+void require_size(const PaintedLayer& layer, int width, int height) {
+  for (const PaintedClass& one : layer.classes) require_size(one.coverage, width, height);
+  for (const PaintedClass& one : layer.lines) require_size(one.coverage, width, height);
+  require_size(layer.pattern, width, height);
+}
+
+/// How a colour is laid over what is there.
+auto laid_over(Rgba colour, double opacity = 1) {
+  return [paints = paints_of(colour, static_cast<float>(opacity))](
+             const Paint& below, std::uint8_t level) { return over(paints[level], below); };
 }
 
 }  // namespace
@@ -285,24 +381,57 @@ Rgba Picture::at(int column, int row) const {
   return is_indexed() ? palette[indices[i]] : pixels[i];
 }
 
-Composer::Composer() : canvas_(std::make_unique<Canvas>()) {}
+std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes) {
+  std::vector<PaintedLayer> layers(classes.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) layers[i].classes = classes.subspan(i, 1);
+  return layers;
+}
+
+Composer::Composer() : canvas_(std::make_unique<Canvas>()), layer_(std::make_unique<Canvas>()) {}
 Composer::~Composer() = default;
 Composer::Composer(Composer&&) noexcept = default;
 Composer& Composer::operator=(Composer&&) noexcept = default;
 
-void Composer::compose(std::span<const FilledLayer> layers, int width, int height, Rgba background,
+void Composer::compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
                        Picture& picture) {
   canvas_->begin(width, height, background);
-  for (const FilledLayer& layer : layers) {
-    if (layer.coverage != nullptr) require_size(layer, width, height);
-    if (layer.fill.a == 0) continue;
-    if (layer.coverage == nullptr) {
-      canvas_->paint_all(layer.fill);
-    } else {
-      canvas_->paint(*layer.coverage, layer.fill);
-    }
+  for (const PaintedLayer& layer : layers) {
+    require_size(layer, width, height);
+    paint(layer);
   }
   canvas_->finish(picture);
+}
+
+void Composer::paint(const PaintedLayer& layer) {
+  const bool is_plain =
+      layer.classes.size() == 1 && layer.pattern == nullptr && layer.lines.empty();
+  if (!is_plain) {
+    paint_together(layer);
+  } else if (layer.classes.front().colour.a > 0) {
+    const PaintedClass& only = layer.classes.front();
+    canvas_->paint(only.coverage, laid_over(only.colour, layer.opacity));
+  }
+}
+
+void Composer::paint_together(const PaintedLayer& layer) {
+  layer_->begin(canvas_->width(), canvas_->height(), kTransparent);
+  for (const PaintedClass& one : layer.classes) {
+    layer_->paint(one.coverage,
+                  [paints = paints_of(one.colour)](const Paint& below, std::uint8_t level) {
+                    return beside(paints[level], share_of(level), below);
+                  });
+  }
+  layer_->change_all(settled);
+  if (layer.pattern != nullptr) {
+    layer_->paint(layer.pattern, [paints = paints_of(layer.pattern_colour)](const Paint& below,
+                                                                            std::uint8_t level) {
+      return within(paints[level], below);
+    });
+  }
+  for (const PaintedClass& line : layer.lines) {
+    layer_->paint(line.coverage, laid_over(line.colour));
+  }
+  canvas_->paint_over(*layer_, static_cast<float>(layer.opacity));
 }
 
 }  // namespace trapeze

@@ -1,6 +1,7 @@
 // From coverages and colours to a picture.
 //
 // Composition is "source over" in sRGB values, as browsers do it, in floating point, rounded once.
+// Classes of one layer are summed by area instead, so that neighbours leave no line between them.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +27,25 @@ struct Picture {
   Rgba at(int column, int row) const;
 };
 
-/// A class of polygons with the colour that fills them, its opacity included. Looks at memory of
-/// the caller.
-struct FilledLayer {
+/// Polygons, or lines, of one colour. Looks at memory of the caller.
+struct PaintedClass {
   const Coverage* coverage = nullptr;  // null: every pixel is wholly covered
-  Rgba fill;
+  Rgba colour;                         // its opacity included
 };
+
+/// A layer as it is put together: classes of polygons, whose colours mix by the area that each
+/// covers; the pattern over them; lines over that, the first one lowest; and of all this so much as
+/// the opacity says. Looks at memory of the caller.
+struct PaintedLayer {
+  std::span<const PaintedClass> classes;
+  const Coverage* pattern = nullptr;  // null: none; counts where the classes cover
+  Rgba pattern_colour = kTransparent;
+  std::span<const PaintedClass> lines = {};
+  double opacity = 1;
+};
+
+/// Each class as a layer of its own, in this order; they look at the classes.
+std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes);
 
 /// Paints pictures one after the other, in memory that it keeps.
 ///
@@ -46,12 +60,16 @@ class Composer {
   /// Paints the layers, the first one lowest, over the background. The picture becomes width x
   /// height, both at least 1; so large are all coverages (std::invalid_argument if not). It is
   /// indexed if no more than 256 colours result.
-  void compose(std::span<const FilledLayer> layers, int width, int height, Rgba background,
+  void compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
                Picture& picture);
 
  private:
   class Canvas;
+  void paint(const PaintedLayer& layer);
+  void paint_together(const PaintedLayer& layer);
+
   std::unique_ptr<Canvas> canvas_;
+  std::unique_ptr<Canvas> layer_;  // for one that is put together before it is painted
 };
 
 }  // namespace trapeze

@@ -61,6 +61,10 @@ void Coverage::resize(int width, int height) {
   pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
+void Coverage::fill(std::uint8_t level) {
+  std::fill(pixels_.begin(), pixels_.end(), level);
+}
+
 bool Coverage::is_all(std::uint8_t level) const {
   return std::all_of(pixels_.begin(), pixels_.end(),
                      [level](std::uint8_t p) { return p == level; });

@@ -60,6 +60,8 @@ class Coverage {
   const std::uint8_t* row_begin(int row) const {
     return pixels_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
   }
+  /// Gives every pixel the value `level`.
+  void fill(std::uint8_t level);
   /// True if every pixel has the value `level`.
   bool is_all(std::uint8_t level) const;
 

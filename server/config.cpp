@@ -178,7 +178,7 @@ std::vector<ParameterId> read_locked(TableReader& reader) {
     const StyleParameter* parameter = find_style_parameter(name);
     if (parameter == nullptr || !parameter->is_per_layer) {
       std::vector<std::string_view> known;
-      for (const StyleParameter& p : all_style_parameters()) {
+      for (const StyleParameter& p : style_parameters()) {
         if (p.is_per_layer) known.push_back(p.name);
       }
       reader.fail(*reader.find("locked"),

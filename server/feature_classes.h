@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/class_dust.h"
 #include "core/feature_table.h"
 #include "server/filter.h"
 
@@ -37,8 +38,6 @@ struct Classing {
   /// Equal for rules that put the same features into the same classes.
   std::string key() const;
 };
-
-constexpr std::uint8_t kNotDrawn = 0xff;
 
 /// Applies the rules to one feature after the other. Refers to both, which must outlive it.
 class FeatureClassifier {

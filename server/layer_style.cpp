@@ -265,6 +265,14 @@ void make_paints(Making& making) {
 
 }  // namespace
 
+bool LayerStyle::is_visible() const {
+  if (opacity == 0) return false;
+  if (pattern.kind != PatternKind::none && pattern.colour.a > 0) return true;
+  return std::ranges::any_of(paints, [this](const ClassPaint& paint) {
+    return paint.fill.a > 0 || (stroke.width > 0 && paint.stroke.a > 0);
+  });
+}
+
 std::string LayerStyle::key() const {
   std::string text = classing.is_plain() ? std::string() : classing.key() + " ";
   for (const ClassPaint& paint : paints) {

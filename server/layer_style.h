@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "render/colour.h"
+#include "render/pattern.h"
+#include "render/stroke.h"
 #include "server/config.h"
 #include "server/dataset.h"
 #include "server/feature_classes.h"
@@ -15,30 +17,6 @@
 #include "server/style_parameters.h"
 
 namespace trapeze {
-
-enum class LineJoin : std::uint8_t { bevel, miter, round };
-
-/// Lengths are in pixels of a picture of scale 1.
-struct Stroke {
-  double width = 0;            // 0: there is none
-  std::vector<double> dashes;  // lengths of dashes and gaps in turn, an even number; empty: solid
-  LineJoin join = LineJoin::round;
-
-  friend bool operator==(const Stroke&, const Stroke&) = default;
-};
-
-enum class PatternKind : std::uint8_t { none, checker, crosshatch, dots, hatch, stripes };
-
-/// Lengths are in pixels of a picture of scale 1.
-struct Pattern {
-  PatternKind kind = PatternKind::none;
-  Rgba colour;
-  double size = 8;   // after which it repeats
-  double angle = 0;  // degrees, anticlockwise from east, in [0, 360)
-  double width = 1;  // of lines, or the diameter of dots
-
-  friend bool operator==(const Pattern&, const Pattern&) = default;
-};
 
 /// Opacities are part of the colours.
 struct ClassPaint {
@@ -57,8 +35,12 @@ struct LayerStyle {
 
   /// How features are drawn that are in no class by value.
   const ClassPaint& paint_of_others() const { return paints[classing.class_of_others()]; }
+  /// Whether anything is drawn with it.
+  bool is_visible() const;
   /// Equal for styles that draw the same features of one layer in the same way.
   std::string key() const;
+
+  friend bool operator==(const LayerStyle& a, const LayerStyle& b) { return a.key() == b.key(); }
 };
 
 /// `position` is that of the layer in the dataset. The problem, 400, is a parameter that does not

@@ -34,7 +34,6 @@ constexpr std::array kParameters = {
                    .max = 1e300,
                    .max_items = kMaxClasses - 1,
                    .default_text = "no classes",
-                   .is_drawn = false,
                    .description = "where classes of the numbers of color-by part: a number is in "
                                   "the class above each break that it reaches"},
     StyleParameter{.id = ParameterId::classes,
@@ -42,14 +41,12 @@ constexpr std::array kParameters = {
                    .type = Type::classes,
                    .max_items = kMaxClasses,
                    .default_text = "no classes",
-                   .is_drawn = false,
                    .description = "colours by the value of color-by; * stands for all other "
                                   "values, which without it keep the fill; null for none"},
     StyleParameter{.id = ParameterId::color_by,
                    .name = "color-by",
                    .type = Type::name,
                    .default_text = "no classes",
-                   .is_drawn = false,
                    .description = "property by which polygons are coloured, with classes, or with "
                                   "breaks and ramp"},
     StyleParameter{.id = ParameterId::debug,
@@ -75,47 +72,40 @@ constexpr std::array kParameters = {
                    .name = "filter",
                    .type = Type::filter,
                    .default_text = "all features",
-                   .is_drawn = false,
                    .description = "which features are drawn, by their properties"},
     StyleParameter{.id = ParameterId::highlight,
                    .name = "highlight",
                    .type = Type::ids,
                    .max_items = kMaxIds,
                    .default_text = "none",
-                   .is_drawn = false,
                    .description = "ids of features that are drawn in the highlight colours"},
     StyleParameter{.id = ParameterId::highlight_fill,
                    .name = "highlight-fill",
                    .type = Type::colour,
                    .default_text = "ffcc00",
-                   .is_drawn = false,
                    .description = "colour of the highlighted polygons"},
     StyleParameter{.id = ParameterId::highlight_stroke,
                    .name = "highlight-stroke",
                    .type = Type::colour,
                    .default_text = "the stroke",
-                   .is_drawn = false,
                    .description = "colour of the outline of the highlighted polygons"},
     StyleParameter{.id = ParameterId::ids,
                    .name = "ids",
                    .type = Type::ids,
                    .max_items = kMaxIds,
                    .default_text = "all features",
-                   .is_drawn = false,
                    .description = "ids of the only features that are drawn"},
     StyleParameter{.id = ParameterId::opacity,
                    .name = "opacity",
                    .type = Type::number,
                    .max = 1,
                    .default_text = "1",
-                   .is_drawn = false,
                    .description = "opacity of the layer as a whole: fill, pattern and outline"},
     StyleParameter{.id = ParameterId::pattern,
                    .name = "pattern",
                    .type = Type::word,
                    .words = "checker crosshatch dots hatch none stripes",
                    .default_text = "none",
-                   .is_drawn = false,
                    .description = "pattern over the fill, fixed to the ground"},
     StyleParameter{.id = ParameterId::pattern_angle,
                    .name = "pattern-angle",
@@ -123,13 +113,11 @@ constexpr std::array kParameters = {
                    .min = -360,
                    .max = 360,
                    .default_text = "45, of dots and checker 0",
-                   .is_drawn = false,
                    .description = "direction of the pattern, in degrees, anticlockwise from east"},
     StyleParameter{.id = ParameterId::pattern_color,
                    .name = "pattern-color",
                    .type = Type::colour,
                    .default_text = "000000",
-                   .is_drawn = false,
                    .description = "colour of the pattern"},
     StyleParameter{.id = ParameterId::pattern_size,
                    .name = "pattern-size",
@@ -137,7 +125,6 @@ constexpr std::array kParameters = {
                    .min = 2,
                    .max = 64,
                    .default_text = "8",
-                   .is_drawn = false,
                    .description = "distance after which the pattern repeats, in pixels"},
     StyleParameter{.id = ParameterId::pattern_width,
                    .name = "pattern-width",
@@ -145,13 +132,11 @@ constexpr std::array kParameters = {
                    .min = 0.25,
                    .max = 64,
                    .default_text = "1; of stripes half the size; of dots a third",
-                   .is_drawn = false,
                    .description = "width of the lines, diameter of the dots, in pixels"},
     StyleParameter{.id = ParameterId::ramp,
                    .name = "ramp",
                    .type = Type::ramp,
                    .default_text = "no classes",
-                   .is_drawn = false,
                    .description = "colours of the classes between breaks"},
     StyleParameter{.id = ParameterId::simplify,
                    .name = "simplify",
@@ -172,7 +157,6 @@ constexpr std::array kParameters = {
                    .name = "stroke",
                    .type = Type::colour,
                    .default_text = "no outline",
-                   .is_drawn = false,
                    .description = "colour of the outline"},
     StyleParameter{.id = ParameterId::stroke_dasharray,
                    .name = "stroke-dasharray",
@@ -180,28 +164,24 @@ constexpr std::array kParameters = {
                    .max = 256,
                    .max_items = 8,
                    .default_text = "no gaps",
-                   .is_drawn = false,
                    .description = "lengths of dashes and gaps of the outline in turn, in pixels"},
     StyleParameter{.id = ParameterId::stroke_linejoin,
                    .name = "stroke-linejoin",
                    .type = Type::word,
                    .words = "bevel miter round",
                    .default_text = "round",
-                   .is_drawn = false,
                    .description = "corners of the outline"},
     StyleParameter{.id = ParameterId::stroke_opacity,
                    .name = "stroke-opacity",
                    .type = Type::number,
                    .max = 1,
                    .default_text = "1",
-                   .is_drawn = false,
                    .description = "opacity of the outline, multiplied with that of its colour"},
     StyleParameter{.id = ParameterId::stroke_width,
                    .name = "stroke-width",
                    .type = Type::number,
                    .max = 32,
                    .default_text = "1 where a stroke is set",
-                   .is_drawn = false,
                    .description = "width of the outline, in pixels"},
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
@@ -470,15 +450,6 @@ Problem wrong_value(const StyleParameter& parameter, const QueryPair& pair) {
 }  // namespace
 
 std::span<const StyleParameter> style_parameters() {
-  static const std::vector<StyleParameter> drawn = [] {
-    std::vector<StyleParameter> parameters;
-    std::ranges::copy_if(kParameters, std::back_inserter(parameters), &StyleParameter::is_drawn);
-    return parameters;
-  }();
-  return drawn;
-}
-
-std::span<const StyleParameter> all_style_parameters() {
   return kParameters;
 }
 
@@ -564,11 +535,11 @@ std::string describe_values(const StyleParameter& parameter) {
 }
 
 OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
-                                        std::span<const std::string> layers, ParameterSet set) {
+                                        std::span<const std::string> layers) {
   StyleQuery query;
   for (const QueryPair& pair : pairs) {
     const auto [layer, parameter] = resolve_name(pair.first, layers);
-    if (parameter == nullptr || (set == ParameterSet::drawn && !parameter->is_drawn)) continue;
+    if (parameter == nullptr) continue;
     if (query.find_setting(layer, parameter->id) != nullptr) return given_twice(*parameter, pair);
     auto value = parse_parameter(*parameter, pair.second);
     if (!value) return wrong_value(*parameter, pair);

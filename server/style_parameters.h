@@ -73,7 +73,6 @@ struct StyleParameter {
   std::string_view words = {};         // separated by spaces, in alphabetical order
   std::string_view default_text = {};  // in words
   bool is_per_layer = true;            // may be written layer.name= too
-  bool is_drawn = true;                // else no request can set it yet
   std::string_view description = {};
 };
 
@@ -96,10 +95,8 @@ using ParameterValue =
     std::variant<Rgba, double, std::string, std::vector<double>, std::vector<std::int64_t>,
                  std::vector<ColourClass>, std::shared_ptr<const Filter>>;
 
-/// The parameters that requests can set.
+/// The parameters that requests can set, in order of names.
 std::span<const StyleParameter> style_parameters();
-/// Those, and those that nothing draws yet.
-std::span<const StyleParameter> all_style_parameters();
 const StyleParameter& style_parameter(ParameterId id);
 /// Null if there is none of that name.
 const StyleParameter* find_style_parameter(std::string_view name);
@@ -119,9 +116,6 @@ struct StyleSetting {
   ParameterValue value;
 };
 
-/// Which parameters a query may set: those that are drawn, or all that there are in the table.
-enum class ParameterSet { drawn, all };
-
 /// The style that a query asks for: settings in the order (layer, parameter), each at most once.
 class StyleQuery {
  public:
@@ -130,8 +124,7 @@ class StyleQuery {
   /// Names that are not in the table, or belong to a layer that is not in `layers`, are ignored.
   /// A parameter given twice, or set to what it does not take, is a problem.
   static OrProblem<StyleQuery> parse(std::span<const QueryPair> pairs,
-                                     std::span<const std::string> layers,
-                                     ParameterSet set = ParameterSet::drawn);
+                                     std::span<const std::string> layers);
 
   std::span<const StyleSetting> settings() const { return settings_; }
   /// What holds for `layer`: its own setting, else the one for all layers, else null.

@@ -23,33 +23,22 @@ const Layer& painted_layer(const TilePlan& plan, const LayerPaint& paint) {
   return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
 }
 
-/// At least `side` cells wide and high, around the same middle.
-Box widened(const Box& box, std::int64_t side) {
-  const auto widen = [side](std::int32_t& min, std::int32_t& max) {
-    const std::int64_t missing = side - (std::int64_t{max} - min);
-    if (missing <= 0) return;
-    const std::int64_t from =
-        std::clamp<std::int64_t>(min - missing / 2, kGridMin, kGridMax - side);
-    min = static_cast<std::int32_t>(from);
-    max = static_cast<std::int32_t>(from + side);
-  };
-  Box wide = box;
-  widen(wide.min_x, wide.max_x);
-  widen(wide.min_y, wide.max_y);
-  return wide;
-}
-
 }  // namespace
 
-TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer)
-    : renderer_(std::move(renderer)) {}
+TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+                         std::shared_ptr<FeatureClassCache> classes)
+    : renderer_(std::move(renderer)), classes_(std::move(classes)) {}
+
+std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
+  return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
+}
 
 std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
   drawing_count_ = 0;
   std::vector<Sketch> sketches;
   for (const Job& job : jobs) {
     if (Clock::now() > job.deadline) {
-      sketches.push_back({true, drawing_count_, drawing_count_, {}});
+      sketches.push_back({true, drawing_count_, drawing_count_, 0, {}});
     } else {
       sketches.push_back(sketch(*job.plan));
     }
@@ -64,12 +53,10 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
       tiles.emplace_back();
       continue;
     }
-    const auto has_task = [this](std::size_t drawing) { return !drawings_[drawing].is_full; };
-    double tasks = 0;
-    for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) tasks += has_task(k);
-    sketch.times.draw_ms = drawn.draw_ms * share * tasks;
-    sketch.times.read_ms = drawn.read_ms * share * tasks;
-    sketch.times.resolve_ms = drawn.resolve_ms * share * tasks;
+    const double part = share * static_cast<double>(sketch.tasks);
+    sketch.times.draw_ms += drawn.draw_ms * part;
+    sketch.times.read_ms += drawn.read_ms * part;
+    sketch.times.resolve_ms += drawn.resolve_ms * part;
     tiles.push_back(finish(*jobs[i].plan, sketch));
   }
   return tiles;
@@ -82,67 +69,43 @@ TilePainter::Sketch TilePainter::sketch(const TilePlan& plan) {
   const View view = View::of_tile(plan.tile, plan.scale);
   const Stopwatch stopwatch(sketch.times.select_ms);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
-    if (paint->fill.a == 0) continue;  // here for its marks only
+    if (!paint->style.is_visible()) continue;  // here for its marks only
     if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
-    Drawing& drawing = drawings_[drawing_count_];
-    if (!select(plan, *paint, view, drawing)) continue;
+    LayerDrawing& drawing = drawings_[drawing_count_];
+    const auto classes = classes_for(plan, *paint);
+    if (!drawing.select(plan, *paint, view, classes.get(), tools_)) continue;
     ++drawing_count_;
-    if (drawing.is_full && paint->fill.a == 255) break;
+    if (drawing.hides_all()) break;
   }
   sketch.end_drawing = drawing_count_;
   return sketch;
 }
 
-// False if there is nothing of the layer here.
-bool TilePainter::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
-                         Drawing& drawing) {
-  const Layer& layer = painted_layer(plan, paint);
-  const Layer::Selection selection{view.box(), paint.level, plan.pixel_level(), paint.small};
-  drawing.paint = &paint;
-  drawing.parts.clear();
-  drawing.all_places = {};
-  layer.select(selection, drawing.ranges);
-  drawing.is_full = layer.fill_box(selection, drawing.ranges);
-  if (drawing.is_full) return true;
-  if (!drawing.ranges.empty()) drawing.parts.push_back({layer.mesh(), drawing.ranges});
-  if (paint.small == SmallPolygons::keep) add_places(layer, selection, view, drawing);
-  return !drawing.parts.empty();
+// Null if all features are drawn alike.
+std::shared_ptr<const FeatureClasses> TilePainter::classes_for(const TilePlan& plan,
+                                                               const LayerPaint& paint) {
+  const Classing& classing = paint.style.classing;
+  if (classing.is_plain()) return nullptr;
+  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  return classes_->find(served.revision, classing, served.layer->features());
 }
 
-// There are no more of them than pixels.
-void TilePainter::add_places(const Layer& layer, const Layer::Selection& selection,
-                             const View& view, Drawing& drawing) {
-  layer.small_polygons(selection, places_);
-  if (places_.empty()) return;
-  drawing.place_vertices.clear();
-  drawing.place_edges.clear();
-  drawing.place_trapezoids.clear();
-  const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
-  for (const Box& place : places_) {
-    append_box(widened(place, pixel), drawing.place_vertices, drawing.place_edges,
-               drawing.place_trapezoids);
-  }
-  const MeshView mesh{new_mesh_id(), drawing.place_vertices, drawing.place_edges,
-                      drawing.place_trapezoids};
-  drawing.all_places = {0, static_cast<std::uint32_t>(drawing.place_trapezoids.size())};
-  drawing.parts.push_back({mesh, {&drawing.all_places, 1}});
-}
-
-DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<const Sketch> sketches) {
+DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketches) {
   tasks_.clear();
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const View view = View::of_tile(jobs[i].plan->tile, jobs[i].plan->scale);
+    const TilePlan& plan = *jobs[i].plan;
+    const View view = View::of_tile(plan.tile, plan.scale);
+    const std::size_t tasks_before = tasks_.size();
     for (std::size_t k = sketches[i].first_drawing; k < sketches[i].end_drawing; ++k) {
-      Drawing& drawing = drawings_[k];
-      if (!drawing.is_full) tasks_.push_back({drawing.parts, view, &drawing.coverage});
+      drawings_[k].add_tasks(view, tasks_);
+      const Stopwatch stopwatch(sketches[i].times.draw_ms);
+      drawings_[k].draw_details(view, plan.scale, tools_);
     }
+    sketches[i].tasks = tasks_.size() - tasks_before;
   }
   if (tasks_.empty()) return {};
   const DrawTimes times = renderer_->draw(tasks_);
-  for (std::size_t k = 0; k < drawing_count_; ++k) {
-    const bool has_places = !drawings_[k].is_full && drawings_[k].all_places.count > 0;
-    if (has_places) renderer_->forget(drawings_[k].parts.back().mesh.id);
-  }
+  for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
   return times;
 }
 
@@ -152,14 +115,13 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   bool is_constant = !plan.debug.any();
   {
     const Stopwatch stopwatch(tile.times.compose_ms);
-    filled_.clear();
+    painted_.clear();
     for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
-      const Drawing& drawing = drawings_[k];
-      is_constant = is_constant && drawing.is_full;
-      filled_.push_back({drawing.is_full ? nullptr : &drawing.coverage, drawing.paint->fill});
+      is_constant = is_constant && drawings_[k].is_constant();
+      painted_.push_back(drawings_[k].painted());
     }
     const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
-    composer_.compose(filled_, side, side, plan.background, picture_);
+    composer_.compose(painted_, side, side, plan.background, picture_);
     if (plan.debug.any()) mark(plan, view, picture_);
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
@@ -173,10 +135,9 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
 TileHint TilePainter::hint_of(const Sketch& sketch) const {
   TileHint hint = TileHint::empty;
   for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
-    const Drawing& drawing = drawings_[k];
-    if (drawing.is_full || drawing.coverage.is_all(255)) {
+    if (drawings_[k].is_full()) {
       hint = TileHint::full;
-    } else if (!drawing.coverage.is_all(0)) {
+    } else if (!drawings_[k].is_empty()) {
       return TileHint::none;
     }
   }

@@ -17,6 +17,8 @@
 #include "render/compose.h"
 #include "render/coverage.h"
 #include "render/png.h"
+#include "server/feature_classes.h"
+#include "server/layer_drawing.h"
 #include "server/tile_plan.h"
 
 namespace trapeze {
@@ -55,7 +57,12 @@ class TilePainter {
     Deadline deadline;
   };
 
-  explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer);
+  /// Painters may share what keeps the classes of features.
+  explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+                       std::shared_ptr<FeatureClassCache> classes = new_class_cache());
+
+  /// Large enough for the classes that the requests of one map name.
+  static std::shared_ptr<FeatureClassCache> new_class_cache();
 
   /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
   /// Nothing for those whose deadline passed before they were begun. What a tile looks like does
@@ -66,48 +73,34 @@ class TilePainter {
   bool gains_by_company() const { return renderer_->gains_by_company(); }
 
  private:
-  // One layer of one tile.
-  struct Drawing {
-    const LayerPaint* paint = nullptr;
-    bool is_full = false;  // covers the tile wholly and need not be drawn
-    std::vector<TrapezoidRange> ranges;
-    // Small polygons at the size of a pixel; their mesh is made for this picture.
-    std::vector<Point> place_vertices;
-    std::vector<MeshEdge> place_edges;
-    std::vector<MeshTrapezoid> place_trapezoids;
-    TrapezoidRange all_places;
-    std::vector<MeshPart> parts;
-    Coverage coverage;
-  };
-
   // The drawings of one tile, and what became of it.
   struct Sketch {
     bool is_late = false;
     std::size_t first_drawing = 0;
     std::size_t end_drawing = 0;
+    std::size_t tasks = 0;  // of those to be drawn
     PaintTimes times;
   };
 
   Sketch sketch(const TilePlan& plan);
-  bool select(const TilePlan& plan, const LayerPaint& paint, const View& view, Drawing& drawing);
-  void add_places(const Layer& layer, const Layer::Selection& selection, const View& view,
-                  Drawing& drawing);
-  DrawTimes draw(std::span<const Job> jobs, std::span<const Sketch> sketches);
+  std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
+  DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
   PaintedTile finish(const TilePlan& plan, const Sketch& sketch);
   TileHint hint_of(const Sketch& sketch) const;
   std::shared_ptr<const std::string> constant_png(Rgba colour, int side);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<CoverageRenderer> renderer_;
+  std::shared_ptr<FeatureClassCache> classes_;
   Composer composer_;
   PngEncoder encoder_;
   std::map<std::pair<std::string, int>, std::shared_ptr<const std::string>> constants_;
   // Kept from tile to tile only for their memory.
-  std::deque<Drawing> drawings_;  // parts point into them
+  std::deque<LayerDrawing> drawings_;  // tasks point into them
   std::size_t drawing_count_ = 0;
   std::vector<CoverageTask> tasks_;
-  std::vector<FilledLayer> filled_;
-  std::vector<Box> places_;
+  std::vector<PaintedLayer> painted_;
+  DrawingTools tools_;
   Picture picture_;
 };
 

@@ -5,7 +5,6 @@
 #include "render/coverage.h"
 #include "server/build_id.h"
 #include "server/content_hash.h"
-#include "server/layer_style.h"
 #include "server/layer_summary.h"
 
 namespace trapeze {
@@ -55,9 +54,9 @@ std::string TilePlan::key() const {
       fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
   for (const LayerPaint& paint : layers) {
     const ServedLayer& layer = dataset->layers()[paint.layer];
-    key += fmt::format(" {}:{:016x}={}/{}/{}/{}", layer.config.name, layer.revision,
-                       to_hex(paint.fill), paint.level, static_cast<int>(paint.topology),
-                       static_cast<int>(paint.small));
+    key += fmt::format(" {}:{:016x}={}/{}/{} {}", layer.config.name, layer.revision, paint.level,
+                       static_cast<int>(paint.topology), static_cast<int>(paint.small),
+                       paint.style.key());
   }
   if (debug.any())
     key += fmt::format(" debug {:d}{:d}{:d}", debug.mesh, debug.vertices, debug.tile);
@@ -86,14 +85,13 @@ OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const 
     const auto layer = dataset->find(name);
     if (!layer) return unknown_layer(name, *dataset);
     const ServedLayer& served = dataset->layers()[*layer];
-    const auto style = layer_style(request.style, served, *layer);
+    auto style = layer_style(request.style, served, *layer);
     if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
     const LayerConfig& config = served.config;
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
-    const Rgba fill = std::get<LayerStyle>(style).paint_of_others().fill;
-    if (fill.a == 0 && !plan.debug.any()) continue;
-    plan.layers.push_back({*layer, fill, level_of_layer(request, name),
-                           topology_of_layer(request.style, name),
+    if (!std::get<LayerStyle>(style).is_visible() && !plan.debug.any()) continue;
+    plan.layers.push_back({*layer, std::get<LayerStyle>(std::move(style)),
+                           level_of_layer(request, name), topology_of_layer(request.style, name),
                            small_of_layer(request.style, name)});
   }
   return plan;

@@ -13,6 +13,7 @@
 #include "core/web_mercator.h"
 #include "render/colour.h"
 #include "server/dataset.h"
+#include "server/layer_style.h"
 #include "server/problem.h"
 #include "server/tile_request.h"
 
@@ -20,7 +21,7 @@ namespace trapeze {
 
 struct LayerPaint {
   std::size_t layer = 0;  // position in the dataset
-  Rgba fill;
+  LayerStyle style;
   Level level = 0;  // of the ladder of tolerances
   Topology topology = Topology::strict;
   SmallPolygons small = SmallPolygons::dust;

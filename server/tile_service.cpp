@@ -11,9 +11,10 @@ namespace trapeze {
 TileService::TileService(const TileServiceOptions& options,
                          std::vector<std::unique_ptr<CoverageRenderer>> renderers)
     : options_(options), renderer_name_(renderers.front()->name()), workers_(renderers.size()) {
+  const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
-        [this, painter = TilePainter(std::move(renderer))]() mutable { work(painter); });
+        [this, painter = TilePainter(std::move(renderer), classes)]() mutable { work(painter); });
   }
 }
 

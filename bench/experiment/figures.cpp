@@ -39,12 +39,12 @@ void write(const Picture& picture, const std::filesystem::path& path) {
 }
 
 Picture filled(const std::vector<Coverage>& coverages, std::span<const Rgba> fills) {
-  std::vector<FilledLayer> layers;
+  std::vector<PaintedClass> layers;
   for (std::size_t i = 0; i < coverages.size(); ++i) {
     layers.push_back({&coverages[i], fills[i % fills.size()]});
   }
   Picture picture;
-  Composer().compose(layers, kWidth, kHeight, kPaper, picture);
+  Composer().compose(plain_layers(layers), kWidth, kHeight, kPaper, picture);
   return picture;
 }
 

@@ -73,7 +73,7 @@ std::uint64_t build_fingerprint(const GeneralizationOptions& options) {
   const std::unique_ptr<Layer> layer = build_probe(options);
   const LayerArrays a = arrays_of(*layer);
   const std::array<std::int64_t, 4> projected = probe_projection();
-  const std::array<std::uint64_t, 11> parts = {
+  const std::array<std::uint64_t, 13> parts = {
       kReadingVersion,
       checksum_of(a.vertices),
       checksum_of(a.edges),
@@ -81,8 +81,10 @@ std::uint64_t build_fingerprint(const GeneralizationOptions& options) {
       checksum_of(a.lifespans),
       checksum_of(a.feature_of),
       checksum_of(a.polygon_index),
+      checksum_of(a.level_edge_index),
       checksum_of(a.mote_index),
       checksum_of(a.merged_mote_index),
+      checksum_of(a.grains),
       checksum_of(a.outline_points),
       checksum_of(std::span<const std::int64_t>(projected))};
   return checksum_of(std::span<const std::uint64_t>(parts));

@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be raised when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 1;
+constexpr std::uint32_t kPreparedVersion = 2;
 
 /// As in PNG, what text conversion would spoil.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
@@ -49,8 +49,10 @@ enum class SectionKind : std::uint32_t {
   lifespans,
   feature_of,
   polygon_index,
+  level_edge_index,
   mote_index,
   merged_mote_index,
+  grains,
   outline_points,
   ring_ends,
   outline_ends,

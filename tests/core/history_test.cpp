@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <tuple>
 
@@ -69,6 +70,62 @@ TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
       }
     }
   }
+}
+
+using Segment = std::array<std::int32_t, 4>;
+
+Segment segment(Point a, Point b) {
+  return {a.x, a.y, b.x, b.y};
+}
+
+std::set<Segment> boundary_of(const TrapezoidalGraph& g) {
+  std::set<Segment> segments;
+  for (std::size_t e = 0; e < g.edges().size(); ++e) {
+    const Edge& edge = g.edge(EdgeId(e));
+    if (!edge.is_alive() || g.is_frame(EdgeId(e))) continue;
+    segments.insert(segment(g.point(edge.end[kUp]), g.point(edge.end[kDown])));
+  }
+  return segments;
+}
+
+std::set<Segment> boundary_at(const History& h, Level level) {
+  std::set<Segment> segments;
+  const auto add = [&](std::uint32_t e) {
+    segments.insert(segment(h.vertices[h.edges[e].upper], h.vertices[h.edges[e].lower]));
+  };
+  for (std::size_t i = 0; i < h.trapezoids.size(); ++i) {
+    if (!h.lifespans[i].contains(level)) continue;
+    add(h.trapezoids[i].left);
+    add(h.trapezoids[i].right);
+  }
+  for (const LevelEdge& level_edge : h.level_edges) {
+    if (!level_edge.lifespan.contains(level)) continue;
+    const MeshEdge& edge = h.edges[level_edge.edge];
+    EXPECT_EQ(h.vertices[edge.upper].y, h.vertices[edge.lower].y);
+    add(level_edge.edge);
+  }
+  return segments;
+}
+
+TEST(History, SidesOfTrapezoidsAndLevelEdgesAreTheWholeBoundaryAtEveryLevel) {
+  std::size_t level_edges = 0;
+  for (unsigned seed = 0; seed < 140; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    GraphBuilder builder;
+    TrapezoidalGraph graph;
+    Rings rings = random_shape(seed);
+    if (!builder.build(rings, graph).built) continue;
+    AdaptableGraph adaptable(graph, {});
+    History history;
+    HistoryRecorder().record(graph, {}, history);
+    level_edges += history.level_edges.size();
+    for (int level = 0; level <= kLastLevel; ++level) {
+      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
+      ASSERT_EQ(boundary_at(history, static_cast<Level>(level)), boundary_of(adaptable.graph()))
+          << "level " << level;
+    }
+  }
+  EXPECT_GT(level_edges, 100U);
 }
 
 TEST(History, NoVersionLivesForNoTime) {

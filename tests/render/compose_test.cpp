@@ -11,10 +11,10 @@
 namespace trapeze {
 namespace {
 
-Picture compose(std::span<const FilledLayer> layers, int width, int height,
+Picture compose(std::span<const PaintedClass> layers, int width, int height,
                 Rgba background = kTransparent) {
   Picture picture;
-  Composer().compose(layers, width, height, background, picture);
+  Composer().compose(plain_layers(layers), width, height, background, picture);
   return picture;
 }
 
@@ -59,7 +59,7 @@ void expect_near(Rgba actual, const Channels& expected) {
 
 TEST(ComposeTest, OneColourOverNothingIsItsCoverageAsOpacity) {
   const Coverage coverage = coverage_of(3, 1, {0, 100, 255});
-  const FilledLayer layer{&coverage, {10, 20, 30, 255}};
+  const PaintedClass layer{&coverage, {10, 20, 30, 255}};
   const Picture picture = compose({&layer, 1}, 3, 1);
   EXPECT_TRUE(picture.is_indexed());
   EXPECT_EQ(picture.at(0, 0), kTransparent);
@@ -69,7 +69,7 @@ TEST(ComposeTest, OneColourOverNothingIsItsCoverageAsOpacity) {
 
 TEST(ComposeTest, OneColourOverAnOpaqueBackgroundIsOpaque) {
   const Coverage coverage = coverage_of(3, 1, {0, 51, 255});
-  const FilledLayer layer{&coverage, {255, 0, 0, 255}};
+  const PaintedClass layer{&coverage, {255, 0, 0, 255}};
   const Picture picture = compose({&layer, 1}, 3, 1, {0, 0, 255, 255});
   EXPECT_EQ(picture.at(0, 0), (Rgba{0, 0, 255, 255}));
   EXPECT_EQ(picture.at(1, 0), (Rgba{51, 0, 204, 255}));
@@ -79,7 +79,7 @@ TEST(ComposeTest, OneColourOverAnOpaqueBackgroundIsOpaque) {
 TEST(ComposeTest, LayersThatDoNotShowCostNothing) {
   const Coverage empty = coverage_of(2, 1, {0, 0});
   const Coverage full = coverage_of(2, 1, {255, 128});
-  const std::vector<FilledLayer> layers{
+  const std::vector<PaintedClass> layers{
       {&empty, {1, 1, 1, 255}}, {&full, {9, 9, 9, 0}}, {&full, {4, 5, 6, 255}}};
   const Picture picture = compose(layers, 2, 1);
   EXPECT_TRUE(picture.is_indexed());
@@ -94,7 +94,7 @@ TEST(ComposeTest, NoLayerIsTheBackground) {
 
 TEST(ComposeTest, EveryLayerLiesOverTheOnesBefore) {
   const Coverage full = coverage_of(1, 1, {255});
-  const std::vector<FilledLayer> layers{{&full, {255, 0, 0, 255}}, {&full, {0, 255, 0, 255}}};
+  const std::vector<PaintedClass> layers{{&full, {255, 0, 0, 255}}, {&full, {0, 255, 0, 255}}};
   EXPECT_EQ(compose(layers, 1, 1).at(0, 0), (Rgba{0, 255, 0, 255}));
 }
 
@@ -106,15 +106,15 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
     const Coverage a = random_coverage(random, 40, 30);
     const Coverage b = random_coverage(random, 40, 30);
     const Coverage c = random_coverage(random, 40, 30);
-    const std::vector<FilledLayer> layers{
+    const std::vector<PaintedClass> layers{
         {&a, {250, 3, 90, 255}}, {&b, {0, 128, 255, 140}}, {&c, {77, 200, 10, 30}}};
     const Picture picture = compose(layers, 40, 30, background);
     for (int row = 0; row < 30; ++row) {
       for (int column = 0; column < 40; ++column) {
         Channels expected{double(background.r), double(background.g), double(background.b),
                           background.a / 255.0};
-        for (const FilledLayer& layer : layers) {
-          expected = blend(expected, layer.fill, layer.coverage->at(column, row));
+        for (const PaintedClass& layer : layers) {
+          expected = blend(expected, layer.colour, layer.coverage->at(column, row));
         }
         expect_near(picture.at(column, row), expected);
       }
@@ -130,7 +130,7 @@ TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
   }
   const Coverage a = coverage_of(64, 64, left);
   const Coverage b = coverage_of(64, 64, right);
-  const std::vector<FilledLayer> layers{{&a, {255, 0, 0, 255}}, {&b, {0, 0, 255, 255}}};
+  const std::vector<PaintedClass> layers{{&a, {255, 0, 0, 255}}, {&b, {0, 0, 255, 255}}};
   const Picture picture = compose(layers, 64, 64);
   EXPECT_TRUE(picture.is_indexed());
   EXPECT_EQ(picture.palette.size(), 3u);
@@ -139,9 +139,77 @@ TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
   EXPECT_EQ(picture.at(60, 5), (Rgba{0, 0, 255, 255}));
 }
 
+Picture compose(const PaintedLayer& layer, int width, int height, Rgba background = kTransparent) {
+  Picture picture;
+  Composer().compose({&layer, 1}, width, height, background, picture);
+  return picture;
+}
+
+TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
+  const Coverage west = coverage_of(4, 1, {255, 100, 64, 1});
+  const Coverage east = coverage_of(4, 1, {0, 155, 64, 254});
+  const Coverage rest = coverage_of(4, 1, {0, 0, 126, 0});  // of three, rounded down
+  const std::vector<PaintedClass> alike{
+      {&west, {9, 8, 7, 255}}, {&east, {9, 8, 7, 255}}, {&rest, {9, 8, 7, 255}}};
+  const Picture one = compose({.classes = alike}, 4, 1);
+  for (int column = 0; column < 4; ++column) {
+    EXPECT_EQ(one.at(column, 0), (Rgba{9, 8, 7, 255})) << column;
+  }
+  const std::vector<PaintedClass> unlike{{&west, {255, 0, 0, 255}}, {&east, {0, 0, 255, 255}}};
+  const Picture two = compose({.classes = unlike}, 4, 1);
+  EXPECT_EQ(two.at(1, 0), (Rgba{100, 0, 155, 255}));
+}
+
+TEST(ComposeTest, OverlappingClassesShareThePixel) {
+  const Coverage full = coverage_of(1, 1, {255});
+  const std::vector<PaintedClass> classes{{&full, {200, 0, 0, 255}}, {nullptr, {0, 0, 100, 255}}};
+  EXPECT_EQ(compose({.classes = classes}, 1, 1).at(0, 0), (Rgba{100, 0, 50, 255}));
+}
+
+TEST(ComposeTest, APatternLiesWithinTheClasses) {
+  const Coverage half = coverage_of(3, 1, {0, 51, 255});
+  const Coverage everywhere = coverage_of(3, 1, {255, 255, 51});
+  const PaintedClass fill{&half, {0, 0, 0, 255}};
+  const PaintedClass nothing{&half, kTransparent};
+  PaintedLayer layer{{&fill, 1}, &everywhere, {255, 255, 255, 255}, {}, 1};
+  const Picture over_fill = compose(layer, 3, 1);
+  EXPECT_EQ(over_fill.at(0, 0), kTransparent);
+  EXPECT_EQ(over_fill.at(1, 0), (Rgba{255, 255, 255, 51}));
+  EXPECT_EQ(over_fill.at(2, 0), (Rgba{51, 51, 51, 255}));
+  layer.classes = {&nothing, 1};
+  const Picture alone = compose(layer, 3, 1);
+  EXPECT_EQ(alone.at(1, 0), (Rgba{255, 255, 255, 51}));
+  EXPECT_EQ(alone.at(2, 0), (Rgba{255, 255, 255, 51}));
+}
+
+TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
+  const Coverage fill = coverage_of(16, 1, std::vector<int>(16, 255));
+  const Coverage line = coverage_of(16, 1,
+                                    {255, 255, 255, 255, 255, 255, 255, 255,  //
+                                     0, 0, 0, 0, 0, 0, 0, 255});
+  const PaintedClass fills{&fill, {0, 0, 200, 255}};
+  const PaintedClass lines{&line, {100, 0, 0, 255}};
+  const PaintedLayer layer{{&fills, 1}, nullptr, {}, {&lines, 1}, 0.5};
+  const Picture picture = compose(layer, 16, 1, {0, 0, 0, 255});
+  EXPECT_EQ(picture.at(3, 0), (Rgba{50, 0, 0, 255}));  // not a bit of the fill shows through
+  EXPECT_EQ(picture.at(9, 0), (Rgba{0, 0, 100, 255}));
+  EXPECT_EQ(picture.at(15, 0), (Rgba{50, 0, 0, 255}));
+  EXPECT_EQ(compose(layer, 16, 1).at(3, 0), (Rgba{100, 0, 0, 128}));
+}
+
+TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
+  const Coverage line = coverage_of(9, 1, {0, 0, 0, 0, 255, 0, 0, 0, 0});
+  const PaintedClass everywhere{nullptr, {0, 200, 0, 255}};
+  const PaintedClass lines{&line, {100, 0, 0, 255}};
+  const Picture picture = compose({{&everywhere, 1}, nullptr, {}, {&lines, 1}, 1}, 9, 1);
+  EXPECT_EQ(picture.at(0, 0), (Rgba{0, 200, 0, 255}));
+  EXPECT_EQ(picture.at(4, 0), (Rgba{100, 0, 0, 255}));
+  EXPECT_EQ(picture.at(8, 0), (Rgba{0, 200, 0, 255}));
+}
+
 TEST(ComposeTest, RefusesACoverageOfAnotherSize) {
   const Coverage coverage = coverage_of(2, 1, {1, 2});
-  const FilledLayer layer{&coverage, {1, 2, 3, 255}};
+  const PaintedClass layer{&coverage, {1, 2, 3, 255}};
   EXPECT_THROW(compose({&layer, 1}, 1, 2), std::invalid_argument);
 }
 

@@ -42,7 +42,7 @@ class LayerStyleTest : public ::testing::Test {
  protected:
   OrProblem<LayerStyle> resolve(std::string_view query) {
     const std::vector<std::string> layers = {"towns", "lakes"};
-    const auto parsed = StyleQuery::parse(decode_query(query).value(), layers, ParameterSet::all);
+    const auto parsed = StyleQuery::parse(decode_query(query).value(), layers);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
     return layer_style(std::get<StyleQuery>(parsed), served_, 0);
   }
@@ -185,7 +185,7 @@ TEST_F(LayerStyleTest, AKeyTakesMicroseconds) {
   std::size_t bytes = 0;
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < kRuns; ++i) {
-    const auto parsed = StyleQuery::parse(pairs, layers, ParameterSet::all);
+    const auto parsed = StyleQuery::parse(pairs, layers);
     bytes += std::get<StyleQuery>(parsed).canonical_text().size();
   }
   const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;

@@ -140,24 +140,14 @@ TEST(StyleParametersTest, WrongGeneralizationsAreProblemsThatSayWhatIsAllowed) {
   EXPECT_EQ(problem_of("simplify=1&simplify=1").takes, "a number from 0 to 64, once");
 }
 
-/// With the parameters that nothing draws yet.
 OrProblem<StyleQuery> parse_all(std::string_view query) {
-  return StyleQuery::parse(decode_query(query).value(), kLayers, ParameterSet::all);
+  return StyleQuery::parse(decode_query(query).value(), kLayers);
 }
 
 std::string canonical_of_all(std::string_view query) {
   const auto parsed = parse_all(query);
   if (const auto* problem = std::get_if<Problem>(&parsed)) return "problem: " + problem->detail;
   return std::get<StyleQuery>(parsed).canonical_text();
-}
-
-TEST(StyleParametersTest, WhatNothingDrawsYetIsNotServed) {
-  for (const StyleParameter& parameter : all_style_parameters()) {
-    const bool is_served = std::ranges::find(style_parameters(), parameter.id,
-                                             &StyleParameter::id) != style_parameters().end();
-    EXPECT_EQ(is_served, parameter.is_drawn) << parameter.name;
-    EXPECT_EQ(find_style_parameter(parameter.name)->id, parameter.id);
-  }
 }
 
 TEST(StyleParametersTest, ListsHaveOneText) {
@@ -227,12 +217,12 @@ TEST(StyleParametersTest, WhateverIsAskedIsAStyleOrAProblem) {
   for (int i = 0; i < 100'000; ++i) {
     std::vector<QueryPair> pairs;
     for (std::size_t k = pick(5); k > 0; --k) {
-      const auto parameters = all_style_parameters();
+      const auto parameters = style_parameters();
       std::string name(parameters[pick(parameters.size())].name);
       if (pick(4) == 0) name = "roads." + name;
       pairs.emplace_back(std::move(name), values[pick(values.size())]);
     }
-    const auto parsed = StyleQuery::parse(pairs, kLayers, ParameterSet::all);
+    const auto parsed = StyleQuery::parse(pairs, kLayers);
     if (parsed.index() != 0) continue;
     ++styles;
     const std::string text = std::get<StyleQuery>(parsed).canonical_text();

@@ -11,9 +11,17 @@
 namespace trapeze {
 namespace {
 
+LayerStyle plain_style(Rgba fill) {
+  LayerStyle style;
+  style.paints = {{fill, {0, 0, 0, 255}}};
+  return style;
+}
+
 auto fills(std::size_t layer, Rgba fill) {
-  return ::testing::AllOf(::testing::Field(&LayerPaint::layer, layer),
-                          ::testing::Field(&LayerPaint::fill, fill));
+  return ::testing::AllOf(
+      ::testing::Field(&LayerPaint::layer, layer),
+      ::testing::ResultOf([](const LayerPaint& p) { return p.style.paint_of_others().fill; },
+                          fill));
 }
 
 class TilePlanTest : public ::testing::Test {
@@ -119,11 +127,11 @@ TEST_F(TilePlanTest, EveryLayerMayBeGeneralizedInItsOwnWay) {
   const TilePlan plan = this->plan(
       "rings,west/3/0/0.png?small=drop&west.small=keep&rings.topology=fast&"
       "west.simplify=0");
-  EXPECT_THAT(
-      plan.layers,
-      ::testing::ElementsAre(
-          LayerPaint{0, {255, 0, 0, 255}, usual_level(3), Topology::fast, SmallPolygons::drop},
-          LayerPaint{1, {0, 0, 255, 128}, 0, Topology::strict, SmallPolygons::keep}));
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(LayerPaint{0, plain_style({255, 0, 0, 255}), usual_level(3),
+                                                Topology::fast, SmallPolygons::drop},
+                                     LayerPaint{1, plain_style({0, 0, 255, 128}), 0,
+                                                Topology::strict, SmallPolygons::keep}));
 }
 
 TEST_F(TilePlanTest, TheSameGeneralizationHasTheSameTagHoweverWritten) {

@@ -59,7 +59,9 @@ class TileServiceTest : public ::testing::Test {
 
   /// A plan of which no two are equal unless the shade is.
   TilePlan plan(int shade) const {
-    return {dataset_, {}, 1, kTransparent, {{0, {static_cast<std::uint8_t>(shade), 0, 0, 255}}}};
+    LayerPaint paint;
+    paint.style.paints = {{{static_cast<std::uint8_t>(shade), 0, 0, 255}, {}}};
+    return {dataset_, {}, 1, kTransparent, {paint}};
   }
 
   std::future<TileAnswer> submit(int shade) {
