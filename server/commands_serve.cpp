@@ -129,7 +129,8 @@ int run_serve(const ServeArguments& arguments) {
   TileCache cache(std::size_t{options.cache_mb} << 20);
   TileService tiles({options.queue, std::chrono::milliseconds(options.deadline_ms), options.batch},
                     start_renderers(options.renderer, static_cast<int>(options.workers)));
-  const Site site({options.public_url, options.allowed_hosts, options.cache_control},
+  const Site site({options.public_url, options.allowed_hosts, options.cache_control, config.styles,
+                   std::size_t{options.posted_styles_mb} << 20},
                   std::move(files), data, tiles, cache);
   HttpServerOptions http;
   http.address = options.address;

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "server/style_book.h"
 #include "server/style_parameters.h"
 #include "server/tile_request.h"
 #include "server/url.h"
@@ -74,16 +75,6 @@ class TableReader {
     target = static_cast<Integer>(*value);
   }
 
-  void read_share(std::string_view key, double& target) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-    if (!value || !(*value >= 0 && *value <= 1)) {
-      fail(*node, fmt::format("{} takes a number from 0 to 1", full_name(key)));
-    }
-    target = *value;
-  }
-
   /// Call last: throws if the table holds a key that was never asked for.
   void refuse_unknown_keys() const {
     for (const auto& [key, node] : table_) {
@@ -116,6 +107,7 @@ ServerConfig read_server(const std::string& path, const toml::table& table) {
   reader.read("queue", server.queue, 1, 1'000'000);
   reader.read("deadline_ms", server.deadline_ms, 1, 600'000);
   reader.read("batch", server.batch, 1, 64);
+  reader.read("posted_styles_mb", server.posted_styles_mb, 0, 4096);
   reader.read("cache_mb", server.cache_mb, 0, 1'000'000);
   reader.read("cache_control", server.cache_control);
   if (std::ranges::any_of(server.cache_control, [](char c) { return c < ' ' || c > '~'; })) {
@@ -153,21 +145,80 @@ ServerConfig read_server(const std::string& path, const toml::table& table) {
   return server;
 }
 
-ConfiguredStyle read_style(const std::string& path, const toml::table& table) {
-  ConfiguredStyle style;
-  TableReader reader(path, table, "layer.style");
-  std::string fill;
-  reader.read("fill", fill);
-  if (const toml::node* node = table.get("fill")) {
-    style.fill = parse_colour(fill);
-    if (!style.fill) {
-      reader.fail(*node, fmt::format("layer.style.fill takes {}",
-                                     describe_values(style_parameter(ParameterId::fill))));
-    }
+/// As the value is written in a query; nothing for what has no place there.
+std::optional<std::string> text_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return std::nullopt;
+  std::string joined;
+  for (const toml::node& item : *list) {
+    const auto text = item.is_array() ? std::nullopt : text_of(item);
+    if (!text) return std::nullopt;
+    if (!joined.empty()) joined.push_back(',');
+    joined += *text;
   }
-  reader.read_share("fill_opacity", style.fill_opacity);
-  reader.refuse_unknown_keys();
-  return style;
+  return joined;
+}
+
+/// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables are
+/// for one layer each, if they are allowed.
+void read_style_pairs(const TableReader& reader, const toml::table& table, const std::string& layer,
+                      bool has_layers, std::vector<QueryPair>& pairs) {
+  const std::vector<std::string> layers =
+      layer.empty() ? std::vector<std::string>() : std::vector<std::string>{layer};
+  for (const auto& [key, node] : table) {
+    if (has_layers && node.is_table()) {
+      read_style_pairs(reader, *node.as_table(), std::string(key.str()), false, pairs);
+      continue;
+    }
+    std::string name(key.str());
+    std::ranges::replace(name, '_', '-');
+    const StyleParameter* parameter = find_style_parameter(name);
+    const bool is_for_all_layers = layer.empty() && has_layers;
+    if (parameter == nullptr || parameter->id == ParameterId::style ||
+        (!parameter->is_per_layer && !is_for_all_layers)) {
+      reader.fail(node, fmt::format("a style does not know \"{}\"", std::string(key.str())));
+    }
+    const auto text = text_of(node);
+    const std::string written = layer.empty() ? name : layer + "." + name;
+    const QueryPair pair(written, text.value_or(""));
+    if (!text || !std::holds_alternative<StyleQuery>(StyleQuery::parse({&pair, 1}, layers))) {
+      reader.fail(node,
+                  fmt::format("{} takes {}", std::string(key.str()), describe_values(*parameter)));
+    }
+    pairs.push_back(pair);
+  }
+}
+
+StyleQuery read_layer_style(const std::string& path, const toml::table& table) {
+  const TableReader reader(path, table, "layer.style");
+  std::vector<QueryPair> pairs;
+  read_style_pairs(reader, table, {}, false, pairs);
+  return std::get<StyleQuery>(StyleQuery::parse(pairs, {}));
+}
+
+/// [styles.NAME]
+std::map<std::string, StyleQuery> read_styles(const std::string& path, const toml::table& table) {
+  const TableReader reader(path, table, "styles");
+  std::map<std::string, StyleQuery> styles;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    if (!is_style_name(name) || name == StyleBook::kDefaultName || !node.is_table()) {
+      reader.fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name "
+                                    "of 1 to 64 letters, digits, '_' or '-' other than \"{}\"",
+                                    StyleBook::kDefaultName));
+    }
+    std::vector<QueryPair> pairs;
+    read_style_pairs(reader, *node.as_table(), {}, true, pairs);
+    std::vector<std::string> layers;
+    for (const auto& [layer, style] : *node.as_table()) {
+      if (style.is_table()) layers.emplace_back(layer.str());
+    }
+    styles.emplace(name, std::get<StyleQuery>(StyleQuery::parse(pairs, layers)));
+  }
+  return styles;
 }
 
 std::vector<ParameterId> read_locked(TableReader& reader) {
@@ -228,7 +279,7 @@ LayerConfig read_layer(const std::string& path, const toml::table& table) {
   }
   if (const toml::node* style = reader.find("style")) {
     if (!style->is_table()) reader.fail(*style, "layer.style takes a table");
-    layer.style = read_style(path, *style->as_table());
+    layer.style = read_layer_style(path, *style->as_table());
   }
   layer.locked = read_locked(reader);
   reader.refuse_unknown_keys();
@@ -289,6 +340,10 @@ Config read_config(const std::string& path) {
   if (const toml::node* server = reader.find("server")) {
     if (!server->is_table()) reader.fail(*server, "server takes a table, begun by [server]");
     config.server = read_server(path, *server->as_table());
+  }
+  if (const toml::node* styles = reader.find("styles")) {
+    if (!styles->is_table()) reader.fail(*styles, "styles are tables, begun by [styles.NAME]");
+    config.styles = read_styles(path, *styles->as_table());
   }
   if (const toml::node* layers = reader.find("layer")) read_layers(path, *layers, config.layers);
   reader.refuse_unknown_keys();

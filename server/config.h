@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,11 +16,6 @@
 
 namespace trapeze {
 
-struct ConfiguredStyle {
-  std::optional<Rgba> fill;  // unset: a colour of the palette, by the layer's position
-  double fill_opacity = 1;   // 0 to 1
-};
-
 struct LayerConfig {
   std::string name;      // is_layer_name() holds
   std::string file;      // empty only if `prepared` is set
@@ -27,7 +23,7 @@ struct LayerConfig {
   std::string title;     // the name if not set
   std::string attribution;
   std::string description;
-  ConfiguredStyle style;
+  StyleQuery style;  // where a request says nothing; for all layers, so without their names
   std::vector<ParameterId> locked;    // what requests cannot set for the layer
   std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
   int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
@@ -46,6 +42,7 @@ struct ServerConfig {
   unsigned batch = 8;             // tiles drawn in one pass, at most
   unsigned cache_mb = 256;        // of memory for tiles that were drawn; 0: none are kept
   std::string cache_control = "public, max-age=3600";  // of tiles
+  unsigned posted_styles_mb = 16;                      // of memory for styles that are posted
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
   // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
@@ -56,7 +53,8 @@ struct ServerConfig {
 
 struct Config {
   ServerConfig server;
-  std::vector<LayerConfig> layers;  // names are unique
+  std::map<std::string, StyleQuery> styles;  // by name, for which is_style_name() holds
+  std::vector<LayerConfig> layers;           // names are unique
 };
 
 /// Reads a TOML file; relative paths in it are meant from its own folder. Throws std::runtime_error

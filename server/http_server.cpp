@@ -205,7 +205,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
   Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
   if (error == http::error::body_limit) {
-    problem = {413, fmt::format("A request needs no body; at most {} bytes are taken.",
+    problem = {413, fmt::format("The body of a request is at most {} bytes long.",
                                 state_.options().body_limit)};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem =
@@ -226,7 +226,8 @@ bool HttpServer::Connection::is_request_line_too_long() const {
 void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
   const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
   request_ = {text(message.method_string()), text(message.target()),
-              text(message[http::field::host]), text(message[http::field::if_none_match])};
+              text(message[http::field::host]), text(message[http::field::if_none_match]),
+              message.body()};
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {

@@ -20,7 +20,7 @@ struct HttpServerOptions {
   unsigned threads = 2;
   std::size_t max_connections = 1024;              // more are turned away with 503
   std::uint32_t header_limit = 8192;               // bytes of request line and header together
-  std::uint32_t body_limit = 1024;                 // no request needs a body
+  std::uint32_t body_limit = 16 * 1024;            // styles are posted
   std::chrono::milliseconds read_timeout{30'000};  // for a whole request, idle time before included
   std::chrono::milliseconds write_timeout{30'000};  // for a whole response
   std::chrono::milliseconds drain_timeout{10'000};  // for what runs when the server is stopped

@@ -3,6 +3,8 @@
 // Thread-safety: handle() may be called from any thread.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "server/dataset.h"
 #include "server/http_message.h"
 #include "server/static_files.h"
+#include "server/style_book.h"
 #include "server/tile_cache.h"
 #include "server/tile_service.h"
 
@@ -23,6 +26,9 @@ struct SiteOptions {
   std::vector<std::string> allowed_hosts = {};
   /// What caches between here and the client may do with tiles.
   std::string cache_control = "public, max-age=3600";
+  /// Styles by name, and the memory in bytes for those that are posted.
+  std::map<std::string, StyleQuery> styles = {};
+  std::size_t posted_styles = StyleBook::kDefaultBudget;
 };
 
 struct DocumentRoute;
@@ -43,6 +49,8 @@ class Site {
   HttpResponse answer_catalog(const HttpRequest& request) const;
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
   HttpResponse answer_file(const HttpRequest& request) const;
+  HttpResponse answer_style(std::string_view path, const HttpRequest& request) const;
+  HttpResponse answer_posted_style(const HttpRequest& request) const;
   void handle_tiles(const HttpRequest& request, const Respond& respond) const;
   /// A document, or a tile that is named below it.
   void handle_document(const DocumentRoute& route, const HttpRequest& request,
@@ -58,6 +66,7 @@ class Site {
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;
+  const std::unique_ptr<StyleBook> styles_;
 };
 
 }  // namespace trapeze
