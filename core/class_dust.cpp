@@ -19,9 +19,9 @@ std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixe
 
 /// The box, moved so that it lies within a pixel if it is no larger.
 Box within_pixel(const Box& box, double x, double y, double pixel) {
-  const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) {
+  const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) -> std::int64_t {
     const double begin = kGridMin + std::floor((at - kGridMin) / pixel) * pixel;
-    if (max - min > pixel) return std::int64_t{0};
+    if (max - min > pixel) return 0;
     return std::llround(std::max(begin - min, std::min(0.0, begin + pixel - max)));
   };
   const std::int64_t dx = shift(box.min_x, box.max_x, x);

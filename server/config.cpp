@@ -36,6 +36,10 @@ class TableReader {
         fmt::format("{}: {}", position_text(path_, node.source().begin), message));
   }
   [[noreturn]] void fail(const std::string& message) const { fail(table_, message); }
+  [[noreturn]] void fail(const toml::key& key, const std::string& message) const {
+    throw std::runtime_error(
+        fmt::format("{}: {}", position_text(path_, key.source().begin), message));
+  }
 
   const toml::node* find(std::string_view key) {
     known_.emplace_back(key);
@@ -179,7 +183,7 @@ void read_style_pairs(const TableReader& reader, const toml::table& table, const
     const bool is_for_all_layers = layer.empty() && has_layers;
     if (parameter == nullptr || parameter->id == ParameterId::style ||
         (!parameter->is_per_layer && !is_for_all_layers)) {
-      reader.fail(node, fmt::format("a style does not know \"{}\"", std::string(key.str())));
+      reader.fail(key, fmt::format("a style does not know \"{}\"", std::string(key.str())));
     }
     const auto text = text_of(node);
     const std::string written = layer.empty() ? name : layer + "." + name;
