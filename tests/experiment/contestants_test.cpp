@@ -101,13 +101,16 @@ TEST(DeviceTrapezoidsTest, MoreThanAChunkIsDrawn) {
 TEST(RaceTest, CountsEveryViewOnceForEachContestant) {
   const Map map = sample_map(20);
   Screen screen;
-  Race race(map, Topology::strict, screen);
+  Race race(map, Topology::strict, screen, kMethods);
   const std::vector<ScaledView> trip{view_around(map, {0, 400000}, 50000, 160, 120, 0.25),
                                      view_around(map, {0, 400000}, 20000, 160, 120, 0.25)};
-  race.run(trip, 3);
+  race.run(trip, {.runs = 3});
   for (const RaceResult& result : race.results()) {
     EXPECT_EQ(result.views.size(), 2u);
-    EXPECT_EQ(result.runs, result.method == Method::triangulation ? 1 : 3);
+    const bool is_reference =
+        result.method == Method::triangulation || result.method == Method::no_simplification;
+    EXPECT_EQ(result.runs, is_reference ? 1 : 3);
+    EXPECT_GT(result.seconds, 0);
     for (const ViewCost& cost : result.views) EXPECT_GT(cost.total_ms(), 0);
   }
   const auto full = race.pictures(Method::no_simplification, trip);
@@ -115,6 +118,17 @@ TEST(RaceTest, CountsEveryViewOnceForEachContestant) {
   EXPECT_GT(none.pixels, 0u);
   EXPECT_EQ(none.mean, 0);
   EXPECT_EQ(none.area, 0);
+}
+
+TEST(RaceTest, RunsOnceWhereThereIsNoTimeForMore) {
+  const Map map = sample_map(20);
+  Screen screen;
+  const std::vector<Method> methods{Method::blg_tree, Method::lifespans};
+  Race race(map, Topology::strict, screen, methods);
+  const std::vector<ScaledView> trip{view_around(map, {0, 400000}, 50000, 160, 120, 0.25)};
+  race.run(trip, {.runs = 3, .seconds = 0});
+  ASSERT_EQ(race.results().size(), 2u);
+  for (const RaceResult& result : race.results()) EXPECT_EQ(result.runs, 1);
 }
 
 }  // namespace
