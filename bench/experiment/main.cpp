@@ -72,7 +72,7 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
                  "are not begun, but for the first; 120 if not set")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--contestants", a.race.methods,
-                 "Only these: dp, blg, cdt, paper, trapeze, dust, none")
+                 "Only these: dp, blg, cdt, all, paper, trapeze, dust, none")
       ->delimiter(',')
       ->transform(CLI::Transformer(methods_by_name()));
   app.add_option("--seed", a.trip.seed, "Of the trip, 1 if not set");
@@ -220,6 +220,7 @@ int run(const Arguments& a) {
   report.device = screen.renderer().description();
   report.options = a.trip;
   report.runs = a.race.runs;
+  report.seconds_of_runs = a.race.seconds;
   for (const MapSource& map : chosen_maps(a)) report.maps.push_back(report_on(map, a, screen));
   if (a.has("growth")) {
     std::cout << "experiment: growth" << std::endl;

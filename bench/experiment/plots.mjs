@@ -2,7 +2,7 @@
 import { join } from 'node:path'
 
 const colours = {
-  dp: '#c0504d', blg: '#e08e3c', cdt: '#b8a13a', paper: '#4f81bd', trapeze: '#2e7d4f', dust: '#7cb88f',
+  dp: '#c0504d', blg: '#e08e3c', cdt: '#b8a13a', all: '#8c3b8a', paper: '#4f81bd', trapeze: '#2e7d4f', dust: '#7cb88f',
   none: '#888888'
 }
 const stageColours = {
@@ -73,7 +73,7 @@ unset multiplot`
 export function plotStages(maps, folder) {
   const stages = Object.keys(stageTitles)
   const data = maps.map(map => block(`stages_${map.name}`, map.averages
-    .filter(a => a.topology === 'strict')
+    .filter(a => a.topology === 'strict' && a.method !== 'all')
     .sort((a, b) => inOrder.indexOf(a.method) - inOrder.indexOf(b.method))
     .map(a => [`"${a.title}"`, ...stages.map(stage => a[stage])])))
   const panels = maps.map((map, i) => `${i > 0 ? 'unset key\n' : ''}set title "${map.name}, with topology"

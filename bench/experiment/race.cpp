@@ -27,17 +27,13 @@ ViewCost median_by_total(std::vector<ViewCost> costs) {
   return *middle;
 }
 
-bool is_for_reference(Method method) {
-  return method == Method::triangulation || method == Method::no_simplification;
-}
-
 }  // namespace
 
 Race::Race(const Map& map, Topology topology, Screen& screen, std::span<const Method> methods)
     : map_(map), screen_(screen) {
   cost_of_empty_view(map.layers.size(), screen);  // makes what all of them use
   for (const Method method : methods) {
-    if (is_possible(method, topology)) prepare(method, topology);
+    if (is_possible(method, topology, map)) prepare(method, topology);
   }
 }
 

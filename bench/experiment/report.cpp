@@ -160,6 +160,7 @@ void write_report(const Report& report, const std::string& path) {
                  {"simplify_pixels", report.options.simplify_pixels},
                  {"screen", {kScreenWidth, kScreenHeight}},
                  {"runs", report.runs},
+                 {"seconds_of_runs", report.seconds_of_runs},
                  {"seconds", report.seconds},
                  {"growth_seconds", report.growth_seconds},
                  {"maps", std::move(maps)},

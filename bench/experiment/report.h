@@ -45,7 +45,8 @@ struct Report {
   std::string machine;
   std::string device;
   TripOptions options;
-  int runs = 0;  // at most
+  int runs = 0;                // at most
+  double seconds_of_runs = 0;  // beyond which none is begun
   double seconds = 0;
   double growth_seconds = 0;
   std::vector<MapReport> maps;
