@@ -82,13 +82,13 @@ function trapezeVerdict(map, theirs, trapeze) {
   const lines = []
   const factors = factorsByScale(map, theirs, trapeze).sort((a, b) => a.factor - b.factor)
   const [least, most] = [factors[0], factors[factors.length - 1]]
-  const spread = `By scale it is ${ratio(least.factor, 1)} (1:${count(least.scale)}) to ` +
+  const spread = `by scale the factor is ${ratio(least.factor, 1)} (1:${count(least.scale)}) to ` +
     `${ratio(most.factor, 1)} (1:${count(most.scale)}).`
   if (theirs.before < trapezeGoal * trapeze.before) {
     const nanoseconds = 1e6 * trapeze.before / trapeze.trapezoids
     lines.push(`Trapeze before drawing: ${blame(theirs.before, trapeze, beforeStages)}: it takes ` +
       `${ms(nanoseconds)} ns a trapezoid drawn, and would have to take ` +
-      `${ms(theirs.before / trapezeGoal)} ms a view. ${spread}`)
+      `${ms(theirs.before / trapezeGoal)} ms a view; ${spread}`)
   } else {
     lines.push(`Trapeze before drawing: ${spread}`)
   }

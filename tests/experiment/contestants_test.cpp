@@ -46,7 +46,7 @@ class ContestantsTest : public ::testing::TestWithParam<Method> {
 
 TEST_P(ContestantsTest, DrawTheSame) {
   for (const Topology topology : {Topology::strict, Topology::fast}) {
-    if (!is_possible(GetParam(), topology)) continue;
+    if (!is_possible(GetParam(), topology, map_)) continue;
     const auto contestant = make_contestant(GetParam(), topology, map_, screen_);
     const auto expected = make_contestant(Method::lifespans, Topology::fast, map_, screen_);
     contestant->start_run();
