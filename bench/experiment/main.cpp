@@ -74,7 +74,7 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
   app.add_option("--contestants", a.race.methods,
                  "Only these: dp, blg, cdt, all, paper, trapeze, dust, none")
       ->delimiter(',')
-      ->transform(CLI::Transformer(methods_by_name()));
+      ->transform(CLI::CheckedTransformer(methods_by_name()));
   app.add_option("--seed", a.trip.seed, "Of the trip, 1 if not set");
   app.add_option("--simplify", a.trip.simplify_pixels, "Tolerance in pixels, 0.25 if not set")
       ->check(CLI::Range(0.01, 64.0));
