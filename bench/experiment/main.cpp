@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <future>
 #include <iostream>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,9 +46,19 @@ struct Arguments {
   }
 };
 
-std::map<std::string, Method> methods_by_name() {
-  std::map<std::string, Method> methods;
-  for (const Method method : kMethods) methods.emplace(name_of(method), method);
+std::vector<std::string> names_of_methods() {
+  std::vector<std::string> names;
+  for (const Method method : kMethods) names.emplace_back(name_of(method));
+  return names;
+}
+
+std::vector<Method> methods_named(const std::vector<std::string>& names) {
+  std::vector<Method> methods;
+  for (const Method method : kMethods) {
+    if (std::find(names.begin(), names.end(), name_of(method)) != names.end()) {
+      methods.push_back(method);
+    }
+  }
   return methods;
 }
 
@@ -71,10 +80,11 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
                  "Of a map, with one treatment of topology: runs that would end later than this\n"
                  "are not begun, but for the first; 120 if not set")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--contestants", a.race.methods,
+  std::vector<std::string> contestants = names_of_methods();
+  app.add_option("--contestants", contestants,
                  "Only these: dp, blg, cdt, all, paper, trapeze, dust, none")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(methods_by_name()));
+      ->check(CLI::IsMember(names_of_methods()));
   app.add_option("--seed", a.trip.seed, "Of the trip, 1 if not set");
   app.add_option("--simplify", a.trip.simplify_pixels, "Tolerance in pixels, 0.25 if not set")
       ->check(CLI::Range(0.01, 64.0));
@@ -87,6 +97,7 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
   app.add_option("--output", a.output, "Folder for experiment.json and the pictures")
       ->type_name("DIR");
   app.parse(argc, argv);
+  a.race.methods = methods_named(contestants);
   return a;
 }
 
