@@ -197,6 +197,32 @@ class Composer::Canvas {
     last_key_ = 0;  // what it stands for ends with the layer
   }
 
+  /// Changes every pixel, by mix(mixture, level, level of the pattern). Nothing is changed where
+  /// the level is 0.
+  template <typename Mix>
+  void paint(const Coverage* coverage, const Coverage& pattern, const Mix& mix) {
+    mixed_.clear();
+    last_key_ = 0;
+    const std::uint8_t* patterns = pattern.pixels().data();
+    const std::uint8_t* levels = coverage == nullptr ? nullptr : coverage->pixels().data();
+    for (std::size_t i = 0; i < size_; i += kBlock) {
+      const std::size_t count = std::min(kBlock, size_ - i);
+      const bool is_empty = levels != nullptr && count == kBlock && block_at(levels + i) == 0;
+      if (is_empty) continue;
+      std::uint32_t& block = blocks_[i / kBlock];
+      if (block != kMixed) std::fill_n(pixels_.data() + i, kBlock, block);
+      block = kMixed;
+      for (std::size_t k = i; k < i + count; ++k) {
+        const std::uint8_t level = levels == nullptr ? 255 : levels[k];
+        if (level == 0) continue;
+        const std::uint32_t below = pixels_[k];
+        pixels_[k] = number_of(std::uint64_t{below} << 16 | std::uint64_t{level} << 8 | patterns[k],
+                               [&] { return mix(mixtures_[below], level, patterns[k]); });
+      }
+    }
+    last_key_ = 0;
+  }
+
   /// Changes the mixtures themselves, by change(mixture).
   template <typename Change>
   void change_all(const Change& change) {
@@ -373,6 +399,16 @@ auto laid_over(Rgba colour, double opacity = 1) {
              const Paint& below, std::uint8_t level) { return over(paints[level], below); };
 }
 
+/// How a colour with the layer's pattern in it is laid over what is there.
+auto patterned(Rgba colour, const PaintedLayer& layer) {
+  return [fills = paints_of(colour), patterns = paints_of(layer.pattern_colour),
+          opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t level,
+                                                       std::uint8_t pattern_level) {
+    const Paint fill = beside(fills[level], share_of(level), {});
+    return over(mixed(within(patterns[pattern_level], fill), opacity, {}, 0), below);
+  };
+}
+
 }  // namespace
 
 Rgba Picture::at(int column, int row) const {
@@ -403,13 +439,17 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
 }
 
 void Composer::paint(const PaintedLayer& layer) {
-  const bool is_plain =
-      layer.classes.size() == 1 && layer.pattern == nullptr && layer.lines.empty();
-  if (!is_plain) {
-    paint_together(layer);
-  } else if (layer.classes.front().colour.a > 0) {
-    const PaintedClass& only = layer.classes.front();
-    canvas_->paint(only.coverage, laid_over(only.colour, layer.opacity));
+  const bool is_separable = layer.lines.empty() || layer.opacity == 1;
+  if (layer.classes.size() > 1 || !is_separable) return paint_together(layer);
+  for (const PaintedClass& only : layer.classes) {
+    if (layer.pattern != nullptr) {
+      canvas_->paint(only.coverage, *layer.pattern, patterned(only.colour, layer));
+    } else if (only.colour.a > 0) {
+      canvas_->paint(only.coverage, laid_over(only.colour, layer.opacity));
+    }
+  }
+  for (const PaintedClass& line : layer.lines) {
+    canvas_->paint(line.coverage, laid_over(line.colour));
   }
 }
 

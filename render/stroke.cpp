@@ -1,6 +1,7 @@
 #include "render/stroke.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -8,9 +9,11 @@ namespace trapeze {
 namespace {
 
 constexpr double kMiterLimit = 4;
+// Lines go on beyond their ends by so many pixels, so that joins that open less need not be drawn.
+constexpr double kOverlap = 1.0 / 32;
 
-std::uint8_t to_level(double coverage) {
-  return static_cast<std::uint8_t>(coverage * 255 + 0.5);
+std::uint8_t to_level(float coverage) {
+  return static_cast<std::uint8_t>(coverage * 255 + 0.5f);
 }
 
 struct Columns {
@@ -20,10 +23,33 @@ struct Columns {
 
 /// The columns whose centres lie between two places, within a picture.
 Columns columns_between(double min, double max, int width) {
-  const double begin = std::clamp(std::ceil(min - 0.5), 0.0, static_cast<double>(width));
-  const double end = std::clamp(std::floor(max - 0.5) + 1, begin, static_cast<double>(width));
-  return {static_cast<int>(begin), static_cast<int>(end)};
+  const double first = std::clamp(min - 0.5, 0.0, static_cast<double>(width));
+  const double last = std::clamp(max - 0.5, -1.0, static_cast<double>(width - 1));
+  const int begin = static_cast<int>(first) + (first > static_cast<int>(first) ? 1 : 0);
+  const int end = last < 0 ? 0 : static_cast<int>(last) + 1;
+  return {begin, std::max(begin, end)};
 }
+
+/// Of what is between `from` and `to` for factor * x + offset; solved for x.
+struct Slab {
+  double inverse = 0;  // of the factor; 0 if that is none
+  double from = 0;
+  double to = 0;
+
+  Slab(double factor, double slab_from, double slab_to)
+      : inverse(std::abs(factor) < 1e-12 ? 0 : 1 / factor), from(slab_from), to(slab_to) {}
+
+  void narrow(double offset, double& min, double& max) const {
+    if (inverse == 0) {
+      if (offset < from || offset > to) max = min - 1;
+      return;
+    }
+    const double a = (from - offset) * inverse;
+    const double b = (to - offset) * inverse;
+    min = std::max(min, std::min(a, b));
+    max = std::min(max, std::max(a, b));
+  }
+};
 
 }  // namespace
 
@@ -61,28 +87,40 @@ class Stroker::Pen {
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
     const Columns rows = columns_between(top, bottom, levels_.height());
-    for (int row = rows.begin; row < rows.end; ++row) draw_row(line, row);
+    const Slab beside(line.dx, -kOverlap, line.length + kOverlap);
+    const Slab near(line.dy, -reach(), reach());
+    for (int row = rows.begin; row < rows.end; ++row) {
+      const double y = row + 0.5 - line.from.y;
+      double min = -line.from.x;
+      double max = levels_.width() - line.from.x;
+      beside.narrow(y * line.dy, min, max);
+      near.narrow(-y * line.dx, min, max);
+      if (min <= max) draw_row(line, row, y, min + line.from.x, max + line.from.x);
+    }
   }
 
   // Round what is nearest to the end of lines that nothing or too much is joined to.
   void draw_dot(Place centre, double along) {
-    const double dash = dash_coverage(along);
-    for_each_pixel_around(centre, reach(),
-                          [&](double x, double y) { return dash * across(std::hypot(x, y)); });
+    const float dash = dash_coverage(along);
+    for_each_pixel_around(centre, reach(), [&](double x, double y) {
+      return dash * across(static_cast<float>(std::sqrt(x * x + y * y)));
+    });
   }
 
   // Of `in`, which ends there, and `out`, which begins there.
   void draw_join(const Line& in, const Line& out) {
     const double cosine = std::clamp(in.dx * out.dx + in.dy * out.dy, -1.0, 1.0);
+    const double opening = std::abs(in.dx * out.dy - in.dy * out.dx) * reach();
+    if (cosine > 0 && opening < kOverlap) return;
     const double half_cosine = std::sqrt((1 + cosine) / 2);  // of half the turn
     const LineJoin join =
         join_ == LineJoin::miter && half_cosine * kMiterLimit < 1 ? LineJoin::bevel : join_;
     const double radius = join == LineJoin::miter ? half_ / half_cosine + 0.5 : reach();
-    const double dash = dash_coverage(out.along);
+    const float dash = dash_coverage(out.along);
     for_each_pixel_around(out.from, radius, [&](double x, double y) {
       const bool is_beside_a_line = x * in.dx + y * in.dy < 0 || x * out.dx + y * out.dy > 0;
-      if (is_beside_a_line) return 0.0;
-      return dash * across(distance(join, in, out, half_cosine, x, y));
+      if (is_beside_a_line) return 0.0f;
+      return dash * across(static_cast<float>(distance(join, in, out, half_cosine, x, y)));
     });
   }
 
@@ -90,23 +128,25 @@ class Stroker::Pen {
   // The distance from a vertex of a place near it, as the join has it.
   double distance(LineJoin join, const Line& in, const Line& out, double half_cosine, double x,
                   double y) const {
-    if (join == LineJoin::round) return std::hypot(x, y);
+    if (join == LineJoin::round) return std::sqrt(x * x + y * y);
     if (join == LineJoin::miter) {
       return std::max(std::abs(x * in.dy - y * in.dx), std::abs(x * out.dy - y * out.dx));
     }
     const double bisector_x = in.dx - out.dx;
     const double bisector_y = in.dy - out.dy;
-    const double length = std::hypot(bisector_x, bisector_y);
-    if (length == 0) return std::hypot(x, y);
+    const double length = std::sqrt(bisector_x * bisector_x + bisector_y * bisector_y);
+    if (length == 0) return std::sqrt(x * x + y * y);
     return (x * bisector_x + y * bisector_y) / length + half_ * (1 - half_cosine);
   }
 
   // Of the stretch of a pixel at that distance from the middle of the line.
-  double across(double distance) const {
-    return std::clamp(std::min(distance + 0.5, half_) - std::max(distance - 0.5, -half_), 0.0, 1.0);
+  float across(float distance) const {
+    const float half = static_cast<float>(half_);
+    const float covered = std::min(distance + 0.5f, half) - std::max(distance - 0.5f, -half);
+    return std::min(std::max(covered, 0.0f), 1.0f);
   }
 
-  double dash_coverage(double along) const {
+  float dash_coverage(double along) const {
     if (dashes_.empty()) return 1;
     const double place = along - period_ * std::floor(along / period_);
     double coverage = 0;
@@ -118,40 +158,23 @@ class Stroker::Pen {
         begin = end + dashes_[i + 1];
       }
     }
-    return std::min(coverage, 1.0);
+    return static_cast<float>(std::min(coverage, 1.0));
   }
 
-  void draw_row(const Line& line, int row) {
-    const double y = row + 0.5 - line.from.y;
-    double min = -line.from.x;
-    double max = levels_.width() - line.from.x;
-    // Beside the line: 0 <= x * dx + y * dy <= length.
-    narrow(line.dx, y * line.dy, 0, line.length, min, max);
-    // Near it: |x * dy - y * dx| <= reach.
-    narrow(line.dy, -y * line.dx, -reach(), reach(), min, max);
-    if (min > max) return;
-    const Columns columns = columns_between(line.from.x + min, line.from.x + max, levels_.width());
+  void draw_row(const Line& line, int row, double y, double west, double east) {
+    const Columns columns = columns_between(west, east, levels_.width());
     std::uint8_t* out = levels_.row_begin(row);
+    const double x = columns.begin + 0.5 - line.from.x;
+    const auto offset = static_cast<float>(x * line.dy - y * line.dx);
+    const auto step = static_cast<float>(line.dy);
     for (int column = columns.begin; column < columns.end; ++column) {
-      const double x = column + 0.5 - line.from.x;
-      double coverage = across(std::abs(x * line.dy - y * line.dx));
-      if (!dashes_.empty()) coverage *= dash_coverage(line.along + x * line.dx + y * line.dy);
+      const int i = column - columns.begin;
+      float coverage = across(std::abs(offset + static_cast<float>(i) * step));
+      if (!dashes_.empty()) {
+        coverage *= dash_coverage(line.along + (x + i) * line.dx + y * line.dy);
+      }
       out[column] = std::max(out[column], to_level(coverage));
     }
-  }
-
-  // To the x for which from <= factor * x + offset <= to.
-  static void narrow(double factor, double offset, double from, double to, double& min,
-                     double& max) {
-    constexpr double kLevel = 1e-12;
-    if (std::abs(factor) < kLevel) {
-      if (offset < from || offset > to) max = min - 1;
-      return;
-    }
-    const double a = (from - offset) / factor;
-    const double b = (to - offset) / factor;
-    min = std::max(min, std::min(a, b));
-    max = std::min(max, std::max(a, b));
   }
 
   template <typename CoverageAt>
@@ -161,7 +184,7 @@ class Stroker::Pen {
     for (int row = rows.begin; row < rows.end; ++row) {
       std::uint8_t* out = levels_.row_begin(row);
       for (int column = columns.begin; column < columns.end; ++column) {
-        const double coverage = coverage_at(column + 0.5 - centre.x, row + 0.5 - centre.y);
+        const float coverage = coverage_at(column + 0.5 - centre.x, row + 0.5 - centre.y);
         out[column] = std::max(out[column], to_level(coverage));
       }
     }
@@ -182,49 +205,48 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   measure(vertices, edges, view);
   Pen pen(stroke, scale, levels);
   for (const Line& line : lines_) pen.draw_line(line);
-  for (std::size_t begin = 0; begin < ends_.size();) {
-    std::size_t end = begin;
-    while (end < ends_.size() && ends_[end].vertex == ends_[begin].vertex) ++end;
-    draw_vertex(std::span(ends_).subspan(begin, end - begin), pen);
-    begin = end;
+  meet_.assign(std::bit_ceil(4 * edges.size() + 1), Meeting());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    meet(edges[i].from, lines_[i], pen);
+    meet(edges[i].to, lines_[i].turned(), pen);
+  }
+  for (const Meeting& meeting : meet_) {
+    if (meeting.count == 1) pen.draw_dot(meeting.line.from, meeting.line.along);
   }
 }
 
 void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                       const View& view) {
+  const double pixels_per_cell = 1 / view.cells_per_pixel;
   const auto place_of = [&](std::uint32_t vertex) {
     const Point p = vertices[vertex];
-    return Place{static_cast<double>(p.x - view.origin_x) / view.cells_per_pixel,
-                 static_cast<double>(p.y - view.origin_y) / view.cells_per_pixel};
+    return Place{static_cast<double>(p.x - view.origin_x) * pixels_per_cell,
+                 static_cast<double>(p.y - view.origin_y) * pixels_per_cell};
   };
   lines_.clear();
-  ends_.clear();
   for (const OutlineEdge& edge : edges) {
-    const auto line = static_cast<std::uint32_t>(lines_.size());
-    ends_.push_back({edge.from, line, true});
-    ends_.push_back({edge.to, line, false});
     const Place from = place_of(edge.from);
     const Place to = place_of(edge.to);
-    const double length = std::hypot(to.x - from.x, to.y - from.y);
-    lines_.push_back({from, to, (to.x - from.x) / length, (to.y - from.y) / length, length,
-                      edge.along / view.cells_per_pixel});
+    const double dx = to.x - from.x;
+    const double dy = to.y - from.y;
+    const double length = std::sqrt(dx * dx + dy * dy);
+    lines_.push_back({from, to, dx / length, dy / length, length, edge.along * pixels_per_cell});
   }
-  std::sort(ends_.begin(), ends_.end());
 }
 
-void Stroker::draw_vertex(std::span<const End> ends, Pen& pen) const {
-  const Line first = leaving(ends[0]);
-  if (ends.size() == 2) {
-    pen.draw_join(first.turned(), leaving(ends[1]));
+// The line leaves the vertex. Two that meet are joined; where more do, rings touch.
+void Stroker::meet(std::uint32_t vertex, const Line& line, Pen& pen) {
+  std::size_t i = (vertex * 0x9e3779b1u) & (meet_.size() - 1);
+  while (meet_[i].count > 0 && meet_[i].vertex != vertex) i = (i + 1) & (meet_.size() - 1);
+  Meeting& meeting = meet_[i];
+  if (++meeting.count == 1) {
+    meeting.vertex = vertex;
+    meeting.line = line;
+  } else if (meeting.count == 2) {
+    pen.draw_join(meeting.line.turned(), line);
   } else {
-    pen.draw_dot(first.from, first.along);
+    pen.draw_dot(line.from, line.along);
   }
-}
-
-// The line as it goes away from its end.
-Stroker::Line Stroker::leaving(const End& end) const {
-  const Line& line = lines_[end.line];
-  return end.is_first ? line : line.turned();
 }
 
 }  // namespace trapeze

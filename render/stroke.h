@@ -62,21 +62,20 @@ class Stroker {
 
     Line turned() const;
   };
-  struct End {
-    std::uint32_t vertex;
-    std::uint32_t line;
-    bool is_first;  // the line's `from`
-    friend auto operator<=>(const End&, const End&) = default;
+  // What is known of a vertex while lines are joined.
+  struct Meeting {
+    std::uint32_t vertex = 0;
+    std::uint32_t count = 0;  // of lines met there
+    Line line = {};           // the first, as it leaves
   };
   class Pen;
 
   void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                const View& view);
-  void draw_vertex(std::span<const End> ends, Pen& pen) const;
-  Line leaving(const End& end) const;
+  void meet(std::uint32_t vertex, const Line& line, Pen& pen);
 
   std::vector<Line> lines_;
-  std::vector<End> ends_;
+  std::vector<Meeting> meet_;  // by vertex, open addressing
 };
 
 }  // namespace trapeze

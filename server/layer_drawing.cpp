@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace trapeze {
@@ -168,11 +167,21 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const Featur
   for (std::size_t number = 0; number < by_class.size(); ++number) {
     add_edges(by_class[number], static_cast<std::uint8_t>(number), tools);
   }
-  for (std::size_t i = 0; i < line_count_; ++i) {  // most edges are sides of many trapezoids
-    std::vector<OutlineEdge>& edges = lines_[i].edges;
-    const auto key = [](const OutlineEdge& edge) { return std::pair(edge.from, edge.to); };
-    std::ranges::sort(edges, {}, key);
-    edges.erase(std::ranges::unique(edges, {}, key).begin(), edges.end());
+  for (std::size_t i = 0; i < line_count_; ++i) take_sides(selection.box, lines_[i]);
+}
+
+// Most edges are sides of several trapezoids, and some of these reach far out of the box.
+void LayerDrawing::take_sides(const Box& box, Lines& lines) const {
+  const MeshView& mesh = layer_->mesh();
+  std::ranges::sort(lines.sides);
+  const auto repeated = std::ranges::unique(lines.sides);
+  lines.sides.erase(repeated.begin(), repeated.end());
+  for (const std::uint32_t side : lines.sides) {
+    const MeshEdge& edge = mesh.edges[side];
+    Box around;
+    around.include(mesh.vertices[edge.upper]);
+    around.include(mesh.vertices[edge.lower]);
+    if (around.intersects(box)) lines.edges.push_back({edge.upper, edge.lower, 0});
   }
 }
 
@@ -183,6 +192,7 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   if (line_count_ == lines_.size()) lines_.emplace_back();
   Lines& lines = lines_[line_count_++];
   lines.colour = colour;
+  lines.sides.clear();
   lines.edges.clear();
   return lines;
 }
@@ -199,10 +209,8 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   const MeshView& mesh = layer_->mesh();
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
     if (layer_->feature_of(i) == Layer::kNoFeature) return;  // dust has no outline
-    const MeshTrapezoid& trapezoid = mesh.trapezoids[i];
-    for (const std::uint32_t side : {trapezoid.left, trapezoid.right}) {
-      lines.edges.push_back({mesh.edges[side].upper, mesh.edges[side].lower, 0});
-    }
+    lines.sides.push_back(mesh.trapezoids[i].left);
+    lines.sides.push_back(mesh.trapezoids[i].right);
   });
 }
 

@@ -77,6 +77,7 @@ class LayerDrawing {
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
+    std::vector<std::uint32_t> sides;  // edges of the mesh, before they are taken once each
     std::vector<OutlineEdge> edges;
     Coverage coverage;
   };
@@ -93,6 +94,7 @@ class LayerDrawing {
                      DrawingTools& tools);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number, DrawingTools& tools);
+  void take_sides(const Box& box, Lines& lines) const;
   void add_dashed_edges(std::span<const TrapezoidRange> ranges, Lines& lines, DrawingTools& tools);
 
   const LayerPaint* paint_ = nullptr;
