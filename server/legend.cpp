@@ -200,6 +200,9 @@ OrProblem<Document> legend_as_json(std::string_view file, const DocumentRequest&
 OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& request) {
   const auto name = parse_picture_name(file);
   if (const auto* problem = std::get_if<Problem>(&name)) return *problem;
+  if (std::get<PictureName>(name).format != TileFormat::png) {
+    return Problem{400, "Legends are pictures in PNG, or JSON."};
+  }
   const auto layers = parse_layer_list(std::get<PictureName>(name).stem);
   if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
   const auto legend = legend_of(std::get<0>(layers), request);

@@ -8,6 +8,7 @@
 
 #include "render/debug_marks.h"
 #include "render/stopwatch.h"
+#include "render/webp.h"
 
 namespace trapeze {
 namespace {
@@ -126,8 +127,8 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
   if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
-  tile.png = is_constant ? constant_png(picture_.at(0, 0), view.width)
-                         : std::make_shared<const std::string>(encoder_.encode(picture_));
+  tile.png = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
+                         : std::make_shared<const std::string>(encode(plan.format));
   return tile;
 }
 
@@ -144,13 +145,16 @@ TileHint TilePainter::hint_of(const Sketch& sketch) const {
   return hint;
 }
 
-std::shared_ptr<const std::string> TilePainter::constant_png(Rgba colour, int side) {
-  auto& png = constants_[{to_hex(colour), side}];
-  if (png != nullptr) return png;
-  Picture picture;
-  composer_.compose({}, side, side, colour, picture);
-  const auto made = std::make_shared<const std::string>(encoder_.encode(picture));
-  png = made;
+std::string TilePainter::encode(TileFormat format) {
+  return format == TileFormat::webp ? encode_webp(picture_) : encoder_.encode(picture_);
+}
+
+std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, TileFormat format) {
+  auto& bytes = constants_[{to_hex(colour), side, format}];
+  if (bytes != nullptr) return bytes;
+  composer_.compose({}, side, side, colour, picture_);
+  const auto made = std::make_shared<const std::string>(encode(format));
+  bytes = made;
   if (constants_.size() > kMaxConstants) constants_.clear();
   return made;
 }

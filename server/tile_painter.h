@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -87,14 +88,16 @@ class TilePainter {
   DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
   PaintedTile finish(const TilePlan& plan, const Sketch& sketch);
   TileHint hint_of(const Sketch& sketch) const;
-  std::shared_ptr<const std::string> constant_png(Rgba colour, int side);
+  std::string encode(TileFormat format);
+  std::shared_ptr<const std::string> constant(Rgba colour, int side, TileFormat format);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<CoverageRenderer> renderer_;
   std::shared_ptr<FeatureClassCache> classes_;
   Composer composer_;
   PngEncoder encoder_;
-  std::map<std::pair<std::string, int>, std::shared_ptr<const std::string>> constants_;
+  using ConstantKey = std::tuple<std::string, int, TileFormat>;  // colour, side
+  std::map<ConstantKey, std::shared_ptr<const std::string>> constants_;
   // Kept from tile to tile only for their memory.
   std::deque<LayerDrawing> drawings_;  // tasks point into them
   std::size_t drawing_count_ = 0;

@@ -58,6 +58,7 @@ std::string TilePlan::key() const {
                        static_cast<int>(paint.topology), static_cast<int>(paint.small),
                        paint.style.key());
   }
+  if (format == TileFormat::webp) key += " webp";
   if (debug.any())
     key += fmt::format(" debug {:d}{:d}{:d}", debug.mesh, debug.vertices, debug.tile);
   return key;
@@ -77,7 +78,9 @@ double tolerance_in_pixels(const StyleQuery& query, const LayerConfig& config) {
 }
 
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
-  TilePlan plan{dataset, request.tile, request.scale, kTransparent, {}, debug_marks(request.style)};
+  TilePlan plan{dataset,       request.tile, request.scale,
+                kTransparent,  {},           debug_marks(request.style),
+                request.format};
   if (const auto background = request.style.value_for({}, ParameterId::background)) {
     const Rgba colour = std::get<Rgba>(*background);
     if (colour.a > 0) plan.background = colour;

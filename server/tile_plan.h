@@ -47,6 +47,7 @@ struct TilePlan {
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
   DebugMarks debug = {};
+  TileFormat format = TileFormat::png;
 
   /// The level of a quarter of a pixel of the picture.
   Level pixel_level() const;

@@ -6,11 +6,14 @@
 #include <charconv>
 #include <optional>
 
+#include "render/webp.h"
+
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].png";
+constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].{png,webp}";
 constexpr std::string_view kPng = ".png";
+constexpr std::string_view kWebp = ".webp";
 constexpr std::string_view kJson = ".json";
 
 bool is_digit(char c) {
@@ -45,7 +48,8 @@ OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
   TileRequest request{std::move(std::get<0>(layers)),
                       std::get<TileId>(tile),
                       std::get<PictureName>(file).scale,
-                      {}};
+                      {},
+                      std::get<PictureName>(file).format};
   auto style = StyleQuery::parse(query, request.layers);
   if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
   request.style = std::move(std::get<StyleQuery>(style));
@@ -70,6 +74,10 @@ void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
 }
 
 }  // namespace
+
+std::string_view content_type_of(TileFormat format) {
+  return format == TileFormat::webp ? "image/webp" : "image/png";
+}
 
 bool is_layer_name(std::string_view name) {
   return !name.empty() && name.size() <= kMaxLayerNameLength &&
@@ -100,12 +108,18 @@ OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
 }
 
 OrProblem<PictureName> parse_picture_name(std::string_view name) {
-  if (!name.ends_with(kPng)) {
-    return Problem{400, fmt::format("Pictures are PNG: {}.", kTilePattern)};
+  const bool is_webp = name.ends_with(kWebp);
+  if (!is_webp && !name.ends_with(kPng)) {
+    return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", kTilePattern)};
   }
-  name.remove_suffix(kPng.size());
+  if (is_webp && !has_webp()) {
+    return Problem{400, "This server was built without WebP: ask for .png.", "format", "webp",
+                   "png"};
+  }
+  const TileFormat format = is_webp ? TileFormat::webp : TileFormat::png;
+  name.remove_suffix(is_webp ? kWebp.size() : kPng.size());
   const std::size_t at = name.find('@');
-  if (at == std::string_view::npos) return PictureName{name, 1};
+  if (at == std::string_view::npos) return PictureName{name, 1, format};
   const std::string_view suffix = name.substr(at + 1);
   const bool is_scale =
       suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
@@ -113,7 +127,7 @@ OrProblem<PictureName> parse_picture_name(std::string_view name) {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
                    std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
   }
-  return PictureName{name.substr(0, at), suffix[0] - '0'};
+  return PictureName{name.substr(0, at), suffix[0] - '0', format};
 }
 
 OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {

@@ -1,6 +1,7 @@
 // What a URL below /tiles/ asks for, as types. Everything here is hostile until parsed.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,12 +21,18 @@ constexpr int kMaxScale = 4;
 /// Whether `name` can name a layer: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
 bool is_layer_name(std::string_view name);
 
-/// One tile: /tiles/{layers}[/s/{style}]/{z}/{x}/{y}[@{1-4}x].png
+enum class TileFormat : std::uint8_t { png, webp };
+
+/// "image/png" or "image/webp".
+std::string_view content_type_of(TileFormat format);
+
+/// One tile: /tiles/{layers}[/s/{style}]/{z}/{x}/{y}[@{1-4}x].{png,webp}
 struct TileRequest {
   std::vector<std::string> layers;  // valid names, each once, bottom first
   TileId tile;                      // valid
   int scale = 1;
   StyleQuery style;
+  TileFormat format = TileFormat::png;
 };
 
 /// A description of tiles: /tiles/{layers}.json
@@ -50,6 +57,7 @@ OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list);
 struct PictureName {
   std::string_view stem;  // "7" of "7@2x.png"
   int scale = 1;
+  TileFormat format = TileFormat::png;
 };
 OrProblem<PictureName> parse_picture_name(std::string_view name);
 
