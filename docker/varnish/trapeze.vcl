@@ -60,6 +60,13 @@ sub vcl_hash {
     return (lookup);
 }
 
+sub vcl_backend_fetch {
+    # The second attempt goes to the server that is next for this URL.
+    if (bereq.retries > 0) {
+        set bereq.backend = trapeze.backend(by = URL, alt = bereq.retries);
+    }
+}
+
 sub vcl_backend_response {
     if (beresp.status >= 500 || beresp.status == 429) {
         set beresp.uncacheable = true;
@@ -72,7 +79,6 @@ sub vcl_backend_response {
 
 sub vcl_backend_error {
     if (bereq.retries < 1) {
-        set bereq.backend_hint = trapeze.backend(by = URL, alt = 1);
         return (retry);
     }
 }
