@@ -151,6 +151,7 @@ std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>&
 /// False if the reloader is to end.
 bool Reloader::wait_for_a_reason() {
   while (true) {
+    forget_retired();  // here, so that it is done however often somebody asks
     {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, watch_.count() > 0 ? watch_ : kTick,
@@ -161,7 +162,6 @@ bool Reloader::wait_for_a_reason() {
         return true;
       }
     }
-    forget_retired();
     if (watch_.count() > 0 && has_settled_change()) {
       spdlog::info("reading the layers again, as files have changed");
       return true;
