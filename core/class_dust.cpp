@@ -17,6 +17,21 @@ std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixe
   return std::uint64_t{feature_class} << 56 | number(y) << 28 | number(x);
 }
 
+/// The box, moved so that it lies within a pixel if it is no larger.
+Box within_pixel(const Box& box, double x, double y, double pixel) {
+  const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) -> std::int64_t {
+    const double begin = kGridMin + std::floor((at - kGridMin) / pixel) * pixel;
+    if (max - min > pixel) return 0;
+    return std::llround(std::max(begin - min, std::min(0.0, begin + pixel - max)));
+  };
+  const std::int64_t dx = shift(box.min_x, box.max_x, x);
+  const std::int64_t dy = shift(box.min_y, box.max_y, y);
+  const auto moved = [](std::int32_t v, std::int64_t by) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v + by, kGridMin, kGridMax));
+  };
+  return {moved(box.min_x, dx), moved(box.min_y, dy), moved(box.max_x, dx), moved(box.max_y, dy)};
+}
+
 }  // namespace
 
 void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, double pixel,
@@ -44,7 +59,9 @@ void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, do
   for (const std::uint64_t key : keys_) {
     const Sum& sum = sums_[key];
     if (std::abs(sum.area) < kSmallestArea) continue;
-    motes.push_back({box_of_mote(sum.x / sum.weight, sum.y / sum.weight, std::abs(sum.area)),
+    const double x = sum.x / sum.weight;
+    const double y = sum.y / sum.weight;
+    motes.push_back({within_pixel(box_of_mote(x, y, std::abs(sum.area)), x, y, pixel),
                      static_cast<std::uint8_t>(key >> 56), sum.area < 0});
   }
 }

@@ -213,7 +213,7 @@ std::optional<Rgba> parse_hex(std::string_view text) {
 }
 
 std::optional<Rgba> parse_name(std::string_view text) {
-  if (text == "transparent") return kTransparent;
+  if (text == "transparent" || text == "none") return kTransparent;
   const auto found = std::lower_bound(
       kNamedColours.begin(), kNamedColours.end(), text,
       [](const NamedColour& colour, std::string_view name) { return colour.name < name; });

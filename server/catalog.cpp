@@ -37,9 +37,14 @@ Json fields_json(const FeatureTable& features) {
 /// parameters.
 Json style_json(const LayerConfig& config, std::size_t position) {
   Rgba fill = default_fill(config, position);
-  const double opacity = config.style.fill_opacity * fill.a / 255.0;
+  const ParameterValue* set = config.style.find({}, ParameterId::fill_opacity);
+  const double opacity = (set != nullptr ? std::get<double>(*set) : 1.0) * fill.a / 255.0;
   fill.a = 255;
-  return {{"fill", css_colour(fill)}, {"fill-opacity", opacity}};
+  Json json = {{"fill", css_colour(fill)}, {"fill-opacity", opacity}};
+  for (const auto& [name, value] : config.style.pairs()) {
+    if (!json.contains(name)) json[name] = value;
+  }
+  return json;
 }
 
 Json layer_json(const ServedLayer& served, std::size_t position, const std::string& base_url) {

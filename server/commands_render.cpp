@@ -44,7 +44,8 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   request.scale = arguments.scale;
   const auto query = decode_query(arguments.style);
   if (!query) throw std::runtime_error("--style takes a query string such as fill=red");
-  request.style = value_or_throw(StyleQuery::parse(*query, request.layers));
+  const auto expanded = value_or_throw(StyleBook().expand(*query));
+  request.style = value_or_throw(StyleQuery::parse(expanded, request.layers));
   return request;
 }
 

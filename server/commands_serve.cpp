@@ -52,6 +52,12 @@ void warn_of_other_changes(const Config& running, const Config& now) {
     if (setting.get(running) == setting.get(now)) continue;
     spdlog::warn("{} has changed: that takes a new start of the server", setting.name());
   }
+  const auto is_same = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.canonical_text() == b.second.canonical_text();
+  };
+  if (!std::ranges::equal(running.styles, now.styles, is_same)) {
+    spdlog::warn("styles have changed: that takes a new start of the server");
+  }
 }
 
 LayerSource layer_source(const ServeArguments& arguments, const Config& running) {

@@ -14,8 +14,10 @@
 
 #include "server/config_settings.h"
 #include "server/expand_variables.h"
+#include "server/style_book.h"
 #include "server/style_parameters.h"
 #include "server/tile_request.h"
+#include "server/url.h"
 
 namespace trapeze {
 namespace {
@@ -53,11 +55,14 @@ class ConfigReader {
     for (const auto& [key, node] : root) {
       if (key.str() == "layer") {
         read_layers(node);
+      } else if (key.str() == "styles") {
+        read_styles(node);
       } else if (is_table_of_settings(key.str())) {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
-             fmt::format("unknown key {}; allowed here are server, limits, log, admin, layer",
+             fmt::format("unknown key {}; allowed here are server, limits, log, admin, "
+                         "styles, layer",
                          key.str()));
       }
     }
@@ -204,7 +209,7 @@ class ConfigReader {
                                  : "layer";
     const std::size_t before = loaded_.problems.size();
     read_settings(table, layer_settings(), layer, name, "style");
-    if (const toml::node* style = table.get("style")) read_style(*style, layer.style);
+    if (const toml::node* style = table.get("style")) layer.style = read_layer_style(*style);
     if (table.get("name") == nullptr) {
       fail(table, "every [[layer]] needs a name of 1 to 64 letters, digits, '_' or '-'");
     }
@@ -228,33 +233,104 @@ class ConfigReader {
     loaded_.config.layers.push_back(std::move(layer));
   }
 
-  void read_style(const toml::node& node, ConfiguredStyle& style) {
-    const toml::table* table = node.as_table();
-    if (table == nullptr) return fail(node, "layer.style takes a table");
-    for (const auto& [key, value] : *table) {
-      if (key.str() == "fill") {
-        read_fill(value, style);
-      } else if (key.str() == "fill_opacity") {
-        const auto share = value.is_number() ? value.value<double>() : std::nullopt;
-        if (!share || !(*share >= 0 && *share <= 1)) {
-          fail(value, "layer.style.fill_opacity takes a number from 0 to 1");
-        } else {
-          style.fill_opacity = *share;
-        }
-      } else {
-        fail(key.source().begin,
-             fmt::format("unknown key layer.style.{}; allowed here are fill, fill_opacity",
-                         key.str()));
+  /// As the value is written in a query; nothing for what has no place there.
+  std::optional<std::string> query_text_of(const toml::node& node) {
+    if (node.is_string()) return expanded(node);
+    if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    const toml::array* list = node.as_array();
+    if (list == nullptr) return std::nullopt;
+    std::string joined;
+    for (const toml::node& item : *list) {
+      const auto text = item.is_array() ? std::nullopt : query_text_of(item);
+      if (!text) return std::nullopt;
+      if (!joined.empty()) joined.push_back(',');
+      joined += *text;
+    }
+    return joined;
+  }
+
+  /// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables
+  /// are for one layer each, if they are allowed.
+  void read_style_pairs(const toml::table& table, const std::string& layer, bool has_layers,
+                        std::vector<QueryPair>& pairs) {
+    for (const auto& [key, node] : table) {
+      if (has_layers && node.is_table()) {
+        read_style_pairs(*node.as_table(), std::string(key.str()), false, pairs);
+      } else if (auto pair = read_style_pair(key, node, layer, has_layers)) {
+        pairs.push_back(std::move(*pair));
       }
     }
   }
 
-  void read_fill(const toml::node& node, ConfiguredStyle& style) {
-    style.fill = node.is_string() ? parse_colour(expanded(node)) : std::nullopt;
-    if (!style.fill) {
-      fail(node, fmt::format("layer.style.fill takes {}",
-                             describe_values(style_parameter(ParameterId::fill))));
+  std::optional<QueryPair> read_style_pair(const toml::key& key, const toml::node& node,
+                                           const std::string& layer, bool has_layers) {
+    std::string name(key.str());
+    std::ranges::replace(name, '_', '-');
+    const StyleParameter* parameter = find_style_parameter(name);
+    const bool is_for_all_layers = layer.empty() && has_layers;
+    if (parameter == nullptr || parameter->id == ParameterId::style ||
+        (!parameter->is_per_layer && !is_for_all_layers)) {
+      fail(key.source().begin, fmt::format("a style does not know \"{}\"", key.str()));
+      return std::nullopt;
     }
+    const auto text = query_text_of(node);
+    const QueryPair pair(layer.empty() ? name : layer + "." + name, text.value_or(""));
+    if (text && make_style({pair}, layer.empty() ? Names() : Names{layer})) return pair;
+    fail(node, fmt::format("{} takes {}", key.str(), describe_values(*parameter)));
+    return std::nullopt;
+  }
+
+  using Names = std::vector<std::string>;
+
+  static std::optional<StyleQuery> make_style(const std::vector<QueryPair>& pairs,
+                                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (std::holds_alternative<Problem>(style)) return std::nullopt;
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  StyleQuery read_layer_style(const toml::node& node) {
+    std::vector<QueryPair> pairs;
+    if (const toml::table* table = node.as_table()) {
+      read_style_pairs(*table, {}, false, pairs);
+    } else {
+      fail(node, "layer.style takes a table");
+    }
+    return style_or_problem(node, pairs, {});
+  }
+
+  /// Of pairs that are right one by one.
+  StyleQuery style_or_problem(const toml::node& node, const std::vector<QueryPair>& pairs,
+                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (const auto* problem = std::get_if<Problem>(&style)) {
+      fail(node, problem->detail);  // set twice, as fill_opacity and fill-opacity
+      return {};
+    }
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  void read_styles(const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return fail(node, "styles are tables, begun by [styles.NAME]");
+    for (const auto& [key, style] : *table) read_named_style(std::string(key.str()), style);
+  }
+
+  void read_named_style(const std::string& name, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (!is_style_name(name) || name == StyleBook::kDefaultName || table == nullptr) {
+      return fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name of "
+                                    "1 to 64 letters, digits, '_' or '-' other than \"{}\"",
+                                    StyleBook::kDefaultName));
+    }
+    std::vector<QueryPair> pairs;
+    read_style_pairs(*table, {}, true, pairs);
+    Names layers;
+    for (const auto& [layer, style] : *table) {
+      if (style.is_table()) layers.emplace_back(layer.str());
+    }
+    loaded_.config.styles.emplace(name, style_or_problem(node, pairs, layers));
   }
 
   const std::string& path_;

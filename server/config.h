@@ -18,11 +18,6 @@
 
 namespace trapeze {
 
-struct ConfiguredStyle {
-  std::optional<Rgba> fill;  // unset: a colour of the palette, by the layer's position
-  double fill_opacity = 1;   // 0 to 1
-};
-
 struct LayerConfig {
   std::string name;      // is_layer_name() holds
   std::string file;      // empty only if `prepared` is set
@@ -30,7 +25,7 @@ struct LayerConfig {
   std::string title;     // the name if not set
   std::string attribution;
   std::string description;
-  ConfiguredStyle style;
+  StyleQuery style;  // where a request says nothing; for all layers, so without their names
   std::vector<ParameterId> locked;    // what requests cannot set for the layer
   std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
   int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
@@ -49,6 +44,7 @@ struct ServerConfig {
   unsigned batch = 8;             // tiles drawn in one pass, at most
   unsigned cache_mb = 256;        // of memory for tiles that were drawn; 0: none are kept
   std::string cache_control = "public, max-age=3600";  // of tiles
+  unsigned posted_styles_mb = 16;                      // of memory for styles that are posted
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
   // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
@@ -67,6 +63,7 @@ struct LimitsConfig {
   std::size_t connections_per_address = 256;
   std::uint32_t header_bytes = 8192;            // request line and header together
   std::size_t target_bytes = kMaxTargetLength;  // path and query together
+  std::uint32_t body_bytes = 16 * 1024;         // of a request that has one
   std::size_t layers = kMaxLayersPerTile;       // of one tile
   int scale = kMaxScale;
   int zoom = kMaxZoom;
@@ -96,7 +93,8 @@ struct Config {
   LimitsConfig limits;
   LogConfig log;
   AdminConfig admin;
-  std::vector<LayerConfig> layers;  // names are unique
+  std::map<std::string, StyleQuery> styles;  // by name, for which is_style_name() holds
+  std::vector<LayerConfig> layers;           // names are unique
 };
 
 /// What is wrong with a configuration, where, and what is allowed.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "server/config_settings.h"
 #include "server/json_text.h"
@@ -49,14 +50,21 @@ std::string line(const std::string& key, const std::string& value, const LoadedC
                      found == loaded.origins.end() ? "default" : found->second);
 }
 
-std::string hex_colour(Rgba colour) {
-  return fmt::format("#{:02x}{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b, colour.a);
+/// The settings of a style as keys and values; what is for one layer has a dotted key.
+std::vector<std::string> style_assignments(const StyleQuery& style) {
+  std::vector<std::string> assignments;
+  for (const auto& [name, value] : style.pairs()) {
+    assignments.push_back(fmt::format("{} = {}", name, toml_string(value)));
+  }
+  return assignments;
 }
 
-std::string print_style(const ConfiguredStyle& style) {
-  const std::string fill =
-      style.fill ? fmt::format("fill = {}, ", toml_string(hex_colour(*style.fill))) : "";
-  return fmt::format("style = {{ {}fill_opacity = {} }}\n", fill, style.fill_opacity);
+std::string print_style(const StyleQuery& style) {
+  return fmt::format("style = {{ {} }}\n", fmt::join(style_assignments(style), ", "));
+}
+
+std::string print_named_style(const std::string& name, const StyleQuery& style) {
+  return fmt::format("\n[styles.{}]\n{}\n", name, fmt::join(style_assignments(style), "\n"));
 }
 
 std::string print_layer(const LayerConfig& layer, const LoadedConfig& loaded) {
@@ -115,14 +123,30 @@ Json closed_object() {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
 }
 
-Json style_schema() {
+/// Style parameters, in whose names '_' may stand for '-'.
+Json style_schema(bool is_for_all_layers) {
   Json schema = closed_object();
-  schema["description"] = "how the layer is drawn unless a request says otherwise";
-  schema["properties"]["fill"] = {
-      {"type", "string"}, {"description", describe_values(style_parameter(ParameterId::fill))}};
-  schema["properties"]["fill_opacity"] = {
-      {"type", "number"}, {"minimum", 0}, {"maximum", 1}, {"default", 1}};
+  for (const StyleParameter& parameter : style_parameters()) {
+    if (parameter.id == ParameterId::style) continue;
+    if (!parameter.is_per_layer && !is_for_all_layers) continue;
+    const Json value = {{"type", {"string", "number", "array"}},
+                        {"description", describe_values(parameter)}};
+    std::string name(parameter.name);
+    schema["properties"][name] = value;
+    std::ranges::replace(name, '-', '_');
+    schema["properties"][name] = value;
+  }
   return schema;
+}
+
+/// By name; with tables for single layers.
+Json styles_schema() {
+  Json style = style_schema(true);
+  style["additionalProperties"] = style_schema(false);
+  return {{"type", "object"},
+          {"description", "styles by name, for style=NAME"},
+          {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
+          {"additionalProperties", style}};
 }
 
 Json layer_schema() {
@@ -131,7 +155,9 @@ Json layer_schema() {
     schema["properties"][setting.key] = setting_schema(setting);
   }
   schema["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]{1,64}$";
-  schema["properties"]["style"] = style_schema();
+  schema["properties"]["style"] = style_schema(false);
+  schema["properties"]["style"]["description"] =
+      "how the layer is drawn unless a request says otherwise";
   schema["required"] = {"name"};
   schema["anyOf"] = {{{"required", {"file"}}}, {{"required", {"prepared"}}}};
   return schema;
@@ -149,6 +175,7 @@ std::string print_config(const LoadedConfig& loaded) {
     }
     text += line(setting.key, toml_text(setting.get(loaded.config)), loaded, setting.name());
   }
+  for (const auto& [name, style] : loaded.config.styles) text += print_named_style(name, style);
   for (const LayerConfig& layer : loaded.config.layers) text += print_layer(layer, loaded);
   return text;
 }
@@ -165,6 +192,7 @@ std::string config_schema() {
     if (table.is_null()) table = closed_object();
     table["properties"][setting.key] = setting_schema(setting);
   }
+  schema["properties"]["styles"] = styles_schema();
   schema["properties"]["layer"] = {{"type", "array"},
                                    {"description", "the layers, the first lies lowest"},
                                    {"items", layer_schema()}};

@@ -275,6 +275,9 @@ void append_server(std::vector<Setting<Config>>& all) {
   all.push_back(integer<Config>(
       "server.cache_mb", [](auto& c) -> auto& { return c.server.cache_mb; }, 0, 1'000'000,
       "memory for tiles that were drawn; 0: none are kept"));
+  all.push_back(integer<Config>(
+      "server.posted_styles_mb", [](auto& c) -> auto& { return c.server.posted_styles_mb; }, 0,
+      4096, "memory for styles that are posted"));
   all.push_back(parsed<Config>(
       "server.cache_control", [](auto& c) -> auto& { return c.server.cache_control; },
       "the value of a Cache-Control header", header_value, same,
@@ -332,6 +335,9 @@ void append_limits(std::vector<Setting<Config>>& all) {
       "limits.target_bytes", [](auto& c) -> auto& { return c.limits.target_bytes; }, 128,
       static_cast<std::int64_t>(kMaxTargetLength),
       "path and query together; more is answered with 414"));
+  all.push_back(integer<Config>(
+      "limits.body_bytes", [](auto& c) -> auto& { return c.limits.body_bytes; }, 0, 1 << 20,
+      "a style that is posted; more is answered with 413"));
   all.push_back(integer<Config>(
       "limits.layers", [](auto& c) -> auto& { return c.limits.layers; }, 1,
       static_cast<std::int64_t>(kMaxLayersPerTile), "layers of one tile"));

@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "server/dataset.h"
+#include "server/style_book.h"
 #include "server/url.h"
 
 namespace trapeze {
 
 struct DocumentRequest {
   const Dataset& dataset;
+  const StyleBook& styles;
   std::string base_url;           // how this server is reached, without a '/' at the end
   std::vector<std::string> path;  // decoded segments, hostile
-  std::vector<QueryPair> query;   // hostile
+  std::vector<QueryPair> query;   // hostile; what its style says is in it
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {

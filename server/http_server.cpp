@@ -265,7 +265,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
   Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
   if (error == http::error::body_limit) {
-    problem = {413, fmt::format("A request needs no body; at most {} bytes are taken.",
+    problem = {413, fmt::format("The body of a request is at most {} bytes long.",
                                 state_.options().body_limit)};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem = is_request_line_too_long()
@@ -288,8 +288,11 @@ Problem HttpServer::Connection::target_too_long() const {
 
 void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
   const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
-  request_ = {text(message.method_string()), text(message.target()),
-              text(message[http::field::host]), text(message[http::field::if_none_match]),
+  request_ = {text(message.method_string()),
+              text(message.target()),
+              text(message[http::field::host]),
+              text(message[http::field::if_none_match]),
+              message.body(),
               client_of(message)};
   version_ = message.version();
   keep_alive_ = message.keep_alive();

@@ -29,7 +29,7 @@ struct HttpServerOptions {
   std::size_t max_connections_per_address = 256;
   std::size_t target_limit = kMaxTargetLength;      // bytes of path and query together
   std::uint32_t header_limit = 8192;                // bytes of request line and header together
-  std::uint32_t body_limit = 1024;                  // no request needs a body
+  std::uint32_t body_limit = 16 * 1024;             // styles are posted
   std::chrono::milliseconds idle_timeout{30'000};   // until a request begins
   std::chrono::milliseconds read_timeout{10'000};   // from its first byte to its last
   std::chrono::milliseconds write_timeout{30'000};  // for a whole response

@@ -84,7 +84,7 @@ OrProblem<IdentifyRequest> parse_request(const DocumentRequest& request) {
   return parsed;
 }
 
-Level level_of(const IdentifyRequest& request, const std::string& layer) {
+Level level_of(const IdentifyRequest& request, const LayerConfig& layer) {
   if (!request.zoom) return 0;
   const double cells_per_pixel =
       static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
@@ -127,7 +127,7 @@ OrProblem<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
   const auto style = layer_style(request.style, served, position);
   if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
   if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
-  auto rows = features_at(*served.layer, request.place, level_of(request, served.config.name));
+  auto rows = features_at(*served.layer, request.place, level_of(request, served.config));
   const FeatureClassifier classifier(std::get<LayerStyle>(style).classing,
                                      served.layer->features());
   std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });

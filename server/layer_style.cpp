@@ -295,9 +295,9 @@ OrProblem<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& se
                                   std::size_t position) {
   const LayerConfig& config = served.config;
   if (auto problem = find_locked(query, config)) return std::move(*problem);
-  Making making{LayerSettings(query, config.name), served.layer->features()};
-  making.fill_opacity =
-      making.settings.value_or(ParameterId::fill_opacity, config.style.fill_opacity);
+  const StyleQuery style = query.with_defaults(config.name, config.style);
+  Making making{LayerSettings(style, config.name), served.layer->features()};
+  making.fill_opacity = making.settings.value_or(ParameterId::fill_opacity, 1.0);
   making.others = with_opacity(fill_of(making.settings, config, position), making.fill_opacity);
   if (auto problem = make_classes(making)) return std::move(*problem);
   if (auto problem = make_selection(making)) return std::move(*problem);
@@ -309,7 +309,8 @@ OrProblem<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& se
 }
 
 Rgba default_fill(const LayerConfig& config, std::size_t position) {
-  return config.style.fill.value_or(kPalette[position % kPalette.size()]);
+  const ParameterValue* fill = config.style.find({}, ParameterId::fill);
+  return fill != nullptr ? std::get<Rgba>(*fill) : kPalette[position % kPalette.size()];
 }
 
 }  // namespace trapeze

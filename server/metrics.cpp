@@ -30,7 +30,7 @@ using Labels = std::vector<ClientMetric::Label>;
 constexpr std::array<std::string_view, 11> kRoutes = {"tiles",  "legend",  "identify", "catalog",
                                                       "styles", "wmts",    "ogc",      "health",
                                                       "ready",  "metrics", "other"};
-constexpr std::array<int, 14> kStatuses = {200, 204, 304, 400, 404, 405, 413,
+constexpr std::array<int, 15> kStatuses = {200, 201, 204, 304, 400, 404, 405, 413,
                                            414, 429, 431, 500, 503, 504, 0};
 constexpr std::array<std::string_view, 4> kOutcomes = {"drawn", "saturated", "late", "failed"};
 

@@ -53,6 +53,7 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::name:
     case ParameterType::ramp:
     case ParameterType::classes:
+    case ParameterType::style:
       return {{"type", "string"}};
   }
   return Json::object();

@@ -34,6 +34,8 @@ SiteOptions site_options(const Config& config) {
   options.public_url = config.server.public_url;
   options.allowed_hosts = config.server.allowed_hosts;
   options.cache_control = config.server.cache_control;
+  options.styles = config.styles;
+  options.posted_styles = std::size_t{config.server.posted_styles_mb} << 20;
   options.max_layers = config.limits.layers;
   options.max_scale = config.limits.scale;
   options.max_zoom = config.limits.zoom;
@@ -51,6 +53,7 @@ HttpServerOptions server_options(const Config& config) {
   options.max_connections_per_address = config.limits.connections_per_address;
   options.target_limit = config.limits.target_bytes;
   options.header_limit = config.limits.header_bytes;
+  options.body_limit = config.limits.body_bytes;
   options.idle_timeout = milliseconds(config.limits.idle_timeout_ms);
   options.read_timeout = milliseconds(config.limits.read_timeout_ms);
   options.write_timeout = milliseconds(config.limits.write_timeout_ms);

@@ -11,10 +11,12 @@
 #include "server/content_hash.h"
 #include "server/document.h"
 #include "server/identify.h"
+#include "server/json_text.h"
 #include "server/legend.h"
 #include "server/metrics.h"
 #include "server/ogc_api.h"
 #include "server/paint_stages.h"
+#include "server/style_document.h"
 #include "server/url.h"
 #include "server/wmts.h"
 
@@ -31,6 +33,8 @@ struct DocumentRoute {
 namespace {
 
 constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
+constexpr std::string_view kStylesPath = "/styles";
+constexpr std::string_view kStylesMethods = "GET, HEAD, OPTIONS, POST";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
@@ -59,20 +63,27 @@ void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
-HttpResponse answer_options() {
+/// The methods that a path understands.
+std::string_view methods_of(std::string_view path) {
+  return path == kStylesPath ? kStylesMethods : kMethods;
+}
+
+HttpResponse answer_options(std::string_view path) {
+  const std::string methods(methods_of(path));
   HttpResponse response;
   response.status = 204;
-  response.headers = {{"Allow", std::string(kMethods)},
-                      {"Access-Control-Allow-Methods", std::string(kMethods)},
+  response.headers = {{"Allow", methods},
+                      {"Access-Control-Allow-Methods", methods},
                       {"Access-Control-Allow-Headers", "*"},
                       {"Access-Control-Max-Age", "86400"}};
   return response;
 }
 
-HttpResponse refuse_method(const std::string& method) {
-  auto response = problem_response({405, "Only GET, HEAD and OPTIONS are understood here.",
-                                    "method", method, std::string(kMethods)});
-  response.headers.emplace_back("Allow", std::string(kMethods));
+HttpResponse refuse_method(const std::string& method, std::string_view path) {
+  const std::string methods(methods_of(path));
+  auto response = problem_response(
+      {405, fmt::format("Only {} are understood here.", methods), "method", method, methods});
+  response.headers.emplace_back("Allow", methods);
   return response;
 }
 
@@ -151,22 +162,27 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       draw_limit_(std::make_unique<RateLimit>(options_.drawn_per_second, options_.drawn_burst)),
       data_(data),
       tiles_(tiles),
-      cache_(cache) {}
+      cache_(cache),
+      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {
   const auto respond_to_all = [respond = std::move(respond)](HttpResponse response) {
     allow_every_origin(response);
     respond(std::move(response));
   };
-  if (request.method == "OPTIONS") return respond_to_all(answer_options());
-  if (request.method != "GET" && request.method != "HEAD") {
-    return respond_to_all(refuse_method(request.method));
-  }
   if (request.target.size() > kMaxTargetLength) {
     return respond_to_all(problem_response(
         {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
   }
   const auto target = split_target(request.target);
+  const std::string_view path = target ? target->path : std::string_view();
+  if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
+  if (request.method == "POST" && path == kStylesPath) {
+    return respond_to_all(answer_posted_style(request));
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    return respond_to_all(refuse_method(request.method, path));
+  }
   if (target && target->path.starts_with("/tiles/")) {
     return handle_tiles(request, respond_to_all);
   }
@@ -183,6 +199,7 @@ HttpResponse Site::route(const HttpRequest& request) const {
   if (path == "/ready") return answer_ready();
   if (path == "/catalog") return answer_catalog(request);
   if (path == "/metrics" && options_.metrics) return answer_metrics();
+  if (path == kStylesPath || path.starts_with("/styles/")) return answer_style(path, request);
   return answer_file(request);
 }
 
@@ -232,6 +249,38 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
   return json_document(request, std::move(std::get<std::string>(json)));
 }
 
+// All names, or one style.
+HttpResponse Site::answer_style(std::string_view path, const HttpRequest& request) const {
+  if (path == kStylesPath) {
+    return json_document(request, to_text({{"styles", styles_->names()}}));
+  }
+  const auto style = styles_->find(path.substr(kStylesPath.size() + 1));
+  if (style == nullptr) return problem_response({404, "There is no style of that name."});
+  return json_document(request, style_document(*style));
+}
+
+HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
+  const auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  auto style = parse_style_document(request.body);
+  if (const auto* problem = std::get_if<Problem>(&style)) return problem_response(*problem);
+  const std::string query = std::get<StyleQuery>(style).canonical_text();
+  const auto id = styles_->post(std::move(std::get<StyleQuery>(style)));
+  if (const auto* problem = std::get_if<Problem>(&id)) return problem_response(*problem);
+  const auto& name = std::get<std::string>(id);
+  const auto& root = std::get<std::string>(base);
+  HttpResponse response;
+  response.status = 201;
+  response.headers = {{"Location", fmt::format("{}{}/{}", root, kStylesPath, name)},
+                      {"Content-Type", "application/json"},
+                      {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>(to_text(
+      {{"id", name},
+       {"query", query},
+       {"tiles", fmt::format("{}/tiles/{{layers}}/s/{}/{{z}}/{{x}}/{{y}}.png", root, name)}}));
+  return response;
+}
+
 HttpResponse Site::answer_file(const HttpRequest& request) const {
   const auto target = split_target(request.target);
   const auto path = target ? percent_decode(target->path, Plus::literal) : std::nullopt;
@@ -247,7 +296,7 @@ HttpResponse Site::answer_file(const HttpRequest& request) const {
 }
 
 void Site::handle_tiles(const HttpRequest& request, const Respond& respond) const {
-  const auto parsed = parse_tiles_target(request.target);
+  const auto parsed = parse_tiles_target(request.target, *styles_);
   if (const auto* problem = std::get_if<Problem>(&parsed)) {
     return respond(problem_response(*problem));
   }
@@ -268,8 +317,12 @@ void Site::handle_document(const DocumentRoute& route, const HttpRequest& reques
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
   if (const auto* problem = std::get_if<Problem>(&base)) return respond(problem_response(*problem));
-  const DocumentRequest asked{*dataset, std::move(std::get<std::string>(base)), std::move(*path),
-                              std::move(*query)};
+  auto expanded = styles_->expand(std::move(*query));
+  if (const auto* problem = std::get_if<Problem>(&expanded)) {
+    return respond(problem_response(*problem));
+  }
+  const DocumentRequest asked{*dataset, *styles_, std::move(std::get<std::string>(base)),
+                              std::move(*path), std::move(std::get<0>(expanded))};
   if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
     const auto* problem = std::get_if<Problem>(&*tile);
     return problem != nullptr ? respond(problem_response(*problem))

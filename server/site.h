@@ -3,7 +3,9 @@
 // Thread-safety: handle() may be called from any thread.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,7 @@
 #include "server/http_message.h"
 #include "server/rate_limit.h"
 #include "server/static_files.h"
+#include "server/style_book.h"
 #include "server/tile_cache.h"
 #include "server/tile_service.h"
 
@@ -36,6 +39,9 @@ struct SiteOptions {
   std::function<std::string()> metrics = {};
   /// Whether the server is about to end, and so not ready any more; empty: never.
   std::function<bool()> is_stopping = {};
+  /// Styles by name, and the memory in bytes for those that are posted.
+  std::map<std::string, StyleQuery> styles = {};
+  std::size_t posted_styles = StyleBook::kDefaultBudget;
 };
 
 struct DocumentRoute;
@@ -56,6 +62,8 @@ class Site {
   HttpResponse answer_catalog(const HttpRequest& request) const;
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
   HttpResponse answer_file(const HttpRequest& request) const;
+  HttpResponse answer_style(std::string_view path, const HttpRequest& request) const;
+  HttpResponse answer_posted_style(const HttpRequest& request) const;
   void handle_tiles(const HttpRequest& request, const Respond& respond) const;
   /// A document, or a tile that is named below it.
   void handle_document(const DocumentRoute& route, const HttpRequest& request,
@@ -75,6 +83,7 @@ class Site {
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;
+  const std::unique_ptr<StyleBook> styles_;
 };
 
 }  // namespace trapeze

@@ -20,6 +20,10 @@ constexpr std::size_t kMaxNameLength = 128;
 
 using Type = ParameterType;
 
+// They make sense together only.
+constexpr std::array kClassingParameters = {ParameterId::breaks, ParameterId::classes,
+                                            ParameterId::color_by, ParameterId::ramp};
+
 constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::background,
                    .name = "background",
@@ -183,6 +187,13 @@ constexpr std::array kParameters = {
                    .max = 32,
                    .default_text = "1 where a stroke is set",
                    .description = "width of the outline, in pixels"},
+    StyleParameter{.id = ParameterId::style,
+                   .name = "style",
+                   .type = Type::style,
+                   .default_text = "each layer's own style",
+                   .is_per_layer = false,
+                   .description = "a style of the configuration, or one that was posted to "
+                                  "/styles; what the query sets beside it goes before it"},
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
                    .type = Type::word,
@@ -449,6 +460,10 @@ Problem wrong_value(const StyleParameter& parameter, const QueryPair& pair) {
 
 }  // namespace
 
+bool is_classing_parameter(ParameterId id) {
+  return std::ranges::find(kClassingParameters, id) != kClassingParameters.end();
+}
+
 std::span<const StyleParameter> style_parameters() {
   return kParameters;
 }
@@ -487,6 +502,9 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
       return parse_classes(parameter, text);
     case Type::filter:
       return parse_filter(text);
+    case Type::style:
+      if (is_style_name(text)) return std::string(text);
+      break;
   }
   return std::nullopt;
 }
@@ -530,8 +548,18 @@ std::string describe_values(const StyleParameter& parameter) {
           "a condition in CQL2 text of at most {} bytes: =, <>, <, <=, >, >=, IN, BETWEEN, LIKE, "
           "IS NULL, AND, OR, NOT, parentheses; text in single quotes",
           kMaxFilterLength);
+    case Type::style:
+      return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
   }
   return {};
+}
+
+bool is_style_name(std::string_view name) {
+  constexpr std::size_t kMaxLength = 64;
+  return !name.empty() && name.size() <= kMaxLength && std::ranges::all_of(name, [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+           c == '-';
+  });
 }
 
 OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
@@ -539,7 +567,7 @@ OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
   StyleQuery query;
   for (const QueryPair& pair : pairs) {
     const auto [layer, parameter] = resolve_name(pair.first, layers);
-    if (parameter == nullptr) continue;
+    if (parameter == nullptr || parameter->id == ParameterId::style) continue;
     if (query.find_setting(layer, parameter->id) != nullptr) return given_twice(*parameter, pair);
     auto value = parse_parameter(*parameter, pair.second);
     if (!value) return wrong_value(*parameter, pair);
@@ -561,11 +589,32 @@ std::optional<ParameterValue> StyleQuery::value_for(std::string_view layer,
   return value == nullptr ? std::nullopt : std::optional(*value);
 }
 
+StyleQuery StyleQuery::with_defaults(const std::string& layer, const StyleQuery& defaults) const {
+  StyleQuery style = *this;
+  const bool has_classing = std::ranges::any_of(
+      kClassingParameters, [&](ParameterId id) { return find(layer, id) != nullptr; });
+  for (const StyleSetting& setting : defaults.settings_) {
+    if (find(layer, setting.parameter) != nullptr) continue;
+    if (has_classing && is_classing_parameter(setting.parameter)) continue;
+    style.settings_.push_back({layer, setting.parameter, setting.value});
+  }
+  std::ranges::sort(style.settings_, {}, order_of);
+  return style;
+}
+
+std::vector<QueryPair> StyleQuery::pairs() const {
+  std::vector<QueryPair> pairs;
+  for (const StyleSetting& setting : settings_) {
+    pairs.emplace_back(written_name(setting), format_value(setting.value));
+  }
+  return pairs;
+}
+
 std::string StyleQuery::canonical_text() const {
   std::string text;
-  for (const StyleSetting& setting : settings_) {
+  for (const auto& [name, value] : pairs()) {
     if (!text.empty()) text.push_back('&');
-    text += written_name(setting) + '=' + percent_encode(format_value(setting.value));
+    text += name + '=' + percent_encode(value);
   }
   return text;
 }

@@ -46,6 +46,7 @@ enum class ParameterId : std::uint8_t {
   stroke_linejoin,
   stroke_opacity,
   stroke_width,
+  style,
   topology,
 };
 
@@ -61,6 +62,7 @@ enum class ParameterType : std::uint8_t {
   ids,        // integers, separated by commas, in any order
   classes,    // value:colour, separated by commas
   filter,     // CQL2 text
+  style,      // the name of a style
 };
 
 struct StyleParameter {
@@ -98,6 +100,8 @@ using ParameterValue =
 /// The parameters that requests can set, in order of names.
 std::span<const StyleParameter> style_parameters();
 const StyleParameter& style_parameter(ParameterId id);
+/// Whether it is one of those that put features into classes by a property.
+bool is_classing_parameter(ParameterId id);
 /// Null if there is none of that name.
 const StyleParameter* find_style_parameter(std::string_view name);
 
@@ -116,7 +120,11 @@ struct StyleSetting {
   ParameterValue value;
 };
 
+/// Whether `name` can name a style: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
+bool is_style_name(std::string_view name);
+
 /// The style that a query asks for: settings in the order (layer, parameter), each at most once.
+/// Named styles have been put in place of their names before (see style_book.h).
 class StyleQuery {
  public:
   StyleQuery() = default;
@@ -130,6 +138,11 @@ class StyleQuery {
   /// What holds for `layer`: its own setting, else the one for all layers, else null.
   const ParameterValue* find(std::string_view layer, ParameterId parameter) const;
   std::optional<ParameterValue> value_for(std::string_view layer, ParameterId parameter) const;
+  /// This style for one layer, and, where it says nothing, `defaults`, which are for all layers.
+  /// Rules that put features into classes are taken as a whole or not at all.
+  StyleQuery with_defaults(const std::string& layer, const StyleQuery& defaults) const;
+  /// The settings as a query has them, not encoded.
+  std::vector<QueryPair> pairs() const;
   /// The canonical query string: equal styles written differently give the same text.
   std::string canonical_text() const;
 

@@ -17,8 +17,8 @@ double cells_per_pixel(const TileId& tile, int scale) {
   return static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
 }
 
-Level level_of_layer(const TileRequest& request, const std::string& layer) {
-  return nearest_level(tolerance_in_pixels(request.style, layer) *
+Level level_of_layer(const TileRequest& request, const LayerConfig& config) {
+  return nearest_level(tolerance_in_pixels(request.style, config) *
                        cells_per_pixel(request.tile, request.scale));
 }
 
@@ -70,8 +70,9 @@ std::string entity_tag_of(std::string_view key) {
   return fmt::format("\"{:016x}\"", hash.value());
 }
 
-double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {
-  const auto value = query.value_for(layer, ParameterId::simplify);
+double tolerance_in_pixels(const StyleQuery& query, const LayerConfig& config) {
+  const auto value =
+      query.with_defaults(config.name, config.style).value_for(config.name, ParameterId::simplify);
   return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
@@ -89,10 +90,11 @@ OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const 
     if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
     const LayerConfig& config = served.config;
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
+    const StyleQuery query = request.style.with_defaults(name, config.style);
     if (!std::get<LayerStyle>(style).is_visible() && !plan.debug.any()) continue;
     plan.layers.push_back({*layer, std::get<LayerStyle>(std::move(style)),
-                           level_of_layer(request, name), topology_of_layer(request.style, name),
-                           small_of_layer(request.style, name)});
+                           level_of_layer(request, config), topology_of_layer(query, name),
+                           small_of_layer(query, name)});
   }
   return plan;
 }

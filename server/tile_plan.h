@@ -63,6 +63,6 @@ std::string entity_tag_of(std::string_view key);
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
 /// How far the drawn boundary of the layer may be from the true one.
-double tolerance_in_pixels(const StyleQuery& query, const std::string& layer);
+double tolerance_in_pixels(const StyleQuery& query, const LayerConfig& config);
 
 }  // namespace trapeze

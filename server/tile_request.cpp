@@ -63,6 +63,12 @@ OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const Q
   return TilesRequest(std::move(request));
 }
 
+/// From /tiles/{layers}/s/{style}/{z}/{x}/{y}.png to the same without it.
+void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
+  query.emplace_back("style", std::move(path[3]));
+  path.erase(path.begin() + 2, path.begin() + 4);
+}
+
 }  // namespace
 
 bool is_layer_name(std::string_view name) {
@@ -135,19 +141,26 @@ Problem malformed_target() {
           "are not allowed."};
 }
 
-OrProblem<TilesRequest> parse_tiles_target(std::string_view target) {
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles) {
   if (target.size() > kMaxTargetLength) {
     return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
   }
   const auto split = split_target(target);
-  const auto path = split ? decode_path(split->path) : std::nullopt;
-  const auto query = split ? decode_query(split->query) : std::nullopt;
+  auto path = split ? decode_path(split->path) : std::nullopt;
+  auto query = split ? decode_query(split->query) : std::nullopt;
   if (!path || !query) {
     return malformed_target();
   }
-  if (path->size() == 5) return parse_tile(*path, *query);
+  const bool has_style = path->size() == 7 && (*path)[2] == "s";
+  if (has_style) take_style(*path, *query);
+  auto expanded = styles.expand(std::move(*query));
+  if (auto* problem = std::get_if<Problem>(&expanded)) {
+    if (has_style) problem->status = 404;
+    return std::move(*problem);
+  }
+  if (path->size() == 5) return parse_tile(*path, std::get<0>(expanded));
   if (path->size() == 2 && path->back().ends_with(kJson)) {
-    return parse_tile_json(path->back(), *query);
+    return parse_tile_json(path->back(), std::get<0>(expanded));
   }
   return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
                                   "/tiles/{{layers}}.json.",

@@ -7,6 +7,7 @@
 
 #include "core/web_mercator.h"
 #include "server/problem.h"
+#include "server/style_book.h"
 #include "server/style_parameters.h"
 
 namespace trapeze {
@@ -19,7 +20,7 @@ constexpr int kMaxScale = 4;
 /// Whether `name` can name a layer: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
 bool is_layer_name(std::string_view name);
 
-/// One tile: /tiles/{layers}/{z}/{x}/{y}[@{1-4}x].png
+/// One tile: /tiles/{layers}[/s/{style}]/{z}/{x}/{y}[@{1-4}x].png
 struct TileRequest {
   std::vector<std::string> layers;  // valid names, each once, bottom first
   TileId tile;                      // valid
@@ -37,9 +38,10 @@ using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
 
 Problem malformed_target();
 
-/// Parses a target, path and query, that begins with /tiles/. The problem is 400 for what is
-/// malformed, 404 for a tile outside of the matrix, and 414 for a target that is too long.
-OrProblem<TilesRequest> parse_tiles_target(std::string_view target);
+/// Parses a target, path and query, that begins with /tiles/, and puts in place what its style
+/// says. The problem is 400 for what is malformed, 404 for a tile outside of the matrix or a style
+/// in the path that there is not, and 414 for a target that is too long.
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles);
 
 /// Parses names separated by commas; each is taken once, bottom first.
 OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list);

@@ -14,7 +14,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kStyle = "default";  // the layer's own
 constexpr std::string_view kFormat = "image/png";
 
 constexpr std::string_view kHead =
@@ -59,7 +58,20 @@ std::string limits_xml(const LayerConfig& config, const Box& box) {
   return xml + "        </TileMatrixSetLimits>\n";
 }
 
-std::string layer_xml(const ServedLayer& served, const std::string& base_url) {
+std::string style_xml(const std::string& layer, std::string_view style,
+                      const std::string& base_url) {
+  const bool is_default = style == StyleBook::kDefaultName;
+  return fmt::format(R"(      <Style isDefault="{}">
+        <ows:Identifier>{}</ows:Identifier>
+        <LegendURL format="{}" xlink:href="{}/legend/{}.png{}"/>
+      </Style>
+)",
+                     is_default, style, kFormat, xml_escape(base_url), layer,
+                     is_default ? "" : fmt::format("?style={}", style));
+}
+
+std::string layer_xml(const ServedLayer& served, const DocumentRequest& request) {
+  const std::string& base_url = request.base_url;
   const LayerConfig& config = served.config;
   const Box& box = served.layer->bounds();
   const auto [west, south, east, north] = box.is_empty() ? kWorldBounds : bounds_in_degrees(box);
@@ -73,20 +85,21 @@ std::string layer_xml(const ServedLayer& served, const std::string& base_url) {
         <ows:UpperCorner>{} {}</ows:UpperCorner>
       </ows:WGS84BoundingBox>
       <ows:Identifier>{}</ows:Identifier>
-      <Style isDefault="true">
-        <ows:Identifier>{}</ows:Identifier>
-        <LegendURL format="{}" xlink:href="{}/legend/{}.png"/>
-      </Style>
-      <Format>{}</Format>
+)",
+                     west, south, east, north, config.name);
+  xml += style_xml(config.name, StyleBook::kDefaultName, base_url);
+  for (const std::string& style : request.styles.names()) {
+    xml += style_xml(config.name, style, base_url);
+  }
+  xml += fmt::format(R"(      <Format>{}</Format>
       <TileMatrixSetLink>
         <TileMatrixSet>{}</TileMatrixSet>
 )",
-                     west, south, east, north, config.name, kStyle, kFormat, xml_escape(base_url),
-                     config.name, kFormat, kTileMatrixSet);
+                     kFormat, kTileMatrixSet);
   xml += limits_xml(config, box);
   xml += fmt::format(R"(      </TileMatrixSetLink>
       <ResourceURL format="{}" resourceType="tile"
-       template="{}/tiles/{}/{{TileMatrix}}/{{TileCol}}/{{TileRow}}.png"/>
+       template="{}/tiles/{}/s/{{Style}}/{{TileMatrix}}/{{TileCol}}/{{TileRow}}.png"/>
     </Layer>
 )",
                      kFormat, xml_escape(base_url), config.name);
@@ -122,7 +135,7 @@ std::string capabilities_xml(const DocumentRequest& request) {
   xml += "  <ows:OperationsMetadata>\n" + operation_xml("GetCapabilities", request.base_url) +
          operation_xml("GetTile", request.base_url) + "  </ows:OperationsMetadata>\n  <Contents>\n";
   for (const ServedLayer& served : request.dataset.layers()) {
-    xml += layer_xml(served, request.base_url);
+    xml += layer_xml(served, request);
   }
   xml += matrix_set_xml() + "  </Contents>\n";
   xml += fmt::format("  <ServiceMetadataURL xlink:href=\"{}/wmts.xml\"/>\n</Capabilities>\n",
@@ -179,12 +192,11 @@ std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
                  std::string(value)};
 }
 
-OrProblem<TileRequest> tile_of(const KeyValuePairs& pairs) {
+OrProblem<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styles) {
   for (const auto& [key, value] :
        std::initializer_list<std::pair<std::string_view, std::string_view>>{
            {"service", "WMTS"},
            {"version", "1.0.0"},
-           {"style", kStyle},
            {"format", kFormat},
            {"tilematrixset", kTileMatrixSet}}) {
     if (auto problem = check(pairs, key, value)) return std::move(*problem);
@@ -194,7 +206,11 @@ OrProblem<TileRequest> tile_of(const KeyValuePairs& pairs) {
   const auto tile = parse_tile_id(pairs["tilematrix"], pairs["tilecol"], pairs["tilerow"]);
   if (const auto* problem = std::get_if<Problem>(&tile)) return *problem;
   TileRequest request{std::move(std::get<0>(layers)), std::get<TileId>(tile), 1, {}};
-  auto style = StyleQuery::parse(pairs.others, request.layers);
+  std::vector<QueryPair> query = pairs.others;
+  if (!pairs["style"].empty()) query.emplace_back("style", pairs["style"]);
+  const auto expanded = styles.expand(std::move(query));
+  if (const auto* problem = std::get_if<Problem>(&expanded)) return *problem;
+  auto style = StyleQuery::parse(std::get<0>(expanded), request.layers);
   if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
   request.style = std::move(std::get<StyleQuery>(style));
   return request;
@@ -221,7 +237,7 @@ std::optional<OrProblem<TileRequest>> parse_wmts_tile(const DocumentRequest& req
   if (!is_key_value_path(request)) return std::nullopt;
   const KeyValuePairs pairs = divide(request.query);
   if (lower(pairs["request"]) != "gettile") return std::nullopt;
-  return tile_of(pairs);
+  return tile_of(pairs, request.styles);
 }
 
 }  // namespace trapeze

@@ -9,6 +9,14 @@
 #include "render/stopwatch.h"
 
 namespace trapeze::experiment {
+namespace {
+
+bool is_within(const Box& inner, const Box& outer) {
+  return outer.min_x <= inner.min_x && inner.max_x <= outer.max_x && outer.min_y <= inner.min_y &&
+         inner.max_y <= outer.max_y;
+}
+
+}  // namespace
 
 AdaptingLayer::AdaptingLayer(const PolygonSet& polygons, Topology topology,
                              std::vector<Point>& vertices)
@@ -58,12 +66,12 @@ void AdaptingLayer::append_trapezoids(const Box& box, NumberedList& trapezoids) 
     if (!polygon.is_listed) list(p);
     const NumberedList& own = polygon.trapezoids;
     if (own.numbers.empty()) continue;
-    if (box.min_y <= polygon.box.min_y && polygon.box.max_y <= box.max_y) {
+    if (is_within(polygon.box, box)) {
       trapezoids.numbers.insert(trapezoids.numbers.end(), own.numbers.begin(), own.numbers.end());
       trapezoids.sizes.insert(trapezoids.sizes.end(), own.sizes.begin(), own.sizes.end());
     } else {
       const auto count = static_cast<std::uint32_t>(graphs_[p].graph().vertex_count());
-      append_between(polygon, count, box, trapezoids);
+      append_within(polygon, count, box, trapezoids);
     }
   }
 }
@@ -73,6 +81,7 @@ void AdaptingLayer::list(std::size_t p) {
   Polygon& polygon = polygons_[p];
   const auto number = [&](VertexId v) { return polygon.first_vertex + v.value - 1; };
   polygon.trapezoids.clear();
+  polygon.reaches.clear();
   for (const Node& node : graph.nodes()) {
     if (!node.is_alive() || graph.face(node) == kOutside) continue;
     const std::int32_t top = graph.point(node.end[kUp]).y;
@@ -83,16 +92,22 @@ void AdaptingLayer::list(std::size_t p) {
     polygon.trapezoids.numbers.push_back({number(node.end[kUp]), number(node.end[kDown]),
                                           number(left.end[kUp]), number(left.end[kDown]),
                                           number(right.end[kUp]), number(right.end[kDown])});
-    polygon.trapezoids.sizes.push_back(
-        size_of({top, bottom, graph.point(left.end[kUp]), graph.point(left.end[kDown]),
-                 graph.point(right.end[kUp]), graph.point(right.end[kDown])}));
+    const TrapezoidRecord record{top,
+                                 bottom,
+                                 graph.point(left.end[kUp]),
+                                 graph.point(left.end[kDown]),
+                                 graph.point(right.end[kUp]),
+                                 graph.point(right.end[kDown])};
+    polygon.trapezoids.sizes.push_back(size_of(record));
+    polygon.reaches.push_back({std::min(record.left_upper.x, record.left_lower.x),
+                               std::max(record.right_upper.x, record.right_lower.x)});
   }
   polygon.is_listed = true;
 }
 
 // Numbers of vertices follow each other from top to bottom, so that levels are compared by numbers.
-void AdaptingLayer::append_between(const Polygon& polygon, std::uint32_t vertex_count,
-                                   const Box& box, NumberedList& trapezoids) const {
+void AdaptingLayer::append_within(const Polygon& polygon, std::uint32_t vertex_count,
+                                  const Box& box, NumberedList& trapezoids) const {
   const auto first = vertices_.begin() + polygon.first_vertex;
   const auto number_at = [&](std::int32_t y) {
     const auto found =
@@ -104,6 +119,8 @@ void AdaptingLayer::append_between(const Polygon& polygon, std::uint32_t vertex_
   const NumberedList& own = polygon.trapezoids;
   for (std::size_t i = 0; i < own.numbers.size(); ++i) {
     if (own.numbers[i].bottom < from || own.numbers[i].top > to) continue;
+    const Reach& reach = polygon.reaches[i];
+    if (reach.max_x < box.min_x || reach.min_x > box.max_x) continue;
     trapezoids.numbers.push_back(own.numbers[i]);
     trapezoids.sizes.push_back(own.sizes[i]);
   }

@@ -38,10 +38,16 @@ class AdaptingLayer {
   void start_run();
   /// Brings the graphs of all polygons that meet the box to the tolerance.
   void adapt(const Box& box, double epsilon);
-  /// Appends the trapezoids of these polygons, but for those above and below the box.
+  /// Appends the trapezoids of these polygons, but for those beyond the box.
   void append_trapezoids(const Box& box, NumberedList& trapezoids);
 
  private:
+  /// How far west and east a trapezoid may reach.
+  struct Reach {
+    std::int32_t min_x = 0;
+    std::int32_t max_x = 0;
+  };
+
   // What a view looks at for every polygon; the graph itself only if it has to change.
   struct Polygon {
     Box box;
@@ -49,12 +55,13 @@ class AdaptingLayer {
     bool is_listed = false;               // `trapezoids` are those of the graph
     AdaptableGraph::Unchanged unchanged;  // the top of its priority stack
     NumberedList trapezoids;
+    std::vector<Reach> reaches;  // of these
   };
 
   void adapt(std::size_t polygon, double epsilon);
   void list(std::size_t polygon);
-  void append_between(const Polygon& polygon, std::uint32_t vertex_count, const Box& box,
-                      NumberedList& trapezoids) const;
+  void append_within(const Polygon& polygon, std::uint32_t vertex_count, const Box& box,
+                     NumberedList& trapezoids) const;
 
   const std::vector<Point>& vertices_;
   std::vector<Polygon> polygons_;

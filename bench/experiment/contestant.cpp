@@ -5,6 +5,11 @@
 #include "bench/experiment/resimplifying.h"
 
 namespace trapeze::experiment {
+namespace {
+
+constexpr std::size_t kMostVerticesOfWholeMap = 1'000'000;
+
+}  // namespace
 
 std::string_view name_of(Method method) {
   switch (method) {
@@ -14,6 +19,8 @@ std::string_view name_of(Method method) {
       return "blg";
     case Method::triangulation:
       return "cdt";
+    case Method::whole_map:
+      return "all";
     case Method::adapting:
       return "paper";
     case Method::lifespans:
@@ -34,6 +41,8 @@ std::string_view title_of(Method method) {
       return "BLG tree";
     case Method::triangulation:
       return "BLG tree, CDT";
+    case Method::whole_map:
+      return "DP, whole map";
     case Method::adapting:
       return "The paper's method";
     case Method::lifespans:
@@ -46,12 +55,18 @@ std::string_view title_of(Method method) {
   return "";
 }
 
-// Nothing is simplified, so there is nothing to keep consistent; and constraints that cross are a
-// case of their own for a triangulation.
-bool is_possible(Method method, Topology topology) {
-  if (method == Method::no_simplification) return topology == Topology::strict;
-  if (method != Method::triangulation) return true;
-  return topology == Topology::strict && has_triangulation();
+bool is_for_reference(Method method) {
+  return method == Method::triangulation || method == Method::whole_map ||
+         method == Method::no_simplification;
+}
+
+// Where nothing is simplified there is nothing to keep consistent, and constraints that cross are a
+// case of their own for a triangulation. The whole of a large map takes minutes.
+bool is_possible(Method method, Topology topology, const Map& map) {
+  if (!is_for_reference(method)) return true;
+  if (topology != Topology::strict) return false;
+  if (method == Method::triangulation) return has_triangulation();
+  return method != Method::whole_map || map.vertex_count() <= kMostVerticesOfWholeMap;
 }
 
 std::unique_ptr<Contestant> make_contestant(Method method, Topology topology, const Map& map,
@@ -60,6 +75,7 @@ std::unique_ptr<Contestant> make_contestant(Method method, Topology topology, co
     case Method::douglas_peucker:
     case Method::blg_tree:
     case Method::triangulation:
+    case Method::whole_map:
       return std::make_unique<Resimplifying>(method, topology, map, screen);
     case Method::adapting:
       return std::make_unique<Adapting>(topology, map, screen);

@@ -69,22 +69,27 @@ enum class Method : std::uint8_t {
   douglas_peucker,
   blg_tree,
   triangulation,
+  whole_map,
   adapting,
   lifespans,
   lifespans_and_dust,
   no_simplification,
 };
-constexpr Method kMethods[] = {
-    Method::douglas_peucker, Method::blg_tree,           Method::triangulation,    Method::adapting,
-    Method::lifespans,       Method::lifespans_and_dust, Method::no_simplification};
+constexpr Method kMethods[] = {Method::douglas_peucker,    Method::blg_tree,
+                               Method::triangulation,      Method::whole_map,
+                               Method::adapting,           Method::lifespans,
+                               Method::lifespans_and_dust, Method::no_simplification};
 
-/// Short, for files: "dp", "blg", "cdt", "paper", "trapeze", "dust", "none".
+/// Short, for files: "dp", "blg", "cdt", "all", "paper", "trapeze", "dust", "none".
 std::string_view name_of(Method method);
 /// For readers.
 std::string_view title_of(Method method);
 
-/// Whether that method can be tried with that topology in this program.
-bool is_possible(Method method, Topology topology);
+/// Whether that method is there for comparison with the other ones only.
+bool is_for_reference(Method method);
+
+/// Whether that method can be tried on that map with that topology in this program.
+bool is_possible(Method method, Topology topology, const Map& map);
 
 /// Prepares everything that a method prepares before the first view. Both arguments must outlive
 /// the contestant.

@@ -25,8 +25,6 @@ export const ratio = (theirs, ours) => {
   return value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(2)
 }
 
-export const times = value => `${value >= 10 ? value.toFixed(0) : value.toFixed(2)} times`
-
 // Of the straight line through the logarithms of points (x, y), by least squares.
 export function slope(points) {
   const logs = points.map(([x, y]) => [Math.log(x), Math.log(y)])

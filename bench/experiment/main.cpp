@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <future>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,7 @@ struct Arguments {
   std::string commit = "unknown";
   std::string device;
   TripOptions trip;
-  int runs = 3;
+  RaceOptions race;
   double smallest_scale = 250000;
   std::size_t most_vertices = 10'000'000;
 
@@ -43,6 +45,22 @@ struct Arguments {
     return std::find(parts.begin(), parts.end(), part) != parts.end();
   }
 };
+
+std::vector<std::string> names_of_methods() {
+  std::vector<std::string> names;
+  for (const Method method : kMethods) names.emplace_back(name_of(method));
+  return names;
+}
+
+std::vector<Method> methods_named(const std::vector<std::string>& names) {
+  std::vector<Method> methods;
+  for (const Method method : kMethods) {
+    if (std::find(names.begin(), names.end(), name_of(method)) != names.end()) {
+      methods.push_back(method);
+    }
+  }
+  return methods;
+}
 
 Arguments parse(CLI::App& app, int argc, char** argv) {
   Arguments a;
@@ -56,8 +74,17 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
   app.add_option("--parts", a.parts, "Only these: race, quality, growth, figures")
       ->delimiter(',')
       ->check(CLI::IsMember({"race", "quality", "growth", "figures"}));
-  app.add_option("--runs", a.runs, "How often each goes on the trip, 3 if not set")
+  app.add_option("--runs", a.race.runs, "How often each goes on the trip, 3 if not set")
       ->check(CLI::Range(1, 99));
+  app.add_option("--seconds", a.race.seconds,
+                 "Of a map, with one treatment of topology: runs that would end later than this\n"
+                 "are not begun, but for the first; 120 if not set")
+      ->check(CLI::NonNegativeNumber);
+  std::vector<std::string> contestants = names_of_methods();
+  app.add_option("--contestants", contestants,
+                 "Only these: dp, blg, cdt, all, paper, trapeze, dust, none")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names_of_methods()));
   app.add_option("--seed", a.trip.seed, "Of the trip, 1 if not set");
   app.add_option("--simplify", a.trip.simplify_pixels, "Tolerance in pixels, 0.25 if not set")
       ->check(CLI::Range(0.01, 64.0));
@@ -70,6 +97,7 @@ Arguments parse(CLI::App& app, int argc, char** argv) {
   app.add_option("--output", a.output, "Folder for experiment.json and the pictures")
       ->type_name("DIR");
   app.parse(argc, argv);
+  a.race.methods = methods_named(contestants);
   return a;
 }
 
@@ -88,7 +116,12 @@ std::vector<MapSource> chosen_maps(const Arguments& a) {
     return !a.maps.empty() && std::find(a.maps.begin(), a.maps.end(), map.name) == a.maps.end();
   };
   std::erase_if(maps, is_left_out);
+  if (maps.size() < a.maps.size()) throw std::runtime_error("files of --maps are not there");
   return maps;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 using Pictures = std::vector<std::vector<Coverage>>;
@@ -102,6 +135,7 @@ std::vector<PictureErrors> errors_of(Race& race, Topology topology, const MapSou
                                      const std::vector<Pictures>& full_detail) {
   std::vector<PictureErrors> all;
   for (const Method method : kPictured) {
+    if (!race.has(method)) continue;
     PictureErrors errors{method, topology, {}};
     for (std::size_t i = 0; i < full_detail.size(); ++i) {
       const auto views = views_of_scale(trip, kFigureScales[i] * map.smallest_scale);
@@ -116,18 +150,19 @@ void run_races(const Map& map, const std::vector<ScaledView>& trip, const Argume
                Screen& screen, MapReport& report) {
   std::vector<Pictures> full_detail;
   for (const Topology topology : {Topology::strict, Topology::fast}) {
-    Race race(map, topology, screen);
+    Race race(map, topology, screen, a.race.methods);
     if (a.has("race")) {
-      race.run(trip, a.runs);
+      race.run(trip, a.race);
       for (RaceResult& result : race.results()) report.races.push_back(std::move(result));
     }
     if (!a.has("quality")) continue;
-    if (full_detail.empty()) {
+    if (race.has(Method::no_simplification)) {
       for (const double share : kFigureScales) {
         const auto views = views_of_scale(trip, share * map.source.smallest_scale);
         full_detail.push_back(race.pictures(Method::no_simplification, views));
       }
     }
+    if (full_detail.empty()) continue;
     for (PictureErrors& e : errors_of(race, topology, map.source, trip, full_detail)) {
       report.pictures.push_back(std::move(e));
     }
@@ -136,19 +171,33 @@ void run_races(const Map& map, const std::vector<ScaledView>& trip, const Argume
 
 void measure_quality_of_all(const Map& map, const std::vector<ScaledView>& trip,
                             MapReport& report) {
-  for (const Topology topology : {Topology::strict, Topology::fast}) {
-    for (const Method method : {Method::douglas_peucker, Method::adapting, Method::lifespans}) {
-      for (const double share : kFigureScales) {
-        const auto views = views_of_scale(trip, share * map.source.smallest_scale);
-        report.quality.push_back(measure_quality(method, topology, map, views.front()));
-      }
-    }
+  std::vector<ScaledView> views;
+  for (const double share : kFigureScales) {
+    views.push_back(views_of_scale(trip, share * map.source.smallest_scale).front());
   }
+  const auto measure = [&](Topology topology) {
+    std::vector<Quality> all;
+    for (const Method method : {Method::douglas_peucker, Method::adapting, Method::lifespans}) {
+      const std::vector<Quality> quality = measure_quality(method, topology, map, views);
+      all.insert(all.end(), quality.begin(), quality.end());
+    }
+    return all;
+  };
+  // Nobody is timed here.
+  auto fast = std::async(std::launch::async, measure, Topology::fast);
+  report.quality = measure(Topology::strict);
+  const std::vector<Quality> without = fast.get();
+  report.quality.insert(report.quality.end(), without.begin(), without.end());
 }
 
 MapReport report_on(const MapSource& source, const Arguments& a, Screen& screen) {
   MapReport report;
   std::cout << "experiment: " << source.title << std::endl;
+  auto begin = std::chrono::steady_clock::now();
+  const auto lap = [&begin](double& seconds) {
+    seconds = seconds_since(begin);
+    begin = std::chrono::steady_clock::now();
+  };
   const Map map = load_map(source);
   report.source = source;
   for (const MapLayer& layer : map.layers) {
@@ -161,10 +210,14 @@ MapReport report_on(const MapSource& source, const Arguments& a, Screen& screen)
     report.trip_tolerances.push_back(view.epsilon() / view.view.cells_per_pixel);
   }
   report.empty_view = cost_of_empty_view(map.layers.size(), screen);
+  lap(report.seconds.load);
   if (a.has("race") || a.has("quality")) run_races(map, trip, a, screen, report);
-  if (a.has("race")) std::cout << summary_of(report) << std::flush;
+  lap(report.seconds.races);
   if (a.has("quality")) measure_quality_of_all(map, trip, report);
+  lap(report.seconds.quality);
   if (a.has("figures")) report.figures = draw_figures(map, trip, a.output, screen);
+  lap(report.seconds.figures);
+  if (a.has("race")) std::cout << summary_of(report) << std::flush;
   return report;
 }
 
@@ -177,13 +230,16 @@ int run(const Arguments& a) {
   report.machine = describe_machine();
   report.device = screen.renderer().description();
   report.options = a.trip;
-  report.runs = a.runs;
+  report.runs = a.race.runs;
+  report.seconds_of_runs = a.race.seconds;
   for (const MapSource& map : chosen_maps(a)) report.maps.push_back(report_on(map, a, screen));
   if (a.has("growth")) {
     std::cout << "experiment: growth" << std::endl;
+    const auto growth_begin = std::chrono::steady_clock::now();
     report.growth = measure_growth(a.most_vertices, screen);
+    report.growth_seconds = seconds_since(growth_begin);
   }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.seconds = seconds_since(begin);
   const std::string path = (std::filesystem::path(a.output) / "experiment.json").string();
   write_report(report, path);
   std::cout << "experiment: the figures are in " << path << std::endl;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bench/experiment/beyond_view.h"
+
 namespace trapeze::experiment {
 namespace {
 
@@ -165,7 +167,7 @@ void OpenTrapezoids::tessellate_noded(const Rings& rings, std::uint32_t first, s
                                       const Box& view, TrapezoidList& trapezoids) {
   ++noded_;
   noded_rings_.clear();
-  for (std::uint32_t r = first; r < last; ++r) noded_rings_.add(rings[r]);
+  append_with_short_cuts(rings, first, last, view, noded_rings_);
   if (!builder_.build(noded_rings_, graph_).built) return;
   for (const NodeId n : graph_.inside_nodes()) {
     const Node& node = graph_.node(n);

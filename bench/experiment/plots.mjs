@@ -2,7 +2,7 @@
 import { join } from 'node:path'
 
 const colours = {
-  dp: '#c0504d', blg: '#e08e3c', cdt: '#b8a13a', paper: '#4f81bd', trapeze: '#2e7d4f', dust: '#7cb88f',
+  dp: '#c0504d', blg: '#e08e3c', cdt: '#b8a13a', all: '#8c3b8a', paper: '#4f81bd', trapeze: '#2e7d4f', dust: '#7cb88f',
   none: '#888888'
 }
 const stageColours = {
@@ -60,10 +60,9 @@ set multiplot layout 2,2 margins 0.07,0.98,0.18,0.95 spacing 0.07,0.12
 set logscale y
 set xrange [1:72]
 set xlabel "view"
-set ylabel "ms"
 set grid lc rgb "#dddddd"
 set format y "%g"
-${panels.map((panel, i) => `${key[i]}\n${panel.draw}`).join('\n')}
+${panels.map((panel, i) => `${key[i]}\n${i % 2 ? 'unset ylabel' : 'set ylabel "ms"'}\n${panel.draw}`).join('\n')}
 unset multiplot`
   return panels.map(panel => panel.data).join('') +
     inBothFormats(folder, `views-${map.name}`, 1100, 800, script)
@@ -73,13 +72,13 @@ unset multiplot`
 export function plotStages(maps, folder) {
   const stages = Object.keys(stageTitles)
   const data = maps.map(map => block(`stages_${map.name}`, map.averages
-    .filter(a => a.topology === 'strict')
+    .filter(a => a.topology === 'strict' && a.method !== 'all')
     .sort((a, b) => inOrder.indexOf(a.method) - inOrder.indexOf(b.method))
     .map(a => [`"${a.title}"`, ...stages.map(stage => a[stage])])))
-  const panels = maps.map((map, i) => `${i > 0 ? 'unset key\n' : ''}set title "${map.name}, with topology"
+  const panels = maps.map((map, i) => `${i > 0 ? 'unset key\nunset ylabel\n' : ''}set title "${map.name}, with topology"
 plot ${stages.map((stage, i) => `$stages_${map.name} using ${i + 2}${i === 0 ? ':xtic(1)' : ''} lc rgb "${stageColours[stage]}" title "${stageTitles[stage]}"`).join(', \\\n     ')}`)
   const script = `
-set multiplot layout 1,${maps.length} margins 0.06,0.98,0.34,0.92 spacing 0.06,0
+set multiplot layout 1,${maps.length} margins 0.06,0.94,0.38,0.93 spacing 0.06,0
 set style data histograms
 set style histogram rowstacked
 set style fill solid 0.9 border lc rgb "white"
@@ -87,11 +86,11 @@ set boxwidth 0.75
 set yrange [0:*]
 set ylabel "ms a view"
 set xtics rotate by -50
-${keyBelow(0.04)} maxrows 1
+${keyBelow(0.06)} maxrows 2 maxcols 3
 set grid ytics lc rgb "#dddddd"
 ${panels.join('\n')}
 unset multiplot`
-  return data.join('') + inBothFormats(folder, 'stages', 1100, 520, script)
+  return data.join('') + inBothFormats(folder, 'stages', 1100, 560, script)
 }
 
 export function plotGrowth(growth, folder) {
@@ -111,11 +110,12 @@ set format y "%g"
 set xrange [${growth[0].vertices}:${last.vertices}]
 set xlabel "vertices"
 set grid lc rgb "#dddddd"
-set key top left
+set key bottom right
 set ylabel "ms"
 set title "time"
 plot ${lines.join(', \\\n     ')}, \\
      ${last.generalize_ms / last.vertices} * x with lines dt 2 lc rgb "#555555" title "O(n)"
+set key top left
 set ylabel "MB"
 set title "memory"
 plot $growth using 1:8 with linespoints pt 7 ps 0.5 lw 1.6 lc rgb "#2e7d4f" title "adaptable graph with its log", \\

@@ -100,74 +100,89 @@ struct Areas {
   }
 };
 
-void measure_resimplified(const MapLayer& layer, const ScaledView& view, Quality& quality,
-                          Areas& areas) {
+/// Of one view, and what it is measured from.
+struct Measurement {
+  const ScaledView& view;
+  Quality quality;
+  Areas areas;
+};
+
+void measure_resimplified(const MapLayer& layer, LayerSimplifier& simplifier, Measurement& m) {
   const PolygonSet& polygons = layer.polygons;
-  LayerSimplifier simplifier(polygons, make_ring_simplifier(quality.method, polygons),
-                             quality.topology);
   SimplifiedPolygons simplified;
-  const Box box = view.view.box();
-  simplifier.simplify(box, view.epsilon(), simplified);
-  quality.vertices += simplified.rings.points.size();
+  const Box box = m.view.view.box();
+  simplifier.simplify(box, m.view.epsilon(), simplified);
+  m.quality.vertices += simplified.rings.points.size();
   std::size_t next = 0;
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     if (!polygons.boxes[p].intersects(box)) continue;
-    ++quality.polygons;
+    ++m.quality.polygons;
     const double area = area_of_polygon(polygons.rings, polygons.first_ring(p), polygons.ends[p]);
     if (next == simplified.size() || simplified.source[next] != p) {
-      ++quality.gone;
-      areas.add(area, 0);
+      ++m.quality.gone;
+      m.areas.add(area, 0);
       continue;
     }
     const std::uint32_t first = simplified.first_ring(next);
     const std::uint32_t last = simplified.ends[next];
     ++next;
-    areas.add(area, area_of_polygon(simplified.rings, first, last));
-    quality.invalid += is_valid_polygon(simplified.rings, first, last) ? 0 : 1;
-    quality.hausdorff = std::max(
-        quality.hausdorff,
+    m.areas.add(area, area_of_polygon(simplified.rings, first, last));
+    m.quality.invalid += is_valid_polygon(simplified.rings, first, last) ? 0 : 1;
+    m.quality.hausdorff = std::max(
+        m.quality.hausdorff,
         distance_between(some_rings(polygons.rings, polygons.first_ring(p), polygons.ends[p]),
                          some_rings(simplified.rings, first, last)));
   }
 }
 
-void measure_graph(Rings rings, const ScaledView& view, Quality& quality, Areas& areas) {
-  GraphBuilder builder;
-  TrapezoidalGraph built;
-  if (!builder.build(rings, built).built) return;
-  ++quality.polygons;
-  const Rings source = rings_of(built);
-  const double area = area_of(built);
-  AdaptableGraph adaptable(std::move(built), {.topology = quality.topology});
-  adaptable.adapt_to(view.epsilon());
-  const Rings left = rings_of(adaptable.graph());
-  areas.add(area, area_of(adaptable.graph()));
-  quality.gone += left.empty() ? 1 : 0;
-  quality.vertices += left.points.size();
-  quality.hausdorff = std::max(quality.hausdorff, distance_between(source, left));
-  const Polygons polygons = polygons_of(adaptable.graph());
+void measure_adapted(const TrapezoidalGraph& graph, const Rings& source, double area,
+                     Measurement& m) {
+  ++m.quality.polygons;
+  const Rings left = rings_of(graph);
+  m.areas.add(area, area_of(graph));
+  m.quality.gone += left.empty() ? 1 : 0;
+  m.quality.vertices += left.points.size();
+  m.quality.hausdorff = std::max(m.quality.hausdorff, distance_between(source, left));
+  const Polygons polygons = polygons_of(graph);
   bool is_valid = !polygons.is_noded && polygons.failure.empty();
   for (std::size_t p = 0; p < polygons.size() && is_valid; ++p) {
     is_valid = is_valid_polygon(polygons.rings, polygons.first_ring(p), polygons.ends[p]);
   }
-  quality.invalid += is_valid ? 0 : 1;
+  m.quality.invalid += is_valid ? 0 : 1;
 }
 
-void measure_graphs(const MapLayer& layer, const ScaledView& view, Quality& quality, Areas& areas) {
-  const Box box = view.view.box();
-  if (quality.method == Method::adapting) {
+/// One graph goes through all views that its box meets.
+void measure_graph(Rings rings, const Box& box, Topology topology,
+                   std::vector<Measurement>& measurements) {
+  const auto is_seen = [&box](const Measurement& m) { return m.view.view.box().intersects(box); };
+  if (std::none_of(measurements.begin(), measurements.end(), is_seen)) return;
+  GraphBuilder builder;
+  TrapezoidalGraph built;
+  if (!builder.build(rings, built).built) return;
+  const Rings source = rings_of(built);
+  const double area = area_of(built);
+  AdaptableGraph adaptable(std::move(built), {.topology = topology});
+  for (Measurement& m : measurements) {
+    if (!is_seen(m)) continue;
+    adaptable.adapt_to(m.view.epsilon());
+    measure_adapted(adaptable.graph(), source, area, m);
+  }
+}
+
+void measure_graphs(const MapLayer& layer, Method method, Topology topology,
+                    std::vector<Measurement>& measurements) {
+  if (method == Method::adapting) {
     const PolygonSet& polygons = layer.polygons;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
-      if (!polygons.boxes[p].intersects(box)) continue;
-      measure_graph(some_rings(polygons.rings, polygons.first_ring(p), polygons.ends[p]), view,
-                    quality, areas);
+      measure_graph(some_rings(polygons.rings, polygons.first_ring(p), polygons.ends[p]),
+                    polygons.boxes[p], topology, measurements);
     }
     return;
   }
   for (const Rings& feature : layer.features) {
     Box around;
     for (const Point p : feature.points) around.include(p);
-    if (around.intersects(box)) measure_graph(feature, view, quality, areas);
+    measure_graph(feature, around, topology, measurements);
   }
 }
 
@@ -205,22 +220,31 @@ class Geos {
 
 }  // namespace
 
-Quality measure_quality(Method method, Topology topology, const Map& map, const ScaledView& view) {
-  Quality quality;
-  quality.method = method;
-  quality.topology = topology;
-  quality.scale = view.scale;
-  quality.tolerance = view.epsilon();
-  Areas areas;
+std::vector<Quality> measure_quality(Method method, Topology topology, const Map& map,
+                                     std::span<const ScaledView> views) {
+  std::vector<Measurement> measurements;
+  for (const ScaledView& view : views) {
+    Measurement& m = measurements.emplace_back(Measurement{view, {}, {}});
+    m.quality.method = method;
+    m.quality.topology = topology;
+    m.quality.scale = view.scale;
+    m.quality.tolerance = view.epsilon();
+  }
   for (const MapLayer& layer : map.layers) {
     if (method == Method::douglas_peucker || method == Method::blg_tree) {
-      measure_resimplified(layer, view, quality, areas);
+      LayerSimplifier simplifier(layer.polygons, make_ring_simplifier(method, layer.polygons),
+                                 topology);
+      for (Measurement& m : measurements) measure_resimplified(layer, simplifier, m);
     } else {
-      measure_graphs(layer, view, quality, areas);
+      measure_graphs(layer, method, topology, measurements);
     }
   }
-  if (areas.before > 0) quality.area_error = areas.changed / areas.before;
-  return quality;
+  std::vector<Quality> all;
+  for (Measurement& m : measurements) {
+    if (m.areas.before > 0) m.quality.area_error = m.areas.changed / m.areas.before;
+    all.push_back(m.quality);
+  }
+  return all;
 }
 
 // A dropped vertex is at most as far from the boundary as from the chord that replaced it, if that

@@ -27,9 +27,11 @@ struct Quality {
   double area_error = 0;
 };
 
-/// The polygons as the method simplifies them; BLG trees give the same as Douglas-Peucker, and
-/// lifespans the same as adapting the graphs of whole features, which is what is looked at.
-Quality measure_quality(Method method, Topology topology, const Map& map, const ScaledView& view);
+/// By view: the polygons as the method simplifies them; BLG trees give the same as Douglas-Peucker,
+/// and lifespans the same as adapting the graphs of whole features, which is what is looked at. Any
+/// number of threads may measure one map.
+std::vector<Quality> measure_quality(Method method, Topology topology, const Map& map,
+                                     std::span<const ScaledView> views);
 
 /// The discrete Hausdorff distance between rings and what simplification left of them, cells. Only
 /// those of the source's rings count of which three vertices are left. As simplified vertices are

@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 
 #include "render/stopwatch.h"
@@ -28,10 +29,11 @@ ViewCost median_by_total(std::vector<ViewCost> costs) {
 
 }  // namespace
 
-Race::Race(const Map& map, Topology topology, Screen& screen) : map_(map), screen_(screen) {
+Race::Race(const Map& map, Topology topology, Screen& screen, std::span<const Method> methods)
+    : map_(map), screen_(screen) {
   cost_of_empty_view(map.layers.size(), screen);  // makes what all of them use
-  for (const Method method : kMethods) {
-    if (is_possible(method, topology)) prepare(method, topology);
+  for (const Method method : methods) {
+    if (is_possible(method, topology, map)) prepare(method, topology);
   }
 }
 
@@ -49,22 +51,39 @@ void Race::prepare(Method method, Topology topology) {
   runner.result.sent_before = runner.contestant->sent_before();
 }
 
-void Race::run(std::span<const ScaledView> trip, int runs) {
+void Race::run(std::span<const ScaledView> trip, const RaceOptions& options) {
   std::vector<Coverage> coverages;
   for (Runner& runner : runners_) {
     runner.costs.resize(trip.size());
     runner.contestant->draw(trip.front(), coverages);  // makes room, which no run should pay for
   }
-  for (int run = 0; run < runs; ++run) {
+  double spent = 0;
+  double last_round = 0;
+  for (int run = 0; run < options.runs && (run == 0 || spent + last_round <= options.seconds);
+       ++run) {
+    last_round = 0;
     for (Runner& runner : runners_) {
-      if (run > 0 && runner.result.method == Method::triangulation) continue;
-      runner.contestant->start_run();
-      for (std::size_t i = 0; i < trip.size(); ++i) {
-        runner.costs[i].push_back(runner.contestant->draw(trip[i], coverages));
-      }
-      ++runner.result.runs;
+      const bool is_reference = is_for_reference(runner.result.method);
+      if (run > 0 && is_reference) continue;
+      const double seconds = run_once(runner, trip);
+      spent += seconds;
+      if (!is_reference) last_round += seconds;
     }
   }
+}
+
+double Race::run_once(Runner& runner, std::span<const ScaledView> trip) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<Coverage> coverages;
+  runner.contestant->start_run();
+  for (std::size_t i = 0; i < trip.size(); ++i) {
+    runner.costs[i].push_back(runner.contestant->draw(trip[i], coverages));
+  }
+  ++runner.result.runs;
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  runner.result.seconds += seconds;
+  return seconds;
 }
 
 std::vector<RaceResult> Race::results() const {
@@ -76,6 +95,11 @@ std::vector<RaceResult> Race::results() const {
     }
   }
   return results;
+}
+
+bool Race::has(Method method) const {
+  return std::any_of(runners_.begin(), runners_.end(),
+                     [method](const Runner& runner) { return runner.result.method == method; });
 }
 
 std::vector<std::vector<Coverage>> Race::pictures(Method method,

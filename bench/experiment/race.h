@@ -19,6 +19,7 @@ struct RaceResult {
   std::size_t memory = 0;  // heap held when it is ready, bytes; that of a software device is heap
   std::uint64_t sent_before = 0;  // to the device before the first view, bytes
   int runs = 0;
+  double seconds = 0;           // that all runs took
   std::vector<ViewCost> views;  // of each, that of the run of median total
 };
 
@@ -31,20 +32,29 @@ struct PictureError {
   double area = 0;           // covered in all, relative to full detail, less 1
 };
 
+struct RaceOptions {
+  std::vector<Method> methods{std::begin(kMethods), std::end(kMethods)};
+  int runs = 3;
+  double seconds = 120;  // runs that would end later than this are not begun, but for the first
+};
+
 /// With one treatment of topology. All contestants are prepared and stay so, and take turns run by
 /// run, so that whatever else the machine does hits all of them.
 class Race {
  public:
   /// Prepares the contestants. `map` and `screen` must outlive this.
-  Race(const Map& map, Topology topology, Screen& screen);
+  Race(const Map& map, Topology topology, Screen& screen, std::span<const Method> methods);
 
-  /// Goes on the trip `runs` times with each, the triangulation once: it only is there for
-  /// reference, and slow.
-  void run(std::span<const ScaledView> trip, int runs);
+  /// Goes on the whole trip with each, as often with one as with the other; with those that are
+  /// there for reference once.
+  void run(std::span<const ScaledView> trip, const RaceOptions& options);
 
   std::vector<RaceResult> results() const;
 
-  /// Draws the views with that method.
+  /// Whether that method was prepared.
+  bool has(Method method) const;
+
+  /// Draws the views with that method, which was prepared.
   std::vector<std::vector<Coverage>> pictures(Method method, std::span<const ScaledView> views);
 
  private:
@@ -55,6 +65,8 @@ class Race {
   };
 
   void prepare(Method method, Topology topology);
+  /// Returns the seconds that it took.
+  double run_once(Runner& runner, std::span<const ScaledView> trip);
 
   const Map& map_;
   Screen& screen_;

@@ -46,6 +46,7 @@ json to_json(const RaceResult& race) {
           {"memory", race.memory},
           {"sent_before", race.sent_before},
           {"runs", race.runs},
+          {"seconds", race.seconds},
           {"views", views_to_json(race.views)}};
 }
 
@@ -97,6 +98,11 @@ json to_json(const MapReport& map) {
       {"name", map.source.name},
       {"title", map.source.title},
       {"licence", map.source.licence},
+      {"seconds",
+       {{"load", map.seconds.load},
+        {"races", map.seconds.races},
+        {"quality", map.seconds.quality},
+        {"figures", map.seconds.figures}}},
       {"layers", std::move(layers)},
       {"smallest_scale", map.source.smallest_scale},
       {"largest_scale", map.source.largest_scale},
@@ -154,7 +160,9 @@ void write_report(const Report& report, const std::string& path) {
                  {"simplify_pixels", report.options.simplify_pixels},
                  {"screen", {kScreenWidth, kScreenHeight}},
                  {"runs", report.runs},
+                 {"seconds_of_runs", report.seconds_of_runs},
                  {"seconds", report.seconds},
+                 {"growth_seconds", report.growth_seconds},
                  {"maps", std::move(maps)},
                  {"growth", std::move(growth)}};
   std::ofstream file(path);
@@ -166,22 +174,26 @@ std::string summary_of(const MapReport& map) {
   std::string text;
   std::array<char, 200> line{};
   const auto add = [&](int length) { text.append(line.data(), static_cast<std::size_t>(length)); };
-  add(std::snprintf(line.data(), line.size(), "%-20s %-8s %9s %10s %8s %8s %8s %9s %9s\n",
+  add(std::snprintf(line.data(), line.size(), "%-20s %-8s %9s %10s %8s %8s %8s %9s %9s %5s %8s\n",
                     map.source.name.c_str(), "topology", "simplify", "tessellate", "send", "draw",
-                    "read", "total ms", "CPU ms"));
+                    "read", "total ms", "CPU ms", "runs", "seconds"));
   for (const RaceResult& race : map.races) {
     const auto of = [&](double (*value)(const ViewCost&)) { return mean(race.views, value); };
-    add(std::snprintf(
-        line.data(), line.size(), "%-20s %-8s %9.2f %10.2f %8.2f %8.2f %8.2f %9.2f %9.2f\n",
-        std::string(title_of(race.method)).c_str(), std::string(name_of(race.topology)).c_str(),
-        of([](const ViewCost& v) { return v.simplify_ms; }),
-        of([](const ViewCost& v) { return v.tessellate_ms; }),
-        of([](const ViewCost& v) { return v.send_ms; }),
-        of([](const ViewCost& v) { return v.draw_ms; }),
-        of([](const ViewCost& v) { return v.read_ms; }),
-        of([](const ViewCost& v) { return v.total_ms(); }),
-        of([](const ViewCost& v) { return v.cpu_ms; })));
+    add(std::snprintf(line.data(), line.size(),
+                      "%-20s %-8s %9.2f %10.2f %8.2f %8.2f %8.2f %9.2f %9.2f %5d %8.1f\n",
+                      std::string(title_of(race.method)).c_str(),
+                      std::string(name_of(race.topology)).c_str(),
+                      of([](const ViewCost& v) { return v.simplify_ms; }),
+                      of([](const ViewCost& v) { return v.tessellate_ms; }),
+                      of([](const ViewCost& v) { return v.send_ms; }),
+                      of([](const ViewCost& v) { return v.draw_ms; }),
+                      of([](const ViewCost& v) { return v.read_ms; }),
+                      of([](const ViewCost& v) { return v.total_ms(); }),
+                      of([](const ViewCost& v) { return v.cpu_ms; }), race.runs, race.seconds));
   }
+  add(std::snprintf(line.data(), line.size(),
+                    "seconds: load %.1f, races %.1f, quality %.1f, figures %.1f\n",
+                    map.seconds.load, map.seconds.races, map.seconds.quality, map.seconds.figures));
   return text;
 }
 

@@ -18,8 +18,17 @@ struct PictureErrors {
   std::vector<PictureError> scales;
 };
 
+/// What was spent on a map, in seconds.
+struct MapSeconds {
+  double load = 0;
+  double races = 0;
+  double quality = 0;
+  double figures = 0;
+};
+
 struct MapReport {
   MapSource source;
+  MapSeconds seconds;
   std::vector<std::size_t> layer_polygons;
   std::vector<std::size_t> layer_vertices;
   std::vector<double> trip_scales;      // by view
@@ -36,8 +45,10 @@ struct Report {
   std::string machine;
   std::string device;
   TripOptions options;
-  int runs = 0;
+  int runs = 0;                // at most
+  double seconds_of_runs = 0;  // beyond which none is begun
   double seconds = 0;
+  double growth_seconds = 0;
   std::vector<MapReport> maps;
   std::vector<GrowthPoint> growth;
 };

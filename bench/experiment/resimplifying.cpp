@@ -38,12 +38,14 @@ void LayerSimplifier::append(std::size_t polygon, SimplifiedPolygons& simplified
 }
 
 std::unique_ptr<RingSimplifier> make_ring_simplifier(Method method, const PolygonSet& polygons) {
-  if (method == Method::douglas_peucker) return std::make_unique<DouglasPeucker>(polygons);
+  if (method == Method::douglas_peucker || method == Method::whole_map) {
+    return std::make_unique<DouglasPeucker>(polygons);
+  }
   return std::make_unique<BlgTrees>(polygons);
 }
 
 Resimplifying::Resimplifying(Method method, Topology topology, const Map& map, Screen& screen)
-    : map_(map), topology_(topology), device_(screen) {
+    : map_(map), topology_(topology), is_whole_map_(method == Method::whole_map), device_(screen) {
   for (const MapLayer& layer : map.layers) {
     layers_.emplace_back(layer.polygons, make_ring_simplifier(method, layer.polygons), topology);
   }
@@ -58,7 +60,7 @@ std::size_t Resimplifying::shared_memory() const {
 
 // Stage by stage, and not polygon by polygon, so that nobody looks at a clock too often.
 ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
-  const Box box = view.view.box();
+  const Box box = is_whole_map_ ? map_.bounds : view.view.box();
   ViewCost cost;
   const double cpu_begin = cpu_clock_ms();
   {

@@ -37,7 +37,7 @@ class LayerSimplifier {
   PolygonChains chains_;
 };
 
-/// `method` is one of douglas_peucker, blg_tree, triangulation.
+/// `method` is one of douglas_peucker, blg_tree, triangulation, whole_map.
 std::unique_ptr<RingSimplifier> make_ring_simplifier(Method method, const PolygonSet& polygons);
 
 class Resimplifying final : public Contestant {
@@ -52,6 +52,7 @@ class Resimplifying final : public Contestant {
 
   const Map& map_;
   const Topology topology_;
+  const bool is_whole_map_;  // nothing is left out because it lies beyond the view
   std::vector<LayerSimplifier> layers_;
   OpenTrapezoids open_trapezoids_;
   std::unique_ptr<Triangulation> triangulation_;  // null for those who draw trapezoids

@@ -99,51 +99,60 @@ void TopologyKeeper::keep(const PolygonSet& polygons, std::size_t polygon,
   const auto has_dropped = [](const Chain& chain) { return chain.has_dropped(); };
   if (std::none_of(chains.chains.begin(), chains.chains.end(), has_dropped)) return;
   const std::uint32_t first_ring = polygons.first_ring(polygon);
+  collect_kept(polygons, first_ring, chains);
+  split_inconsistent(polygons, first_ring, simplifier, all_kept_, chains);
   // What is split keeps vertices that may lie in what other chains enclose; only these are new to
   // chains that have been found consistent.
-  for (collect_kept(polygons, first_ring, chains); !kept_.empty(); kept_.swap(newly_kept_)) {
-    index_kept();
-    split_inconsistent(polygons, first_ring, simplifier, chains);
+  while (!newly_kept_.empty()) {
+    all_kept_.points.insert(all_kept_.points.end(), newly_kept_.begin(), newly_kept_.end());
+    all_kept_.is_indexed = false;
+    last_kept_.points.swap(newly_kept_);
+    last_kept_.is_indexed = false;
+    split_inconsistent(polygons, first_ring, simplifier, last_kept_, chains);
   }
 }
 
 void TopologyKeeper::collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
                                   const PolygonChains& chains) {
-  kept_.clear();
+  all_kept_.points.clear();
+  all_kept_.is_indexed = false;
   for (std::size_t r = 0; r < chains.ends.size(); ++r) {
     if (chains.has_gone(r)) continue;
     const auto ring = polygons.rings[first_ring + r];
     for (std::uint32_t c = chains.first(r); c < chains.ends[r]; ++c) {
-      kept_.push_back(ring[chains.chains[c].begin]);
+      all_kept_.points.push_back(ring[chains.chains[c].begin]);
     }
   }
 }
 
-void TopologyKeeper::index_kept() {
-  has_grid_ = kept_.size() > kFew;
-  if (has_grid_) grid_.assign(kept_);
+void TopologyKeeper::KeptVertices::index() {
+  has_grid = points.size() > kFew;
+  if (has_grid) grid.assign(points);
+  is_indexed = true;
 }
 
 void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
-                                        RingSimplifier& simplifier, PolygonChains& chains) {
+                                        RingSimplifier& simplifier, KeptVertices& kept,
+                                        PolygonChains& chains) {
   newly_kept_.clear();
   next_.clear();
   for (std::uint32_t r = 0; r < chains.ends.size(); ++r) {
     const std::uint32_t ring = first_ring + r;
     const auto points = polygons.rings[ring];
     for (std::uint32_t c = chains.first(r); c < chains.ends[r]; ++c) {
-      pending_.push_back(chains.chains[c]);
+      pending_.emplace_back(chains.chains[c], false);
       while (!pending_.empty()) {
-        const Chain chain = pending_.back();
+        const auto [chain, is_part] = pending_.back();
         pending_.pop_back();
-        if (!chain.has_dropped() || is_consistent(points, chain)) {
+        // Parts may enclose what the whole chain did not.
+        if (!chain.has_dropped() || is_consistent(points, chain, is_part ? all_kept_ : kept)) {
           next_.chains.push_back(chain);
           continue;
         }
         newly_kept_.push_back(points[chain.split]);
         const auto [before, after] = simplifier.split(ring, chain);
-        pending_.push_back(after);
-        pending_.push_back(before);
+        pending_.emplace_back(after, true);
+        pending_.emplace_back(before, true);
         ++splits_;
       }
     }
@@ -156,7 +165,9 @@ void TopologyKeeper::split_inconsistent(const PolygonSet& polygons, std::uint32_
 }
 
 // Everything that the chain and its chord enclose is as near to the chord as the farthest vertex.
-bool TopologyKeeper::is_consistent(std::span<const Point> ring, const Chain& chain) const {
+bool TopologyKeeper::is_consistent(std::span<const Point> ring, const Chain& chain,
+                                   KeptVertices& kept) const {
+  if (!kept.is_indexed) kept.index();
   const Point a = ring[chain.begin];
   const Point b = vertex(ring, chain.end);
   const Box box = grown_box(a, b, chain.distance);
@@ -166,8 +177,8 @@ bool TopologyKeeper::is_consistent(std::span<const Point> ring, const Chain& cha
     return holds(box, p) && distance.squared(p) <= reach && p != a && p != b &&
            is_enclosed(p, ring, chain);
   };
-  if (has_grid_) return !grid_.any_in(box, is_in_the_way);
-  return std::none_of(kept_.begin(), kept_.end(), is_in_the_way);
+  if (kept.has_grid) return !kept.grid.any_in(box, is_in_the_way);
+  return std::none_of(kept.points.begin(), kept.points.end(), is_in_the_way);
 }
 
 }  // namespace trapeze::experiment

@@ -63,19 +63,28 @@ class TopologyKeeper {
   std::uint64_t splits() const { return splits_; }
 
  private:
+  /// Vertices that chains are tested against, in a grid if there are many.
+  struct KeptVertices {
+    std::vector<Point> points;
+    PointGrid grid;
+    bool has_grid = false;
+    bool is_indexed = false;
+
+    void index();
+  };
+
   void collect_kept(const PolygonSet& polygons, std::uint32_t first_ring,
                     const PolygonChains& chains);
-  void index_kept();
+  /// Tests all chains against `kept`, and those that come of splitting against all.
   void split_inconsistent(const PolygonSet& polygons, std::uint32_t first_ring,
-                          RingSimplifier& simplifier, PolygonChains& chains);
-  bool is_consistent(std::span<const Point> ring, const Chain& chain) const;
+                          RingSimplifier& simplifier, KeptVertices& kept, PolygonChains& chains);
+  bool is_consistent(std::span<const Point> ring, const Chain& chain, KeptVertices& kept) const;
 
-  std::vector<Point> kept_;        // what chains are to be tested against
-  std::vector<Point> newly_kept_;  // by splitting
-  bool has_grid_ = false;
-  PointGrid grid_;
+  KeptVertices all_kept_;
+  KeptVertices last_kept_;         // by the last round of splitting
+  std::vector<Point> newly_kept_;  // by this one
   PolygonChains next_;
-  std::vector<Chain> pending_;
+  std::vector<std::pair<Chain, bool>> pending_;  // and whether it comes of splitting
   std::uint64_t splits_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 
+#include "bench/experiment/beyond_view.h"
 #include "bench/experiment/trapezoid_list.h"
 #include "bench/experiment/triangulation.h"
 
@@ -27,6 +28,7 @@ Point grid_point(const Kernel::Point_2& p) {
 
 struct Triangulation::State {
   Cdt cdt;
+  Rings rings;
   std::vector<Kernel::Point_2> points;
   std::vector<Cdt::Face_handle> pending;
 
@@ -66,11 +68,14 @@ void Triangulation::triangulate(const Rings& rings, std::uint32_t first, std::ui
   }
   State& state = *state_;
   state.cdt.clear();
-  for (std::uint32_t r = first; r < last; ++r) {
+  state.rings.clear();
+  append_with_short_cuts(rings, first, last, view, state.rings);
+  for (std::size_t r = 0; r < state.rings.size(); ++r) {
     state.points.clear();
-    for (const Point p : rings[r]) state.points.emplace_back(p.x, p.y);
+    for (const Point p : state.rings[r]) state.points.emplace_back(p.x, p.y);
     state.cdt.insert_constraint(state.points.begin(), state.points.end(), true);
   }
+  if (state.cdt.dimension() < 2) return;  // short cuts have left nothing but a line
   state.find_inside();
   for (const auto face : state.cdt.finite_face_handles()) {
     if (face->info() != Place::inside) continue;

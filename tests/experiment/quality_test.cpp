@@ -33,7 +33,9 @@ TEST(Quality, OfAMapIsWithinTheToleranceAndValid) {
   const Map map = sample_map(200);
   const ScaledView view = view_around(map, {300000, 400000}, 200000, 1600, 1200, 1);
   for (const Method method : {Method::douglas_peucker, Method::adapting, Method::lifespans}) {
-    const Quality quality = measure_quality(method, Topology::strict, map, view);
+    const auto qualities = measure_quality(method, Topology::strict, map, std::span(&view, 1));
+    ASSERT_EQ(qualities.size(), 1u);
+    const Quality& quality = qualities.front();
     EXPECT_EQ(quality.polygons, 201u);
     EXPECT_EQ(quality.invalid, 0u);
     EXPECT_GT(quality.gone, 0u);

@@ -75,6 +75,27 @@ TEST(TopologyKeeper, KeepsAVertexWhoseLossWouldPutAHoleOutside) {
   EXPECT_EQ(count_invalid(simplified(long_hole, Topology::fast, 12)), 1u);
 }
 
+// The first ring is a U whose bottom bulges up at (50, 40), with a bay beside the bulge. The tip of
+// the second ring is in the bay: the bulge as a whole does not enclose it, but a part of it does.
+// The third ring has to keep its tip because of the U, and then the bulge has to stay because of
+// that tip. What matters is where vertices are, so that the rings may cross.
+TEST(TopologyKeeper, TestsPartsAgainstAllThatIsKept) {
+  PolygonSet set;
+  set.rings = rings_from_text(
+      "-100 -300, 200 -300, 200 500, 100 500, 100 0, 50 40, 30 5, 0 0, 0 500, -100 500;"
+      "25 10, -400 900, 450 900;"
+      "50 -900, 300 -20, 50 10, -200 -20");
+  set.ends = {3};
+  set.boxes = {kEverything};
+  for (std::size_t r = 0; r < 3; ++r) set.second_anchors.push_back(second_anchor_of(set.rings[r]));
+  const SimplifiedPolygons fast = simplified(set, Topology::fast, 45);
+  EXPECT_EQ(fast.rings[0].size(), 8u);
+  EXPECT_EQ(fast.rings[2].size(), 3u);
+  const SimplifiedPolygons strict = simplified(set, Topology::strict, 45);
+  EXPECT_EQ(strict.rings[0].size(), 10u);
+  EXPECT_EQ(strict.rings[2].size(), 4u);
+}
+
 TEST(TopologyKeeper, LeavesValidPolygonsOfAnyShape) {
   std::size_t invalid_without = 0;
   const auto sets = random_polygon_sets(kShapes);

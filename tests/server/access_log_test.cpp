@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
 struct Sample {
-  HttpRequest request{"GET", "/tiles/a/0/0/0.png?fill=red", "maps.example", "",
-                      parse_address("192.0.2.7").value()};
+  HttpRequest request{"GET", "/tiles/a/0/0/0.png?fill=red",     "maps.example", "",
+                      "",    parse_address("192.0.2.7").value()};
   HttpResponse response{200, {{"X-Cache", "HIT"}}, std::make_shared<const std::string>("12345")};
   std::string referer = "http://maps.example/";
   std::string agent = "curl/8";

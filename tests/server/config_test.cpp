@@ -118,11 +118,10 @@ TEST_F(ConfigTest, ReadsEveryKey) {
   EXPECT_EQ(lakes.description, "blue");
   EXPECT_EQ(lakes.min_zoom, 2);
   EXPECT_EQ(lakes.max_zoom, 9);
-  EXPECT_EQ(lakes.style.fill, (Rgba{0, 128, 128, 255}));
-  EXPECT_EQ(lakes.style.fill_opacity, 0.25);
+  EXPECT_EQ(lakes.style.canonical_text(), "fill=008080ff&fill-opacity=0.25");
   EXPECT_EQ(config.layers[1].file, "/data/land.fgb");
   EXPECT_EQ(config.layers[1].title, "land");
-  EXPECT_EQ(config.layers[1].style.fill, std::nullopt);
+  EXPECT_TRUE(config.layers[1].style.settings().empty());
 }
 
 TEST_F(ConfigTest, AnEmptyFileIsTheDefaults) {
@@ -141,7 +140,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
   const BadConfig bad[] = {
       {"[server]\nprot = 1", ":2:1: ", "unknown key server.prot; allowed here are address, port"},
       {"sevrer = 1",
-       ":1:1: ", "unknown key sevrer; allowed here are server, limits, log, admin, layer"},
+       ":1:1: ", "unknown key sevrer; allowed here are server, limits, log, admin, styles, layer"},
       {"[server]\nport = 70000", ":2:8: ", "server.port takes an integer from 0 to 65535"},
       {"[server]\nport = -1", ":2:8: ", "server.port takes an integer"},
       {"[server]\nport = \"80\"", ":2:8: ", "server.port takes an integer"},
@@ -179,7 +178,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nstyle = { fill_opacity = 2 }",
        ":4:26: ", "a number from 0 to 1"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nstyle = { fil = \"red\" }",
-       ":4:11: ", "unknown key layer.style.fil"},
+       ":4:11: ", "a style does not know \"fil\""},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"fil\"]",
        ":4:11: ", "takes a list of parameters that are set for one layer: breaks, classes"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"background\"]",
@@ -291,7 +290,8 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
          "allowed_hosts = [\"a.example\", \"*.b.example\"]\n"
          "trusted_proxies = [\"10.0.0.0/8\"]\n[log]\naccess = \"stdout\"\n"
          "[[layer]]\nname = \"a\"\nfile = \"/a.fgb\"\ntitle = \"5 $${a} \\n \\u00e4\"\n"
-         "weights = \"effective-area\"\nstyle = { fill = \"#12345678\" }\n";
+         "weights = \"effective-area\"\nstyle = { fill = \"#12345678\" }\n"
+         "[styles.night]\nbackground = \"black\"\na = { fill_opacity = 0.5 }\n";
   const LoadedConfig loaded = load_config(path_, {{"server.port", "81", "--port"}});
   ASSERT_EQ(problems_text(loaded.problems), "");
   const std::string printed = print_config(loaded);
@@ -303,7 +303,9 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
   LoadedConfig again = load_config(path_, {});
   ASSERT_EQ(problems_text(again.problems), "") << printed;
   EXPECT_EQ(again.config.layers[0].title, "5 ${a} \n \u00e4");
-  EXPECT_EQ(again.config.layers[0].style.fill, (Rgba{0x12, 0x34, 0x56, 0x78}));
+  EXPECT_EQ(again.config.layers[0].style.canonical_text(), "fill=12345678");
+  EXPECT_EQ(again.config.styles.at("night").canonical_text(),
+            loaded.config.styles.at("night").canonical_text());
   again.origins = loaded.origins;
   EXPECT_EQ(print_config(again), printed);
 }

@@ -8,6 +8,7 @@
 
 #include "core/layer_builder.h"
 #include "server/legend.h"
+#include "tests/server/sample_site.h"
 
 namespace trapeze {
 namespace {
@@ -33,7 +34,7 @@ ServedLayer towns() {
   std::vector<LayerBuilder> builders(1);
   ServedLayer served;
   served.config.name = "towns";
-  served.config.style.fill = kLime;
+  served.config.style = testing::style_of("fill=lime");
   served.layer = LayerBuilder::join(builders, std::move(features));
   return served;
 }

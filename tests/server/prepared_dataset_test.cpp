@@ -47,7 +47,7 @@ class Comparison {
     const std::string target =
         fmt::format("/tiles/{}/{}/{}/{}.png?{}", built_->layers()[0].config.name, tile.z, tile.x,
                     tile.y, query);
-    const auto parsed = parse_tiles_target(target);
+    const auto parsed = parse_tiles_target(target, StyleBook());
     const auto& request = std::get<TileRequest>(std::get<TilesRequest>(parsed));
     const TilePlan built = std::get<TilePlan>(plan_tile(request, built_));
     const TilePlan prepared = std::get<TilePlan>(plan_tile(request, prepared_));

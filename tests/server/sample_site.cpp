@@ -20,13 +20,16 @@ std::string fixture(const std::string& name) {
   return TRAPEZE_TEST_FIXTURES "/" + name;
 }
 
+StyleQuery style_of(const std::string& query) {
+  return std::get<StyleQuery>(StyleQuery::parse(decode_query(query).value(), {}));
+}
+
 std::shared_ptr<const Dataset> sample_dataset() {
   auto layers = layers_of_files({fixture("rings.geojson"), fixture("west.geojson")});
   layers[0].title = "Rings";
   layers[0].attribution = "drawn by hand";
-  layers[0].style.fill = Rgba{255, 0, 0, 255};
-  layers[1].style.fill = Rgba{0, 0, 255, 255};
-  layers[1].style.fill_opacity = 0.5;
+  layers[0].style = style_of("fill=f00");
+  layers[1].style = style_of("fill=00f&fill-opacity=0.5");
   layers[1].min_zoom = 0;
   layers[1].max_zoom = 5;
   return Dataset::load(layers);

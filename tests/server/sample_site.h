@@ -13,6 +13,9 @@ namespace trapeze::testing {
 
 std::string fixture(const std::string& name);
 
+/// A style for all layers, from a query.
+StyleQuery style_of(const std::string& query);
+
 /// Two layers. In a tile of zoom 0, "rings" covers pixels 64 to 192 in both directions, but not
 /// the hole from 96 to 160, in which there is an island from 112 to 144; "west" covers the columns
 /// 0 to 128.

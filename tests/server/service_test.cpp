@@ -83,7 +83,7 @@ class ServiceTest : public ::testing::Test {
   void start() {
     const auto layers = [this] {
       auto named = layers_of_files({file_});
-      named[0].style.fill = Rgba{255, 0, 0, 255};
+      named[0].style = testing::style_of("fill=f00");
       return named;
     };
     service_ = std::make_unique<Service>(config_, LayerSource{layers, ""});

@@ -229,7 +229,7 @@ class SpeckTest : public SiteTest {
  protected:
   SpeckTest() {
     auto layers = layers_of_files({testing::fixture("speck.geojson")});
-    layers[0].style.fill = kRed;
+    layers[0].style = testing::style_of("fill=red");
     sample_.data().set(Dataset::load(layers));
   }
   Picture draw(const std::string& query) {

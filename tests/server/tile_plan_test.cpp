@@ -27,7 +27,7 @@ auto fills(std::size_t layer, Rgba fill) {
 class TilePlanTest : public ::testing::Test {
  protected:
   TilePlan plan(const std::string& target) const {
-    const auto parsed = parse_tiles_target("/tiles/" + target);
+    const auto parsed = parse_tiles_target("/tiles/" + target, StyleBook());
     auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
     return std::get<TilePlan>(planned);
   }
@@ -62,7 +62,7 @@ TEST_F(TilePlanTest, LeavesOutLayersThatCannotBeSeen) {
 }
 
 TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
-  const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png");
+  const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png", StyleBook());
   const auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
   const auto& problem = std::get<Problem>(planned);
   EXPECT_EQ(problem.status, 404);

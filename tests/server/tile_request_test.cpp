@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 
 TileRequest tile_of(const std::string& target) {
-  auto parsed = parse_tiles_target(target);
+  auto parsed = parse_tiles_target(target, StyleBook());
   if (const auto* problem = std::get_if<Problem>(&parsed)) {
     ADD_FAILURE() << target << ": " << problem->detail;
     return {};
@@ -19,7 +19,7 @@ TileRequest tile_of(const std::string& target) {
 }
 
 int status_of(const std::string& target) {
-  const auto parsed = parse_tiles_target(target);
+  const auto parsed = parse_tiles_target(target, StyleBook());
   const auto* problem = std::get_if<Problem>(&parsed);
   return problem == nullptr ? 200 : problem->status;
 }
@@ -38,7 +38,7 @@ TEST(TileRequestTest, NamesEachLayerOnceInTheOrderOfFirstMention) {
 }
 
 TEST(TileRequestTest, ReadsTheDescriptionOfTiles) {
-  const auto parsed = parse_tiles_target("/tiles/a,b.json?b.fill=red");
+  const auto parsed = parse_tiles_target("/tiles/a,b.json?b.fill=red", StyleBook());
   const auto& request = std::get<TileJsonRequest>(std::get<TilesRequest>(parsed));
   EXPECT_THAT(request.layers, ElementsAre("a", "b"));
   EXPECT_EQ(request.style.canonical_text(), "b.fill=ff0000ff");

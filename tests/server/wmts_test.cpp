@@ -28,7 +28,7 @@ TEST_F(WmtsTest, CapabilitiesNameLayersAndTheirTiles) {
   EXPECT_EQ(response.header("Content-Type"), "application/xml");
   for (const char* part :
        {"<ows:Identifier>rings</ows:Identifier>", "<ows:Title>Rings</ows:Title>",
-        "http://maps.example:8080/tiles/rings/{TileMatrix}/{TileCol}/{TileRow}.png",
+        "http://maps.example:8080/tiles/rings/s/{Style}/{TileMatrix}/{TileCol}/{TileRow}.png",
         "http://maps.example:8080/legend/west.png", "<ows:LowerCorner>-90 ",
         "<ScaleDenominator>559082264.028", "<MatrixWidth>16777216</MatrixWidth>",
         "<ServiceMetadataURL xlink:href=\"http://maps.example:8080/wmts.xml\"/>"}) {
