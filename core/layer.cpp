@@ -89,6 +89,12 @@ const Layer& Layer::without_topology_test() const {
   return *without_test_;
 }
 
+std::vector<std::uint64_t> Layer::mesh_ids() const {
+  std::vector<std::uint64_t> ids = {mesh().id};
+  if (has_without_test_) ids.push_back(without_test_->mesh().id);
+  return ids;
+}
+
 void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   const Contents& c = *contents_;
   if (row >= c.outline_ends.size()) return;

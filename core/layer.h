@@ -81,6 +81,9 @@ class Layer {
   /// loading took and as much memory again; callers that come meanwhile wait.
   const Layer& without_topology_test() const;
 
+  /// The ids of all meshes that were there to be drawn from so far.
+  std::vector<std::uint64_t> mesh_ids() const;
+
   /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
   void append_outline(std::uint32_t row, Rings& rings) const;
 

@@ -2,26 +2,28 @@
 // std::exception for what main reports: a file, a port, a renderer that does not work.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "server/config.h"
+
 namespace trapeze {
 
-/// What the command line says; unset means: as configured.
 struct ServeArguments {
-  std::string config;
-  std::optional<std::uint16_t> port;
-  std::optional<std::string> address;
-  std::optional<unsigned> threads;
-  std::optional<unsigned> workers;
-  std::optional<std::string> renderer;
-  std::optional<std::string> device;
-  std::optional<std::string> web_root;
-  std::vector<std::string> files;  // instead of the layers of the configuration
+  std::string config;                    // may be empty
+  std::vector<ConfigOverride> settings;  // what the command line says, which goes before all else
+  std::vector<std::string> files;        // instead of the layers of the configuration
+  bool is_verbose = false;               // whatever log.level says
 };
+/// What is configured by the file, the environment and the command line.
+LoadedConfig load_serve_config(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
+
+/// Tells all that is wrong with a configuration; 1 if anything is.
+int run_config_check(const std::string& path);
+/// Prints what is configured, with the origin of each value.
+int run_config_print(const ServeArguments& arguments);
+int run_config_schema();
 
 struct CheckArguments {
   std::vector<std::string> files;
@@ -62,8 +64,8 @@ struct BenchArguments {
   std::string name;
   std::vector<std::string> options;  // for the benchmark
 };
-/// Becomes the program trapeze-NAME: benchmarks need libraries that whoever serves does not. Returns
-/// never.
+/// Becomes the program trapeze-NAME: benchmarks need libraries that whoever serves does not.
+/// Returns never.
 int run_bench(const BenchArguments& arguments);
 
 }  // namespace trapeze

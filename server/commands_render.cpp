@@ -68,12 +68,12 @@ int run_render(const RenderArguments& arguments) {
   const TilePlan plan = value_or_throw(plan_tile(request, Dataset::load(layers)));
   const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();
-  write_file(arguments.output, *tile.png);
+  write_file(arguments.output, *tile.bytes);
   const PaintTimes& times = tile.times;
   spdlog::info(
       "{}: {} bytes; select {:.2f}, draw {:.2f}, read {:.2f}, resolve {:.2f}, compose "
       "{:.2f}, encode {:.2f} ms",
-      arguments.output, tile.png->size(), times.select_ms, times.draw_ms, times.read_ms,
+      arguments.output, tile.bytes->size(), times.select_ms, times.draw_ms, times.read_ms,
       times.resolve_ms, times.compose_ms, times.encode_ms);
   return 0;
 }

@@ -4,12 +4,16 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
+#include "server/config_settings.h"
+#include "server/expand_variables.h"
 #include "server/style_book.h"
 #include "server/style_parameters.h"
 #include "server/tile_request.h"
@@ -18,311 +22,394 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kLayerNameRule = "1 to 64 letters, digits, '_' or '-'";
+constexpr std::string_view kVariablePrefix = "TRAPEZE_";
 
 std::string position_text(const std::string& path, const toml::source_position& position) {
   return fmt::format("{}:{}:{}", path, position.line, position.column);
 }
 
-/// Reads the keys of one table one by one; whatever has not been asked for at the end is unknown.
-class TableReader {
+std::string relative_to_config(const std::string& config_path, const std::string& path) {
+  if (!is_file_path(path)) return path;
+  return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
+}
+
+/// Whether the value, which has the right type, is one that the setting takes; if so it is set.
+template <typename Owner>
+bool assign(const Setting<Owner>& setting, Owner& owner, const SettingValue& value) {
+  const auto is_within = [&setting](double number) {
+    return number >= setting.min && number <= setting.max;  // false for NaN
+  };
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    if (!is_within(static_cast<double>(*integer))) return false;
+  }
+  if (const auto* number = std::get_if<double>(&value); number && !is_within(*number)) return false;
+  return setting.set(owner, value);
+}
+
+/// Turns tables of TOML into settings, and goes on after what is wrong.
+class ConfigReader {
  public:
-  /// `name` is how messages call the table: "server" for [server].
-  TableReader(const std::string& path, const toml::table& table, std::string name)
-      : path_(path), table_(table), name_(std::move(name)) {}
+  ConfigReader(const std::string& path, LoadedConfig& loaded) : path_(path), loaded_(loaded) {}
 
-  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-    throw std::runtime_error(
-        fmt::format("{}: {}", position_text(path_, node.source().begin), message));
-  }
-  [[noreturn]] void fail(const std::string& message) const { fail(table_, message); }
-  [[noreturn]] void fail(const toml::key& key, const std::string& message) const {
-    throw std::runtime_error(
-        fmt::format("{}: {}", position_text(path_, key.source().begin), message));
-  }
-
-  const toml::node* find(std::string_view key) {
-    known_.emplace_back(key);
-    return table_.get(key);
-  }
-
-  std::string full_name(std::string_view key) const {
-    return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
-  }
-
-  void read(std::string_view key, std::string& target) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    if (!node->is_string()) fail(*node, fmt::format("{} takes a string", full_name(key)));
-    target = node->as_string()->get();
-  }
-
-  void read(std::string_view key, std::vector<std::string>& target) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const toml::array* array = node->as_array();
-    if (array == nullptr) fail(*node, fmt::format("{} takes a list of strings", full_name(key)));
-    for (const toml::node& item : *array) {
-      if (!item.is_string()) fail(item, fmt::format("{} takes a list of strings", full_name(key)));
-      target.push_back(item.as_string()->get());
-    }
-  }
-
-  template <typename Integer>
-  void read(std::string_view key, Integer& target, std::int64_t min, std::int64_t max) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return;
-    const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-    if (!value || *value < min || *value > max) {
-      fail(*node, fmt::format("{} takes an integer from {} to {}", full_name(key), min, max));
-    }
-    target = static_cast<Integer>(*value);
-  }
-
-  /// Call last: throws if the table holds a key that was never asked for.
-  void refuse_unknown_keys() const {
-    for (const auto& [key, node] : table_) {
-      if (std::ranges::find(known_, key.str()) != known_.end()) continue;
-      throw std::runtime_error(fmt::format("{}: unknown key {}; allowed here are {}",
-                                           position_text(path_, key.source().begin),
-                                           full_name(key.str()), fmt::join(known_, ", ")));
+  void read(const toml::table& root) {
+    for (const auto& [key, node] : root) {
+      if (key.str() == "layer") {
+        read_layers(node);
+      } else if (key.str() == "styles") {
+        read_styles(node);
+      } else if (is_table_of_settings(key.str())) {
+        read_table(key.str(), node);
+      } else {
+        fail(key.source().begin,
+             fmt::format("unknown key {}; allowed here are server, limits, log, admin, "
+                         "styles, layer",
+                         key.str()));
+      }
     }
   }
 
  private:
-  const std::string& path_;
-  const toml::table& table_;
-  std::string name_;
-  std::vector<std::string> known_;
-};
+  void fail(const toml::source_position& position, std::string what) {
+    loaded_.problems.push_back({position_text(path_, position), std::move(what)});
+  }
+  void fail(const toml::node& node, std::string what) {
+    fail(node.source().begin, std::move(what));
+  }
 
-std::string relative_to_config(const std::string& config_path, const std::string& path) {
-  if (path.empty()) return path;
-  return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
-}
+  static bool is_table_of_settings(std::string_view name) {
+    return std::ranges::find(config_settings(), name, &Setting<Config>::table) !=
+           config_settings().end();
+  }
 
-ServerConfig read_server(const std::string& path, const toml::table& table) {
-  ServerConfig server;
-  TableReader reader(path, table, "server");
-  reader.read("address", server.address);
-  reader.read("port", server.port, 0, 65535);
-  reader.read("threads", server.threads, 1, 256);
-  reader.read("workers", server.workers, 0, 256);
-  reader.read("queue", server.queue, 1, 1'000'000);
-  reader.read("deadline_ms", server.deadline_ms, 1, 600'000);
-  reader.read("batch", server.batch, 1, 64);
-  reader.read("posted_styles_mb", server.posted_styles_mb, 0, 4096);
-  reader.read("cache_mb", server.cache_mb, 0, 1'000'000);
-  reader.read("cache_control", server.cache_control);
-  if (std::ranges::any_of(server.cache_control, [](char c) { return c < ' ' || c > '~'; })) {
-    reader.fail(*table.get("cache_control"),
-                "server.cache_control takes the value of a Cache-Control header");
+  void read_table(std::string_view name, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) {
+      return fail(node, fmt::format("{} takes a table, begun by [{}]", name, name));
+    }
+    std::vector<Setting<Config>> here;
+    std::ranges::copy_if(config_settings(), std::back_inserter(here),
+                         [name](const auto& setting) { return setting.table == name; });
+    read_settings(*table, here, loaded_.config, std::string(name));
   }
-  std::string renderer = "auto";
-  reader.read("renderer", renderer);
-  if (const auto kind = renderer_kind_from(renderer)) {
-    server.renderer.kind = *kind;
-  } else {
-    reader.fail(*table.get("renderer"),
-                "server.renderer takes \"auto\", \"egl\", \"osmesa\" or \"software\"");
-  }
-  reader.read("device", server.renderer.device);
-  reader.read("public_url", server.public_url);
-  while (server.public_url.ends_with('/')) server.public_url.pop_back();
-  if (!server.public_url.empty() && !server.public_url.starts_with("http://") &&
-      !server.public_url.starts_with("https://")) {
-    reader.fail(*table.get("public_url"),
-                "server.public_url takes a URL that begins with http:// or https://");
-  }
-  reader.read("allowed_hosts", server.allowed_hosts);
-  for (const std::string& host : server.allowed_hosts) {
-    if (!is_valid_host(std::string_view(host).substr(host.starts_with("*.") ? 2 : 0))) {
-      reader.fail(*table.get("allowed_hosts"),
-                  fmt::format("server.allowed_hosts takes names of hosts, with or without a port, "
-                              "\"*.\" before them for all below; \"{}\" is none",
-                              host));
+
+  /// `other_key` is read by somebody else.
+  template <typename Owner>
+  void read_settings(const toml::table& table, const std::vector<Setting<Owner>>& settings,
+                     Owner& owner, const std::string& name, std::string_view other_key = {}) {
+    for (const auto& [key, node] : table) {
+      if (!other_key.empty() && key.str() == other_key) continue;
+      const auto setting = std::ranges::find(settings, key.str(), &Setting<Owner>::key);
+      if (setting == settings.end()) {
+        fail_unknown(key, settings, name, other_key);
+      } else if (read_setting(*setting, node, owner)) {
+        loaded_.origins[name + "." + setting->key] =
+            fmt::format("{}:{}", path_, node.source().begin.line);
+      }
     }
   }
-  reader.read("web_root", server.web_root);
-  server.web_root = relative_to_config(path, server.web_root);
-  reader.refuse_unknown_keys();
-  return server;
-}
 
-/// As the value is written in a query; nothing for what has no place there.
-std::optional<std::string> text_of(const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
-  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  const toml::array* list = node.as_array();
-  if (list == nullptr) return std::nullopt;
-  std::string joined;
-  for (const toml::node& item : *list) {
-    const auto text = item.is_array() ? std::nullopt : text_of(item);
-    if (!text) return std::nullopt;
-    if (!joined.empty()) joined.push_back(',');
-    joined += *text;
-  }
-  return joined;
-}
-
-/// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables are
-/// for one layer each, if they are allowed.
-void read_style_pairs(const TableReader& reader, const toml::table& table, const std::string& layer,
-                      bool has_layers, std::vector<QueryPair>& pairs) {
-  const std::vector<std::string> layers =
-      layer.empty() ? std::vector<std::string>() : std::vector<std::string>{layer};
-  for (const auto& [key, node] : table) {
-    if (has_layers && node.is_table()) {
-      read_style_pairs(reader, *node.as_table(), std::string(key.str()), false, pairs);
-      continue;
+  template <typename Owner>
+  void fail_unknown(const toml::key& key, const std::vector<Setting<Owner>>& settings,
+                    const std::string& name, std::string_view other_key) {
+    std::string allowed;
+    for (const auto& setting : settings) {
+      allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", setting.key);
     }
+    if (!other_key.empty()) allowed += fmt::format(", {}", other_key);
+    fail(key.source().begin,
+         fmt::format("unknown key {}.{}; allowed here are {}", name, key.str(), allowed));
+  }
+
+  template <typename Owner>
+  bool read_setting(const Setting<Owner>& setting, const toml::node& node, Owner& owner) {
+    const std::size_t before = loaded_.problems.size();
+    const auto value = value_of(setting.type, node);
+    if (loaded_.problems.size() > before) return false;  // a variable that is not set
+    if (value && assign(setting, owner, with_path(setting, *value))) return true;
+    const toml::node* item = value ? refused_item(setting, node, owner) : nullptr;
+    fail(item == nullptr ? node : *item, fmt::format("{} takes {}", setting.name(), setting.takes));
+    return false;
+  }
+
+  /// The first item of a list that is not taken; null if it is no list.
+  template <typename Owner>
+  const toml::node* refused_item(const Setting<Owner>& setting, const toml::node& node,
+                                 Owner owner) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return nullptr;
+    const auto refused = std::ranges::find_if(*array, [&](const toml::node& item) {
+      return !setting.set(owner, std::vector<std::string>{expanded(item)});
+    });
+    return refused == array->end() ? nullptr : &*refused;
+  }
+
+  template <typename Owner>
+  SettingValue with_path(const Setting<Owner>& setting, const SettingValue& value) const {
+    if (setting.type != SettingType::path) return value;
+    const auto& text = std::get<std::string>(value);
+    const bool is_word = std::ranges::find(setting.choices, text) != setting.choices.end();
+    return is_word ? value : SettingValue(relative_to_config(path_, text));
+  }
+
+  /// Nothing if the node has another type.
+  std::optional<SettingValue> value_of(SettingType type, const toml::node& node) {
+    switch (type) {
+      case SettingType::boolean:
+        return node.is_boolean() ? std::optional<SettingValue>(node.as_boolean()->get())
+                                 : std::nullopt;
+      case SettingType::integer:
+        return node.is_integer() ? std::optional<SettingValue>(node.as_integer()->get())
+                                 : std::nullopt;
+      case SettingType::number:
+        return node.is_number() ? std::optional<SettingValue>(*node.value<double>()) : std::nullopt;
+      case SettingType::text:
+      case SettingType::path:
+        return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
+      case SettingType::list:
+        return list_of(node);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<SettingValue> list_of(const toml::node& node) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return std::nullopt;
+    std::vector<std::string> items;
+    for (const toml::node& item : *array) {
+      if (!item.is_string()) return std::nullopt;
+      items.push_back(expanded(item));
+    }
+    return items;
+  }
+
+  std::string expanded(const toml::node& node) {
+    auto text = expand_variables(node.as_string()->get(),
+                                 [](const std::string& name) { return std::getenv(name.c_str()); });
+    if (!text.problem.empty()) fail(node, text.problem);
+    return std::move(text.text);
+  }
+
+  void read_layers(const toml::node& node) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return fail(node, "layers are tables, each begun by [[layer]]");
+    for (const toml::node& item : *array) {
+      const toml::table* table = item.as_table();
+      if (table == nullptr) {
+        fail(item, "layers are tables, each begun by [[layer]]");
+      } else {
+        read_layer(*table);
+      }
+    }
+  }
+
+  void read_layer(const toml::table& table) {
+    LayerConfig layer;
+    const std::string name = table.get("name") != nullptr && table.get("name")->is_string()
+                                 ? fmt::format("layer.{}", table.get("name")->as_string()->get())
+                                 : "layer";
+    const std::size_t before = loaded_.problems.size();
+    read_settings(table, layer_settings(), layer, name, "style");
+    if (const toml::node* style = table.get("style")) layer.style = read_layer_style(*style);
+    if (table.get("name") == nullptr) {
+      fail(table, "every [[layer]] needs a name of 1 to 64 letters, digits, '_' or '-'");
+    }
+    const bool is_readable = loaded_.problems.size() == before;
+    if (is_readable && layer.file_to_open().empty()) {
+      fail(table, fmt::format("layer \"{}\" needs a file", layer.name));
+    }
+    if (layer.min_zoom > layer.max_zoom) {
+      fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
+    }
+    if (layer.title.empty() && table.get("title") == nullptr) layer.title = layer.name;
+    keep(std::move(layer), table.source().begin);
+  }
+
+  void keep(LayerConfig layer, const toml::source_position& position) {
+    const auto [first, is_new] = lines_.emplace(layer.name, position.line);
+    if (!is_new && !layer.name.empty()) {
+      fail(position, fmt::format("layer \"{}\" is defined twice, first in line {}", layer.name,
+                                 first->second));
+    }
+    loaded_.config.layers.push_back(std::move(layer));
+  }
+
+  /// As the value is written in a query; nothing for what has no place there.
+  std::optional<std::string> query_text_of(const toml::node& node) {
+    if (node.is_string()) return expanded(node);
+    if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    const toml::array* list = node.as_array();
+    if (list == nullptr) return std::nullopt;
+    std::string joined;
+    for (const toml::node& item : *list) {
+      const auto text = item.is_array() ? std::nullopt : query_text_of(item);
+      if (!text) return std::nullopt;
+      if (!joined.empty()) joined.push_back(',');
+      joined += *text;
+    }
+    return joined;
+  }
+
+  /// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables
+  /// are for one layer each, if they are allowed.
+  void read_style_pairs(const toml::table& table, const std::string& layer, bool has_layers,
+                        std::vector<QueryPair>& pairs) {
+    for (const auto& [key, node] : table) {
+      if (has_layers && node.is_table()) {
+        read_style_pairs(*node.as_table(), std::string(key.str()), false, pairs);
+      } else if (auto pair = read_style_pair(key, node, layer, has_layers)) {
+        pairs.push_back(std::move(*pair));
+      }
+    }
+  }
+
+  std::optional<QueryPair> read_style_pair(const toml::key& key, const toml::node& node,
+                                           const std::string& layer, bool has_layers) {
     std::string name(key.str());
     std::ranges::replace(name, '_', '-');
     const StyleParameter* parameter = find_style_parameter(name);
     const bool is_for_all_layers = layer.empty() && has_layers;
     if (parameter == nullptr || parameter->id == ParameterId::style ||
         (!parameter->is_per_layer && !is_for_all_layers)) {
-      reader.fail(key, fmt::format("a style does not know \"{}\"", std::string(key.str())));
+      fail(key.source().begin, fmt::format("a style does not know \"{}\"", key.str()));
+      return std::nullopt;
     }
-    const auto text = text_of(node);
-    const std::string written = layer.empty() ? name : layer + "." + name;
-    const QueryPair pair(written, text.value_or(""));
-    if (!text || !std::holds_alternative<StyleQuery>(StyleQuery::parse({&pair, 1}, layers))) {
-      reader.fail(node,
-                  fmt::format("{} takes {}", std::string(key.str()), describe_values(*parameter)));
-    }
-    pairs.push_back(pair);
+    const auto text = query_text_of(node);
+    const QueryPair pair(layer.empty() ? name : layer + "." + name, text.value_or(""));
+    if (text && make_style({pair}, layer.empty() ? Names() : Names{layer})) return pair;
+    fail(node, fmt::format("{} takes {}", key.str(), describe_values(*parameter)));
+    return std::nullopt;
   }
-}
 
-StyleQuery read_layer_style(const std::string& path, const toml::table& table) {
-  const TableReader reader(path, table, "layer.style");
-  std::vector<QueryPair> pairs;
-  read_style_pairs(reader, table, {}, false, pairs);
-  return std::get<StyleQuery>(StyleQuery::parse(pairs, {}));
-}
+  using Names = std::vector<std::string>;
 
-/// [styles.NAME]
-std::map<std::string, StyleQuery> read_styles(const std::string& path, const toml::table& table) {
-  const TableReader reader(path, table, "styles");
-  std::map<std::string, StyleQuery> styles;
-  for (const auto& [key, node] : table) {
-    const std::string name(key.str());
-    if (!is_style_name(name) || name == StyleBook::kDefaultName || !node.is_table()) {
-      reader.fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name "
-                                    "of 1 to 64 letters, digits, '_' or '-' other than \"{}\"",
+  static std::optional<StyleQuery> make_style(const std::vector<QueryPair>& pairs,
+                                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (std::holds_alternative<Problem>(style)) return std::nullopt;
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  StyleQuery read_layer_style(const toml::node& node) {
+    std::vector<QueryPair> pairs;
+    if (const toml::table* table = node.as_table()) {
+      read_style_pairs(*table, {}, false, pairs);
+    } else {
+      fail(node, "layer.style takes a table");
+    }
+    return style_or_problem(node, pairs, {});
+  }
+
+  /// Of pairs that are right one by one.
+  StyleQuery style_or_problem(const toml::node& node, const std::vector<QueryPair>& pairs,
+                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (const auto* problem = std::get_if<Problem>(&style)) {
+      fail(node, problem->detail);  // set twice, as fill_opacity and fill-opacity
+      return {};
+    }
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  void read_styles(const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return fail(node, "styles are tables, begun by [styles.NAME]");
+    for (const auto& [key, style] : *table) read_named_style(std::string(key.str()), style);
+  }
+
+  void read_named_style(const std::string& name, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (!is_style_name(name) || name == StyleBook::kDefaultName || table == nullptr) {
+      return fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name of "
+                                    "1 to 64 letters, digits, '_' or '-' other than \"{}\"",
                                     StyleBook::kDefaultName));
     }
     std::vector<QueryPair> pairs;
-    read_style_pairs(reader, *node.as_table(), {}, true, pairs);
-    std::vector<std::string> layers;
-    for (const auto& [layer, style] : *node.as_table()) {
+    read_style_pairs(*table, {}, true, pairs);
+    Names layers;
+    for (const auto& [layer, style] : *table) {
       if (style.is_table()) layers.emplace_back(layer.str());
     }
-    styles.emplace(name, std::get<StyleQuery>(StyleQuery::parse(pairs, layers)));
+    loaded_.config.styles.emplace(name, style_or_problem(node, pairs, layers));
   }
-  return styles;
-}
 
-std::vector<ParameterId> read_locked(TableReader& reader) {
-  std::vector<std::string> names;
-  reader.read("locked", names);
-  std::vector<ParameterId> locked;
-  for (const std::string& name : names) {
-    const StyleParameter* parameter = find_style_parameter(name);
-    if (parameter == nullptr || !parameter->is_per_layer) {
-      std::vector<std::string_view> known;
-      for (const StyleParameter& p : style_parameters()) {
-        if (p.is_per_layer) known.push_back(p.name);
-      }
-      reader.fail(*reader.find("locked"),
-                  fmt::format("layer.locked takes names of parameters that are set for one layer, "
-                              "and \"{}\" is none; known are {}",
-                              name, fmt::join(known, ", ")));
-    }
-    locked.push_back(parameter->id);
-  }
-  return locked;
-}
+  const std::string& path_;
+  LoadedConfig& loaded_;
+  std::unordered_map<std::string, toml::source_index> lines_;  // of layers, by name
+};
 
-LayerConfig read_layer(const std::string& path, const toml::table& table) {
-  LayerConfig layer;
-  TableReader reader(path, table, "layer");
-  reader.read("name", layer.name);
-  if (!is_layer_name(layer.name)) {
-    const toml::node* node = table.get("name");
-    reader.fail(node == nullptr ? static_cast<const toml::node&>(table) : *node,
-                fmt::format("every [[layer]] needs a name of {}", kLayerNameRule));
-  }
-  reader.read("file", layer.file);
-  reader.read("prepared", layer.prepared);
-  if (layer.file_to_open().empty()) {
-    reader.fail(fmt::format("layer \"{}\" needs a file", layer.name));
-  }
-  layer.file = relative_to_config(path, layer.file);
-  layer.prepared = relative_to_config(path, layer.prepared);
-  layer.title = layer.name;
-  reader.read("title", layer.title);
-  reader.read("attribution", layer.attribution);
-  reader.read("description", layer.description);
-  reader.read("min_zoom", layer.min_zoom, 0, kMaxZoom);
-  reader.read("max_zoom", layer.max_zoom, 0, kMaxZoom);
-  if (layer.min_zoom > layer.max_zoom) {
-    reader.fail(fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
-  }
-  std::string weights;
-  reader.read("weights", weights);
-  if (const toml::node* node = table.get("weights")) {
-    layer.weights = weight_rule_from_name(weights);
-    if (!layer.weights) {
-      reader.fail(
-          *node,
-          "layer.weights takes \"douglas-peucker\", \"raised-parents\" or \"effective-area\"");
-    }
-  }
-  if (const toml::node* style = reader.find("style")) {
-    if (!style->is_table()) reader.fail(*style, "layer.style takes a table");
-    layer.style = read_layer_style(path, *style->as_table());
-  }
-  layer.locked = read_locked(reader);
-  reader.refuse_unknown_keys();
-  return layer;
-}
-
-void read_layers(const std::string& path, const toml::node& node,
-                 std::vector<LayerConfig>& layers) {
-  const toml::array* array = node.as_array();
-  std::unordered_map<std::string, toml::source_position> seen;
-  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
-    const toml::table* table = array->get_as<toml::table>(i);
-    if (table == nullptr) break;
-    layers.push_back(read_layer(path, *table));
-    const auto [first, is_new] = seen.emplace(layers.back().name, table->source().begin);
-    if (!is_new) {
-      throw std::runtime_error(fmt::format("{}: layer \"{}\" is defined twice, first in line {}",
-                                           position_text(path, table->source().begin),
-                                           layers.back().name, first->second.line));
-    }
-  }
-  if (array == nullptr || layers.size() != array->size()) {
-    throw std::runtime_error(fmt::format("{}: layers are tables, each begun by [[layer]]",
-                                         position_text(path, node.source().begin)));
-  }
-}
-
-toml::table parse_toml(const std::string& path) {
+void read_file(const std::string& path, LoadedConfig& loaded) {
   try {
-    return toml::parse_file(path);
+    const toml::table root = toml::parse_file(path);
+    ConfigReader(path, loaded).read(root);
   } catch (const toml::parse_error& error) {
     // Position 0:0 means that the file could not be opened, not that its text is wrong.
-    if (error.source().begin.line == 0) {
-      throw std::runtime_error(
-          fmt::format("cannot read the configuration {}: {}", path, error.description()));
-    }
-    throw std::runtime_error(
-        fmt::format("{}: {}", position_text(path, error.source().begin), error.description()));
+    const auto position = error.source().begin;
+    const std::string what(error.description());
+    loaded.problems.push_back(position.line == 0
+                                  ? ConfigProblem{path, "cannot read the configuration: " + what}
+                                  : ConfigProblem{position_text(path, position), what});
   }
+}
+
+template <typename Number>
+std::optional<SettingValue> number_in(const std::string& text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::vector<std::string> words_in(std::string_view text) {
+  std::vector<std::string> words;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    words.emplace_back(text.substr(0, comma));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return words;
+}
+
+/// The value that a text means for a setting of that type; nothing if it means none.
+std::optional<SettingValue> value_in(SettingType type, const std::string& text) {
+  switch (type) {
+    case SettingType::boolean:
+      if (text != "true" && text != "false") return std::nullopt;
+      return text == "true";
+    case SettingType::integer:
+      return number_in<std::int64_t>(text);
+    case SettingType::number:
+      return number_in<double>(text);
+    case SettingType::text:
+    case SettingType::path:
+      return text;
+    case SettingType::list:
+      return words_in(text);
+  }
+  return std::nullopt;
+}
+
+void apply(const ConfigOverride& change, LoadedConfig& loaded) {
+  for (const auto& setting : config_settings()) {
+    if (setting.name() != change.setting) continue;
+    const auto value = value_in(setting.type, change.value);
+    if (value && assign(setting, loaded.config, *value)) {
+      loaded.origins[change.setting] = change.origin;
+    } else {
+      const bool is_list = setting.type == SettingType::list;
+      loaded.problems.push_back(
+          {change.origin,
+           fmt::format("takes {}{}", setting.takes, is_list ? ", with commas between them" : "")});
+    }
+  }
+}
+
+std::string variable_of(const Setting<Config>& setting) {
+  std::string name = fmt::format("{}{}_{}", kVariablePrefix, setting.table, setting.key);
+  std::ranges::transform(name, name.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  return name;
 }
 
 std::string layer_name_of_file(const std::string& file) {
@@ -337,21 +424,45 @@ std::string layer_name_of_file(const std::string& file) {
 
 }  // namespace
 
+bool is_file_path(const std::string& source) {
+  const std::size_t colon = source.find(':');
+  return !source.empty() && !source.starts_with("/vsi") &&
+         (colon == std::string::npos || source.find('/') < colon);
+}
+
+LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides) {
+  LoadedConfig loaded;
+  if (!path.empty()) read_file(path, loaded);
+  for (const ConfigOverride& change : overrides) apply(change, loaded);
+  return loaded;
+}
+
+std::vector<ConfigOverride> environment_overrides(const char* const* environment) {
+  std::vector<ConfigOverride> overrides;
+  for (; *environment != nullptr; ++environment) {
+    const std::string_view entry = *environment;
+    const std::size_t equals = entry.find('=');
+    if (!entry.starts_with(kVariablePrefix) || equals == std::string_view::npos) continue;
+    const std::string name(entry.substr(0, equals));
+    const auto setting = std::ranges::find(config_settings(), name, variable_of);
+    if (setting == config_settings().end()) continue;  // others may have their own variables
+    overrides.push_back({setting->name(), std::string(entry.substr(equals + 1)), name});
+  }
+  return overrides;
+}
+
 Config read_config(const std::string& path) {
-  const toml::table root = parse_toml(path);
-  Config config;
-  TableReader reader(path, root, "");
-  if (const toml::node* server = reader.find("server")) {
-    if (!server->is_table()) reader.fail(*server, "server takes a table, begun by [server]");
-    config.server = read_server(path, *server->as_table());
+  LoadedConfig loaded = load_config(path, {});
+  if (!loaded.problems.empty()) throw std::runtime_error(problems_text(loaded.problems));
+  return std::move(loaded.config);
+}
+
+std::string problems_text(const std::vector<ConfigProblem>& problems) {
+  std::string text;
+  for (const ConfigProblem& problem : problems) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.where, problem.what);
   }
-  if (const toml::node* styles = reader.find("styles")) {
-    if (!styles->is_table()) reader.fail(*styles, "styles are tables, begun by [styles.NAME]");
-    config.styles = read_styles(path, *styles->as_table());
-  }
-  if (const toml::node* layers = reader.find("layer")) read_layers(path, *layers, config.layers);
-  reader.refuse_unknown_keys();
-  return config;
+  return text;
 }
 
 std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files) {

@@ -1,9 +1,13 @@
 #include "server/http_message.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace trapeze {
 namespace {
+
+constexpr double kLongestRetrySeconds = 3600;
 
 std::string_view trim(std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
@@ -17,8 +21,16 @@ HttpResponse problem_response(const Problem& problem) {
   HttpResponse response;
   response.status = problem.status;
   response.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
-  if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
   response.body = std::make_shared<const std::string>(problem_json(problem));
+  if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
+HttpResponse problem_response(const Problem& problem, std::chrono::duration<double> retry_after) {
+  HttpResponse response = problem_response(problem);
+  std::erase_if(response.headers, [](const auto& header) { return header.first == "Retry-After"; });
+  const double seconds = std::clamp(std::ceil(retry_after.count()), 1.0, kLongestRetrySeconds);
+  response.headers.emplace_back("Retry-After", std::to_string(static_cast<int>(seconds)));
   return response;
 }
 

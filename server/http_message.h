@@ -1,6 +1,7 @@
 // Requests and responses as the server thinks of them, whatever library speaks HTTP.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/client_address.h"
 #include "server/problem.h"
 
 namespace trapeze {
@@ -18,6 +20,7 @@ struct HttpRequest {
   std::string host;           // as sent, unchecked; empty if none was
   std::string if_none_match;  // as sent; empty if none was
   std::string body = {};      // hostile
+  ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
 };
 
 struct HttpResponse {
@@ -38,7 +41,10 @@ struct HttpResponse {
 using Respond = std::function<void(HttpResponse)>;
 
 /// The response that tells of a problem, as application/problem+json, not to be stored by caches.
+/// With 503 it asks the client to try again after a second.
 HttpResponse problem_response(const Problem& problem);
+/// The same, to be tried again after so long; rounded up to seconds, one at least.
+HttpResponse problem_response(const Problem& problem, std::chrono::duration<double> retry_after);
 
 /// Whether an If-None-Match header names `entity_tag` (weakly compared, as RFC 7232 wants it).
 bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag);

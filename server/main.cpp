@@ -3,14 +3,17 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/build_id.h"
 #include "server/commands.h"
+#include "server/config_settings.h"
 #include "server/parameter_table.h"
 
 namespace {
@@ -21,6 +24,7 @@ constexpr const char* kDescription =
     "  trapeze serve countries.fgb lakes.gpkg      tiles at "
     "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
     "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
+    "  trapeze config check trapeze.toml           all that is wrong with it\n"
     "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
     "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
@@ -35,7 +39,17 @@ constexpr const char* kServeFooter =
     "  trapeze serve --config trapeze.toml --workers 4\n\n"
     "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json "
     "(TileJSON),\n"
-    "/catalog, /health, /ready, and the viewer at /. SIGTERM and SIGINT end the server in order.";
+    "/catalog, /health, /ready, /metrics, and the viewer at /. SIGTERM and SIGINT end the server "
+    "in\n"
+    "order, SIGHUP lets it read its layers again.";
+
+constexpr const char* kConfigFooter =
+    "\nExamples:\n"
+    "  trapeze config check trapeze.toml           every mistake with its line and column\n"
+    "  trapeze config print --config trapeze.toml --port 9000\n"
+    "  trapeze config schema                       for editors that complete and check\n\n"
+    "The command line goes before the environment (TRAPEZE_TABLE_KEY, TRAPEZE_SERVER_PORT for\n"
+    "server.port), and that before the file, in whose strings ${NAME} is a variable.";
 
 constexpr const char* kCheckFooter =
     "\nExample:\n"
@@ -79,28 +93,82 @@ constexpr const char* kRendererHelp =
     "What draws: auto, egl, osmesa or software (auto tries them in this order)";
 constexpr const char* kDeviceHelp = "The EGL device to prefer: its index, or a part of its name";
 
+trapeze::ConfigOverride parse_assignment(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const bool is_known = std::ranges::any_of(
+      trapeze::config_settings(), [&name](const auto& setting) { return setting.name() == name; });
+  if (equals == std::string::npos || !is_known) {
+    throw CLI::ValidationError(
+        "--set", text + " is no TABLE.KEY=VALUE of a setting; `trapeze config print` shows them");
+  }
+  return {name, text.substr(equals + 1), "--set " + name};
+}
+
+/// An option that is a setting of the configuration.
+void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const std::string& option,
+                 const std::string& setting, const char* type, const char* help) {
+  command
+      .add_option_function<std::string>(
+          option,
+          [&arguments, option, setting](const std::string& value) {
+            arguments.settings.push_back({setting, value, option});
+          },
+          help)
+      ->type_name(type);
+}
+
+void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
+  command.add_option("FILE", arguments.files,
+                     "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
+                     "a layer named after it. Instead of the layers of the configuration.");
+  command
+      .add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
+      ->type_name("FILE");
+  add_setting(command, arguments, "--port", "server.port", "N",
+              "Port, 8080 if not set; 0 takes any free one");
+  add_setting(command, arguments, "--address", "server.address", "IP",
+              "Address to listen on, 0.0.0.0 if not set");
+  add_setting(command, arguments, "--threads", "server.threads", "N",
+              "Threads for connections, 2 if not set");
+  add_setting(command, arguments, "--workers", "server.workers", "N",
+              "Threads that draw, one a core if not set");
+  add_setting(command, arguments, "--renderer", "server.renderer", "NAME", kRendererHelp);
+  add_setting(command, arguments, "--device", "server.device", "DEVICE", kDeviceHelp);
+  add_setting(command, arguments, "--web-root", "server.web_root", "DIR",
+              "Folder of the viewer, served at /");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&arguments](const std::vector<std::string>& assignments) {
+            for (const std::string& text : assignments) {
+              arguments.settings.push_back(parse_assignment(text));
+            }
+          },
+          "Any setting of the configuration: limits.connections=100; may be given several times")
+      ->type_name("TABLE.KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
 void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
   CLI::App* serve = app.add_subcommand("serve", "Serve tiles over HTTP");
   serve->footer(kServeFooter);
-  serve->add_option("FILE", arguments.files,
-                    "Files of polygons, in any format GDAL reads, or prepared ones; each becomes a "
-                    "layer named after it. Instead of the layers of the configuration.");
-  serve->add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
-      ->type_name("FILE");
-  serve->add_option("--port", arguments.port, "Port, 8080 if not set; 0 takes any free one")
-      ->type_name("N");
-  serve->add_option("--address", arguments.address, "Address to listen on, 0.0.0.0 if not set")
-      ->type_name("IP");
-  serve->add_option("--threads", arguments.threads, "Threads for connections, 2 if not set")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
-  serve->add_option("--workers", arguments.workers, "Threads that draw, one a core if not set")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
-  serve->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
-  serve->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
-  serve->add_option("--web-root", arguments.web_root, "Folder of the viewer, served at /")
-      ->type_name("DIR");
+  add_settings(*serve, arguments);
+}
+
+void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& arguments) {
+  CLI::App* config = app.add_subcommand("config", "Check or show a configuration");
+  config->footer(kConfigFooter);
+  config->require_subcommand(1);
+  config->add_subcommand("check", "Tell all that is wrong with a configuration")
+      ->add_option("FILE", path, "Configuration (TOML)")
+      ->required();
+  CLI::App* print =
+      config->add_subcommand("print",
+                             "Print what `serve` would do with the same options, with the "
+                             "origin of each value");
+  add_settings(*print, arguments);
+  config->add_subcommand("schema", "Print the JSON Schema of configurations");
 }
 
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
@@ -217,7 +285,10 @@ int run(int argc, char** argv) {
   trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
   std::string bench;
+  std::string config_path;
+  trapeze::ServeArguments config;
   add_serve(app, serve);
+  add_config(app, config_path, config);
   add_check(app, check);
   add_prepare(app, prepare);
   add_export(app, to_export);
@@ -234,10 +305,16 @@ int run(int argc, char** argv) {
     return 1;
   }
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
+  serve.is_verbose = is_verbose;
   if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
   if (app.got_subcommand("parameters")) {
     std::cout << trapeze::parameter_table();
     return 0;
+  }
+  if (const CLI::App* command = app.get_subcommand("config"); command->parsed()) {
+    if (command->got_subcommand("check")) return trapeze::run_config_check(config_path);
+    if (command->got_subcommand("print")) return trapeze::run_config_print(config);
+    return trapeze::run_config_schema();
   }
   if (app.got_subcommand("check")) return trapeze::run_check(check);
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);

@@ -184,6 +184,7 @@ Json operation_json(const Operation& operation) {
     responses["400"] = problem;
     responses["404"] = problem;
   }
+  responses["429"] = problem;
   responses["503"] = problem;
   Json get = {{"operationId", operation.id}, {"summary", operation.summary}};
   if (!operation.parameters.empty()) get["parameters"] = operation.parameters;

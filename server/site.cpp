@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
+#include <iterator>
 #include <utility>
 
 #include "server/catalog.h"
@@ -13,7 +13,9 @@
 #include "server/identify.h"
 #include "server/json_text.h"
 #include "server/legend.h"
+#include "server/metrics.h"
 #include "server/ogc_api.h"
+#include "server/paint_stages.h"
 #include "server/style_document.h"
 #include "server/url.h"
 #include "server/wmts.h"
@@ -112,11 +114,12 @@ HttpResponse json_document(const HttpRequest& request, std::string json) {
 }
 
 std::string server_timing(const PaintTimes& times) {
-  return fmt::format(
-      "queue;dur={:.3f}, select;dur={:.3f}, draw;dur={:.3f}, read;dur={:.3f}, "
-      "resolve;dur={:.3f}, compose;dur={:.3f}, encode;dur={:.3f}",
-      times.queue_ms, times.select_ms, times.draw_ms, times.read_ms, times.resolve_ms,
-      times.compose_ms, times.encode_ms);
+  std::string text;
+  for (const PaintStage& stage : kPaintStages) {
+    fmt::format_to(std::back_inserter(text), "{}{};dur={:.3f}", text.empty() ? "" : ", ",
+                   stage.name, times.*stage.milliseconds);
+  }
+  return text;
 }
 
 HttpResponse tile_headers(int status, const std::string& entity_tag,
@@ -128,14 +131,15 @@ HttpResponse tile_headers(int status, const std::string& entity_tag,
 }
 
 HttpResponse tile_response(const TileCache::Tile& tile, const std::string& entity_tag,
-                           const std::string& cache_control, std::string_view from) {
+                           const std::string& cache_control, TileFormat format,
+                           std::string_view from) {
   auto response = tile_headers(200, entity_tag, cache_control);
-  response.headers.emplace_back("Content-Type", "image/png");
+  response.headers.emplace_back("Content-Type", content_type_of(format));
   response.headers.emplace_back("X-Cache", from);
   if (tile.hint != TileHint::none) {
     response.headers.emplace_back("OATiles-hint", tile.hint == TileHint::empty ? "empty" : "full");
   }
-  response.body = tile.png;
+  response.body = tile.bytes;
   return response;
 }
 
@@ -156,6 +160,7 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
            TileCache& cache)
     : options_(std::move(options)),
       files_(std::move(files)),
+      draw_limit_(std::make_unique<RateLimit>(options_.drawn_per_second, options_.drawn_burst)),
       data_(data),
       tiles_(tiles),
       cache_(cache),
@@ -194,6 +199,7 @@ HttpResponse Site::route(const HttpRequest& request) const {
   if (path == "/health") return answer_health();
   if (path == "/ready") return answer_ready();
   if (path == "/catalog") return answer_catalog(request);
+  if (path == "/metrics" && options_.metrics) return answer_metrics();
   if (path == kStylesPath || path.starts_with("/styles/")) return answer_style(path, request);
   return answer_file(request);
 }
@@ -207,9 +213,20 @@ HttpResponse Site::answer_health() const {
 
 HttpResponse Site::answer_ready() const {
   if (data_.get() == nullptr) return problem_response(still_loading());
+  if (options_.is_stopping && options_.is_stopping()) {
+    return problem_response({503, "The server is about to end."});
+  }
   HttpResponse response;
   response.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
   response.body = std::make_shared<const std::string>("{\"status\": \"ready\"}\n");
+  return response;
+}
+
+HttpResponse Site::answer_metrics() const {
+  HttpResponse response;
+  response.headers = {{"Content-Type", std::string(Metrics::kContentType)},
+                      {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>(options_.metrics());
   return response;
 }
 
@@ -317,8 +334,27 @@ void Site::handle_document(const DocumentRoute& route, const HttpRequest& reques
   respond(fresh_document(request, std::move(std::get<Document>(made))));
 }
 
+std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
+  if (tile.tile.z > options_.max_zoom) {
+    return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 "
+                                    "to 2^zoom - 1.",
+                                    options_.max_zoom)};
+  }
+  if (tile.scale > options_.max_scale) {
+    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",
+                   fmt::format("{}x", tile.scale), fmt::format("1x to {}x", options_.max_scale)};
+  }
+  if (tile.layers.size() > options_.max_layers) {
+    return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers),
+                   "layers", fmt::format("{} layers", tile.layers.size()),
+                   fmt::format("at most {} layers", options_.max_layers)};
+  }
+  return std::nullopt;
+}
+
 void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
                        const Respond& respond) const {
+  if (const auto excess = find_excess(tile)) return respond(problem_response(*excess));
   auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto planned = plan_tile(tile, std::move(dataset));
@@ -331,16 +367,21 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (matches_entity_tag(request.if_none_match, entity_tag)) {
     return respond(tile_headers(304, entity_tag, options_.cache_control));
   }
-  if (const auto kept = cache_.find(key); kept.png != nullptr) {
-    return respond(tile_response(kept, entity_tag, options_.cache_control, "HIT"));
+  if (const auto kept = cache_.find(key); kept.bytes != nullptr) {
+    return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
+  }
+  if (const auto pause =
+          draw_limit_->take(limited_address(request.client), RateLimit::Clock::now())) {
+    return respond(problem_response(
+        {429, "These are more tiles at once than one address may have drawn. Ask again."}, *pause));
   }
   // The last answers come while the service ends, when this site may be gone.
   auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond, key,
-                      entity_tag](const TileAnswer& answer) {
+                      entity_tag, format = tile.format](const TileAnswer& answer) {
     if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
-    const TileCache::Tile drawn{answer.tile.png, answer.tile.hint};
+    const TileCache::Tile drawn{answer.tile.bytes, answer.tile.hint};
     cache.insert(key, drawn);
-    auto response = tile_response(drawn, entity_tag, cache_control, "MISS");
+    auto response = tile_response(drawn, entity_tag, cache_control, format, "MISS");
     response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
     respond(std::move(response));
   };

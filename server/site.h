@@ -4,14 +4,17 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "server/dataset.h"
 #include "server/http_message.h"
+#include "server/rate_limit.h"
 #include "server/static_files.h"
 #include "server/style_book.h"
 #include "server/tile_cache.h"
@@ -26,6 +29,16 @@ struct SiteOptions {
   std::vector<std::string> allowed_hosts = {};
   /// What caches between here and the client may do with tiles.
   std::string cache_control = "public, max-age=3600";
+  std::size_t max_layers = kMaxLayersPerTile;  // of one tile
+  int max_scale = kMaxScale;
+  int max_zoom = kMaxZoom;
+  /// Tiles that one address may have drawn, as RateLimit takes them; 0: as many as it likes.
+  double drawn_per_second = 0;
+  double drawn_burst = 1;
+  /// What /metrics answers; empty: it is not there.
+  std::function<std::string()> metrics = {};
+  /// Whether the server is about to end, and so not ready any more; empty: never.
+  std::function<bool()> is_stopping = {};
   /// Styles by name, and the memory in bytes for those that are posted.
   std::map<std::string, StyleQuery> styles = {};
   std::size_t posted_styles = StyleBook::kDefaultBudget;
@@ -57,12 +70,16 @@ class Site {
                        const Respond& respond) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;
+  HttpResponse answer_metrics() const;
+  /// What of a tile is beyond the limits of this site.
+  std::optional<Problem> find_excess(const TileRequest& tile) const;
   /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
   /// says nonsense.
   OrProblem<std::string> base_url(const HttpRequest& request) const;
 
   const SiteOptions options_;
   const StaticFiles files_;
+  const std::unique_ptr<RateLimit> draw_limit_;
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;

@@ -28,11 +28,11 @@ class TileCache {
   TileCache& operator=(const TileCache&) = delete;
 
   struct Tile {
-    std::shared_ptr<const std::string> png;
+    std::shared_ptr<const std::string> bytes;  // PNG or WebP
     TileHint hint = TileHint::none;
   };
 
-  /// Its png is null if the tile is not there.
+  /// Its bytes are null if the tile is not there.
   Tile find(std::string_view key);
   /// Keeps the tile, if it is not larger than what a part of the budget can hold.
   void insert(std::string_view key, const Tile& tile);

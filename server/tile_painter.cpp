@@ -127,7 +127,7 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
   if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
-  tile.png = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
+  tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
                          : std::make_shared<const std::string>(encode(plan.format));
   return tile;
 }

@@ -43,7 +43,7 @@ enum class TileHint : std::uint8_t {
 };
 
 struct PaintedTile {
-  std::shared_ptr<const std::string> png;
+  std::shared_ptr<const std::string> bytes;  // PNG or WebP
   TileHint hint = TileHint::none;
   PaintTimes times;
 };

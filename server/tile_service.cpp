@@ -10,7 +10,10 @@ namespace trapeze {
 
 TileService::TileService(const TileServiceOptions& options,
                          std::vector<std::unique_ptr<CoverageRenderer>> renderers)
-    : options_(options), renderer_name_(renderers.front()->name()), workers_(renderers.size()) {
+    : options_(options),
+      renderer_(*renderers.front()),
+      renderer_name_(renderer_.name()),
+      workers_(renderers.size()) {
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
@@ -41,7 +44,18 @@ void TileService::submit(TilePlan plan, std::string key, Callback callback) {
       return;
     }
   }
-  callback({TileOutcome::saturated, {}});
+  const TileAnswer saturated{TileOutcome::saturated, {}};
+  tell(saturated);
+  callback(saturated);
+}
+
+TileService::Figures TileService::figures() const {
+  const std::lock_guard lock(mutex_);
+  return {queue_.size(), flights_.size() - queue_.size()};
+}
+
+void TileService::tell(const TileAnswer& answer) const {
+  if (options_.observe) options_.observe(answer);
 }
 
 void TileService::work(TilePainter& painter) {
@@ -116,6 +130,7 @@ void TileService::land(Flight& flight, const TileAnswer& answer) {
     flights_.erase(flight.key);
     callbacks.swap(flight.callbacks);
   }
+  tell(answer);
   for (const Callback& callback : callbacks) callback(answer);
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -20,14 +21,6 @@
 
 namespace trapeze {
 
-struct TileServiceOptions {
-  std::size_t queue = 256;                     // distinct tiles that may wait for a worker
-  std::chrono::milliseconds deadline{10'000};  // from submission to the beginning of drawing
-  // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
-  // waited for; but a tile waits until those of its pass are drawn too.
-  std::size_t batch = 8;
-};
-
 enum class TileOutcome {
   drawn,
   saturated,  // the queue is full, or the service is stopping: worth asking again
@@ -38,6 +31,16 @@ enum class TileOutcome {
 struct TileAnswer {
   TileOutcome outcome = TileOutcome::failed;
   PaintedTile tile;  // if drawn
+};
+
+struct TileServiceOptions {
+  std::size_t queue = 256;                     // distinct tiles that may wait for a worker
+  std::chrono::milliseconds deadline{10'000};  // from submission to the beginning of drawing
+  // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
+  // waited for; but a tile waits until those of its pass are drawn too.
+  std::size_t batch = 8;
+  // Told once of every tile, however many asked for it, from whatever thread answers.
+  std::function<void(const TileAnswer&)> observe = {};
 };
 
 class TileService {
@@ -59,6 +62,16 @@ class TileService {
   /// One word for what draws.
   const std::string& renderer_name() const { return renderer_name_; }
 
+  struct Figures {
+    std::size_t waiting = 0;  // distinct tiles that wait for a worker
+    std::size_t drawing = 0;  // distinct tiles that a worker has taken
+  };
+  Figures figures() const;
+
+  /// Lets go of what the renderers keep for a mesh. Call it when nothing is going to draw it any
+  /// more: what is drawn later would be kept again.
+  void forget(std::uint64_t mesh_id) { renderer_.forget(mesh_id); }
+
  private:
   struct Flight {
     TilePlan plan;
@@ -77,13 +90,15 @@ class TileService {
   void draw(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   void land(Flight& flight, const TileAnswer& answer);
+  void tell(const TileAnswer& answer) const;
 
   const TileServiceOptions options_;
+  CoverageRenderer& renderer_;  // the first; its worker lives until the service ends
   const std::string renderer_name_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;
 
-  std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards all below
   std::condition_variable wake_;
   std::deque<std::shared_ptr<Flight>> queue_;
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn

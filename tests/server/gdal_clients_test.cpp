@@ -38,7 +38,7 @@ class GdalClientsTest : public ::testing::Test {
     HttpServerOptions options;
     options.address = "127.0.0.1";
     options.port = 0;
-    server_ = std::make_unique<HttpServer>(options, sample_.site());
+    server_ = std::make_unique<HttpServer>(options, sample_.handler());
     thread_ = std::thread([this] { server_->run(); });
     url_ = "http://127.0.0.1:" + std::to_string(server_->port());
     folder_ = ::testing::TempDir() + "/gdal_clients_test_" + std::to_string(server_->port());

@@ -27,7 +27,7 @@ class HttpServerTest : public ::testing::Test {
   void start(HttpServerOptions options = {}) {
     options.address = "127.0.0.1";
     options.port = 0;
-    server_ = std::make_unique<HttpServer>(options, sample_->site());
+    server_ = std::make_unique<HttpServer>(options, sample_->handler());
     thread_ = std::thread([this] { server_->run(); });
   }
 
@@ -176,6 +176,7 @@ TEST_F(HttpServerTest, RefusesWhatIsNotHttp) {
 
 TEST_F(HttpServerTest, SlowAndSilentClientsAreLetGo) {
   HttpServerOptions options;
+  options.idle_timeout = 300ms;
   options.read_timeout = 300ms;
   start(options);
   RawClient silent(port());
@@ -269,7 +270,7 @@ TEST_F(HttpServerTest, APortInUseIsAnErrorThatNamesIt) {
   options.address = "127.0.0.1";
   options.port = port();
   try {
-    HttpServer second(options, sample_->site());
+    HttpServer second(options, sample_->handler());
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr(std::to_string(port())));
@@ -280,7 +281,7 @@ TEST_F(HttpServerTest, APortInUseIsAnErrorThatNamesIt) {
 TEST_F(HttpServerTest, AnAddressThatIsNoneIsAnError) {
   HttpServerOptions options;
   options.address = "localhost!";
-  EXPECT_THROW(HttpServer(options, sample_->site()), std::runtime_error);
+  EXPECT_THROW(HttpServer(options, sample_->handler()), std::runtime_error);
 }
 
 TEST_F(HttpServerTest, ManyClientsGetTheirOwnAnswers) {

@@ -52,7 +52,7 @@ class Comparison {
     const TilePlan built = std::get<TilePlan>(plan_tile(request, built_));
     const TilePlan prepared = std::get<TilePlan>(plan_tile(request, prepared_));
     EXPECT_EQ(prepared.key(), built.key()) << "the entity tag is a hash of it: " << target;
-    EXPECT_EQ(*paint(prepared).png, *paint(built).png) << target;
+    EXPECT_EQ(*paint(prepared).bytes, *paint(built).bytes) << target;
   }
 
   /// A tile of every zoom, over the middle of a polygon.

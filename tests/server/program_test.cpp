@@ -159,6 +159,71 @@ TEST(ProgramTest, ServesAConfiguration) {
   std::filesystem::remove(path);
 }
 
+TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
+  const std::string path = scratch_path("trapeze.toml");
+  const auto write = [&path](const std::string& name, const std::string& more) {
+    std::ofstream(path) << "[server]\nwatch_ms = 0\n"
+                        << more << "[[layer]]\nname = \"" << name << "\"\nfile = \""
+                        << fixture("rings.geojson") << "\"\n";
+  };
+  const auto wait_for = [](const std::uint16_t port, const std::string& target) {
+    for (int i = 0; i < 1000; ++i) {
+      if (RawClient(port).get(target).status == 200) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  };
+  write("one", "");
+  std::vector<std::string> arguments = serve_arguments({});
+  arguments.insert(arguments.end(), {"--config", path});
+  Program program(arguments);
+  const std::uint16_t port = program.port();
+  EXPECT_TRUE(wait_for(port, "/tiles/one/0/0/0.png"));
+  write("two", "queue = 7\n");
+  program.send_signal(SIGHUP);
+  EXPECT_TRUE(wait_for(port, "/tiles/two/0/0/0.png"));
+  EXPECT_EQ(RawClient(port).get("/tiles/one/0/0/0.png").status, 404);
+  write("three", "prot = 7\n");
+  program.send_signal(SIGHUP);
+  for (int i = 0; i < 1000 && program.output().find("old ones are kept") == std::string::npos;
+       ++i) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(RawClient(port).get("/tiles/two/0/0/0.png").status, 200);
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("SIGHUP"), HasSubstr("server.queue has changed"),
+                    HasSubstr(path + ":3:1: unknown key server.prot"), HasSubstr("stopped")));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, ConfigurationsAreCheckedAndPrinted) {
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[server]\nport = 1\nqueue = 0\nprot = 2\n";
+  Program wrong({"config", "check", path});
+  EXPECT_EQ(wrong.wait(), 1);
+  EXPECT_THAT(wrong.output(), AllOf(HasSubstr(path + ":3:9: server.queue takes"),
+                                    HasSubstr(path + ":4:1: unknown key server.prot")));
+  std::ofstream(path) << "[server]\nport = 1\n";
+  Program right({"config", "check", path});
+  EXPECT_EQ(right.wait(), 0);
+  setenv("TRAPEZE_SERVER_QUEUE", "77", 1);
+  setenv("TRAPEZE_SERVER_BATCH", "7", 1);
+  Program print(
+      {"config", "print", "--config", path, "--set", "server.batch=3", fixture("rings.geojson")});
+  unsetenv("TRAPEZE_SERVER_QUEUE");
+  unsetenv("TRAPEZE_SERVER_BATCH");
+  EXPECT_EQ(print.wait(), 0);
+  using ::testing::ContainsRegex;
+  EXPECT_THAT(print.output(),
+              AllOf(ContainsRegex("port = 1 +# [^ ]+:2\n"), HasSubstr("name = \"rings\""),
+                    ContainsRegex("queue = 77 +# TRAPEZE_SERVER_QUEUE\n"),
+                    ContainsRegex("batch = 3 +# --set server.batch\n"),
+                    ContainsRegex("deadline_ms = 10000 +# default\n")));
+  std::filesystem::remove(path);
+}
+
 TEST(ProgramTest, AFileThatIsMissingOrNoMapIsAnErrorThatNamesIt) {
   Program missing(serve_arguments({fixture("rings.geojson"), fixture("nosuch.fgb")}));
   EXPECT_EQ(missing.wait(), 1);
@@ -184,8 +249,14 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{"serve"}, "nothing to serve"},
       {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
-      {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "auto, egl, osmesa"},
-      {{"serve", "--port", "70000", fixture("rings.geojson")}, "port"},
+      {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "--renderer: takes \"auto\""},
+      {{"serve", "--port", "70000", fixture("rings.geojson")}, "--port: takes an integer from 0"},
+      {{"serve", "--set", "limits.scale=9", fixture("rings.geojson")}, "from 1 to 4"},
+      {{"serve", "--set", "limits.nosuch=9", fixture("rings.geojson")}, "limits.nosuch=9"},
+      {{"serve", "--set", "limits.scale", fixture("rings.geojson")}, "TABLE.KEY=VALUE"},
+      {{"config"}, "subcommand"},
+      {{"config", "check"}, "FILE"},
+      {{"config", "check", "/nosuch.toml"}, "/nosuch.toml"},
       {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
       {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
        "no such tile"},
@@ -315,6 +386,7 @@ TEST(ProgramTest, HelpShowsExamples) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"serve", "--help"},
                                                     {"check", "--help"},
+                                                    {"config", "--help"},
                                                     {"prepare", "--help"},
                                                     {"export", "--help"},
                                                     {"render", "--help"}}) {

@@ -37,9 +37,14 @@ RawResponse parse_head(const std::string& head) {
 
 }  // namespace
 
-RawClient::RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+RawClient::RawClient(std::uint16_t port, const std::string& from)
+    : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
   setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
   setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  inet_pton(AF_INET, from.c_str(), &own.sin_addr);
+  bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
@@ -60,6 +65,10 @@ void RawClient::send(std::string_view bytes) const {
     if (sent <= 0) return;  // the server may answer and close before it has read everything
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
+}
+
+void RawClient::end_sending() const {
+  shutdown(socket_, SHUT_WR);
 }
 
 bool RawClient::read_more() {

@@ -18,13 +18,16 @@ struct RawResponse {
 
 class RawClient {
  public:
-  /// Throws std::runtime_error if nothing listens there.
-  explicit RawClient(std::uint16_t port);
+  /// Connects to a port of this machine, from the loopback address `from`. Throws
+  /// std::runtime_error if nothing listens there.
+  explicit RawClient(std::uint16_t port, const std::string& from = "127.0.0.1");
   ~RawClient();
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
 
   void send(std::string_view bytes) const;
+  /// Says that nothing more will be sent.
+  void end_sending() const;
   /// Reads one response; `is_head`: it has no body whatever its length says. Throws
   /// std::runtime_error if the connection ends before the response does.
   RawResponse receive(bool is_head = false);

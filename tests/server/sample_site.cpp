@@ -41,8 +41,14 @@ SampleSite::SampleSite(bool is_loaded, StaticFiles files, SiteOptions options)
   if (is_loaded) data_.set(sample_dataset());
 }
 
+Handler SampleSite::handler() {
+  return [this](const HttpRequest& request, Respond respond) {
+    site_.handle(request, std::move(respond));
+  };
+}
+
 HttpResponse SampleSite::get(const std::string& target, const std::string& if_none_match) {
-  return handle({"GET", target, "maps.example:8080", if_none_match});
+  return handle({"GET", target, "maps.example:8080", if_none_match, {}});
 }
 
 HttpResponse SampleSite::handle(const HttpRequest& request) {

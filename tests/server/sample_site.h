@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/dataset.h"
+#include "server/http_server.h"
 #include "server/site.h"
 #include "server/tile_service.h"
 
@@ -25,6 +26,8 @@ class SampleSite {
   explicit SampleSite(bool is_loaded = true, StaticFiles files = {}, SiteOptions options = {});
 
   Site& site() { return site_; }
+  /// The site for a server.
+  Handler handler();
   CurrentDataset& data() { return data_; }
 
   /// The response to a GET, waited for.

@@ -6,6 +6,7 @@
 
 #include "core/layer_builder.h"
 #include "render/png.h"
+#include "render/webp.h"
 #include "server/site.h"
 #include "server/tile_painter.h"
 #include "tests/server/sample_site.h"
@@ -365,6 +366,22 @@ TEST_F(StylePicturesTest, NoQueryEverFails) {
     ASSERT_NO_THROW(decode_png(*response.body)) << query;
   }
   EXPECT_GT(planned, 2'000);
+}
+
+TEST_F(StylePicturesTest, TilesComeAsWebpToo) {
+  if (!has_webp()) GTEST_SKIP() << "built without libwebp";
+  for (const std::string name : {"0/0/0.webp", "0/0/0@2x.webp", "5/0/0.webp"}) {
+    const HttpResponse webp = site_.get("/tiles/plots/" + name);
+    ASSERT_EQ(webp.status, 200) << name;
+    EXPECT_EQ(webp.header("Content-Type"), "image/webp");
+    EXPECT_EQ(webp.body->substr(0, 4), "RIFF");
+    EXPECT_EQ(webp.body->substr(8, 4), "WEBP");
+    const HttpResponse png = site_.get("/tiles/plots/" + name.substr(0, name.size() - 4) + "png");
+    EXPECT_EQ(png.header("Content-Type"), "image/png");
+    EXPECT_NE(webp.header("ETag"), png.header("ETag"));
+  }
+  EXPECT_EQ(site_.get("/legend/plots.webp").status, 404);
+  EXPECT_EQ(site_.get("/tiles/plots/0/0/0.jpg").status, 400);
 }
 
 TEST_F(StylePicturesTest, ScaleDoublesLengths) {

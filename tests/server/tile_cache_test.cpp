@@ -22,18 +22,18 @@ std::string key(const char* kind, int number) {
 
 int count_kept(TileCache& cache, const char* kind, int count) {
   int kept = 0;
-  for (int i = 0; i < count; ++i) kept += cache.find(key(kind, i)).png != nullptr;
+  for (int i = 0; i < count; ++i) kept += cache.find(key(kind, i)).bytes != nullptr;
   return kept;
 }
 
 TEST(TileCacheTest, GivesBackWhatWasKept) {
   TileCache cache(kBudget);
-  EXPECT_EQ(cache.find("a").png, nullptr);
+  EXPECT_EQ(cache.find("a").bytes, nullptr);
   cache.insert("a", {std::make_shared<const std::string>("first"), TileHint::full});
   cache.insert("b", tile('b'));
-  EXPECT_EQ(*cache.find("a").png, "first");
+  EXPECT_EQ(*cache.find("a").bytes, "first");
   EXPECT_EQ(cache.find("a").hint, TileHint::full);
-  EXPECT_EQ(cache.find("b").png->front(), 'b');
+  EXPECT_EQ(cache.find("b").bytes->front(), 'b');
   EXPECT_EQ(cache.figures().tiles, 2u);
   EXPECT_EQ(cache.figures().hits, 3u);
   EXPECT_EQ(cache.figures().misses, 1u);
@@ -57,7 +57,8 @@ TEST(TileCacheTest, AScanDoesNotPushOutWhatIsAskedForOften) {
   constexpr int kPopular = 500;
   for (int round = 0; round < 3; ++round) {
     for (int i = 0; i < kPopular; ++i) {
-      if (cache.find(key("popular", i)).png == nullptr) cache.insert(key("popular", i), tile('p'));
+      if (cache.find(key("popular", i)).bytes == nullptr)
+        cache.insert(key("popular", i), tile('p'));
     }
   }
   for (int i = 0; i < 50'000; ++i) cache.insert(key("scan", i), tile('s'));
@@ -68,7 +69,7 @@ TEST(TileCacheTest, WhatIsNotAskedForAnyMoreLeavesInTheEnd) {
   TileCache cache(kBudget);
   const auto use = [&cache](const char* kind) {
     for (int i = 0; i < 2'000; ++i) {
-      if (cache.find(key(kind, i)).png == nullptr) cache.insert(key(kind, i), tile('u'));
+      if (cache.find(key(kind, i)).bytes == nullptr) cache.insert(key(kind, i), tile('u'));
     }
   };
   for (int round = 0; round < 4; ++round) use("yesterday");
@@ -79,14 +80,14 @@ TEST(TileCacheTest, WhatIsNotAskedForAnyMoreLeavesInTheEnd) {
 TEST(TileCacheTest, ATileTooLargeForTheBudgetIsNotKept) {
   TileCache cache(kBudget);
   cache.insert("large", tile('l', kBudget / 4));
-  EXPECT_EQ(cache.find("large").png, nullptr);
+  EXPECT_EQ(cache.find("large").bytes, nullptr);
   EXPECT_EQ(cache.figures().bytes, 0u);
 }
 
 TEST(TileCacheTest, WithoutABudgetNothingIsKept) {
   TileCache cache(0);
   cache.insert("a", tile('a', 0));
-  EXPECT_EQ(cache.find("a").png, nullptr);
+  EXPECT_EQ(cache.find("a").bytes, nullptr);
 }
 
 TEST(TileCacheTest, ThreadsMayShareIt) {
@@ -99,9 +100,9 @@ TEST(TileCacheTest, ThreadsMayShareIt) {
         const int number = (i * (t + 3)) % 700;
         const auto content = static_cast<char>('a' + number % 26);
         const auto found = cache.find(key("n", number));
-        if (found.png == nullptr) {
+        if (found.bytes == nullptr) {
           cache.insert(key("n", number), tile(content));
-        } else if (found.png->front() != content) {
+        } else if (found.bytes->front() != content) {
           ++wrong;
         }
       }

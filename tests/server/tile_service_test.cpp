@@ -95,10 +95,10 @@ TEST_F(TileServiceTest, EqualPlansUnderWayTogetherAreDrawnOnce) {
   auto second = submit(1);
   auto third = submit(1);
   open();
-  const auto png = first.get().tile.png;
+  const auto png = first.get().tile.bytes;
   ASSERT_NE(png, nullptr);
-  EXPECT_EQ(second.get().tile.png, png);
-  EXPECT_EQ(third.get().tile.png, png);
+  EXPECT_EQ(second.get().tile.bytes, png);
+  EXPECT_EQ(third.get().tile.bytes, png);
   EXPECT_EQ(gate_.begun, 1);
   EXPECT_EQ(submit(1).get().outcome, TileOutcome::drawn);
   EXPECT_EQ(gate_.begun, 2) << "nothing is kept once it is answered";
@@ -178,7 +178,7 @@ TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const TileAnswer answer = answers[i].get_future().get();
     ASSERT_EQ(answer.outcome, TileOutcome::drawn);
-    const Picture picture = decode_png(*answer.tile.png);
+    const Picture picture = decode_png(*answer.tile.bytes);
     EXPECT_EQ(picture.at(80, 80), (Rgba{static_cast<std::uint8_t>(i * 4), 0, 0, 255}));
   }
 }

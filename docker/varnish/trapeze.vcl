@@ -1,0 +1,88 @@
+# Varnish in front of several servers: each tile has one that draws it, and all share this cache.
+#
+#   varnishd -a :80 -f /etc/varnish/trapeze.vcl -s malloc,2g
+vcl 4.1;
+
+import directors;
+import std;
+
+probe ready {
+    .url = "/ready";
+    .interval = 1s;
+    .timeout = 1s;
+    .window = 3;
+    .threshold = 2;
+}
+
+backend trapeze_1 {
+    .host = "127.0.0.1";
+    .port = "8081";
+    .probe = ready;
+    .connect_timeout = 1s;
+    .first_byte_timeout = 15s;  # longer than deadline_ms
+}
+
+backend trapeze_2 {
+    .host = "127.0.0.1";
+    .port = "8082";
+    .probe = ready;
+    .connect_timeout = 1s;
+    .first_byte_timeout = 15s;
+}
+
+sub vcl_init {
+    new trapeze = directors.shard();
+    trapeze.add_backend(trapeze_1);
+    trapeze.add_backend(trapeze_2);
+    trapeze.reconfigure();
+}
+
+sub vcl_recv {
+    # For Prometheus, which asks each server itself.
+    if (req.url ~ "^/metrics") {
+        return (synth(404));
+    }
+    if (req.method != "GET" && req.method != "HEAD") {
+        return (pass);
+    }
+    unset req.http.Cookie;
+    # The same style in another order is the same tile.
+    set req.url = std.querysort(req.url);
+    set req.backend_hint = trapeze.backend(by = URL);
+}
+
+sub vcl_hash {
+    hash_data(req.url);
+    # Documents hold absolute URLs; tiles are the same under every name.
+    if (req.url !~ "^/tiles/[^?]*\.png") {
+        hash_data(req.http.Host);
+    }
+    return (lookup);
+}
+
+sub vcl_backend_fetch {
+    # The second attempt goes to the server that is next for this URL.
+    if (bereq.retries > 0) {
+        set bereq.backend = trapeze.backend(by = URL, alt = bereq.retries);
+    }
+}
+
+sub vcl_backend_response {
+    if (beresp.status >= 500 || beresp.status == 429) {
+        set beresp.uncacheable = true;
+        return (deliver);
+    }
+    # An old tile is better than none.
+    set beresp.grace = 1h;
+    set beresp.keep = 7d;  # to ask with If-None-Match
+}
+
+sub vcl_backend_error {
+    if (bereq.retries < 1) {
+        return (retry);
+    }
+}
+
+sub vcl_deliver {
+    set resp.http.X-Proxy-Cache = obj.hits > 0;
+}
