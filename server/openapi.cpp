@@ -105,6 +105,8 @@ Json components_json() {
                      fmt::format("1 to {} names of layers, separated by commas, the lowest first",
                                  kMaxLayersPerTile),
                      {{"type", "string"}});
+  parameters["path-style"] = path_parameter(
+      "style", "Name of a style, or the id of one that was posted", {{"type", "string"}});
   parameters["path-z"] = path_parameter("z", "Zoom", zoom_schema());
   parameters["path-x"] = path_parameter("x", "Column, from the west", index_schema());
   parameters["path-y"] = path_parameter("y", "Row, from the north", index_schema());
@@ -162,7 +164,7 @@ Json with_style(Json list) {
 
 Json response(std::string_view description, std::string_view type) {
   Json schema = {{"type", "object"}};
-  if (type == "image/png") schema = {{"type", "string"}, {"format", "binary"}};
+  if (type.starts_with("image/")) schema = {{"type", "string"}, {"format", "binary"}};
   return {{"description", description}, {"content", {{type, {{"schema", schema}}}}}};
 }
 
@@ -200,6 +202,13 @@ std::vector<Operation> operations() {
        with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
       {"/tiles/{layers}/{z}/{x}/{y}@2x.png", "getTile2x", "A tile of 512 pixels", kPng,
        with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
+      {"/tiles/{layers}/{z}/{x}/{y}.webp", "getWebpTile", "A tile of 256 pixels, as WebP",
+       "image/webp", with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
+      {"/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
+       "A tile in a style of the configuration, or one that was posted", kPng,
+       references({"path-layers", "path-style", "path-z", "path-x", "path-y"})},
+      {"/styles", "getStyles", "The names of styles", kJson, Json::array()},
+      {"/styles/{style}", "getStyle", "A style, by name or id", kJson, references({"path-style"})},
       {"/tiles/{layers}.json", "getTileJson", "TileJSON 3.0 of layers", kJson,
        with_style(references({"path-layers"}))},
       {"/legend/{layers}.png", "getLegendPicture", "What the colours mean, as a picture", kPng,
@@ -244,6 +253,24 @@ std::vector<Operation> operations() {
   };
 }
 
+Json post_style_json() {
+  Json properties;
+  for (const StyleParameter& parameter : style_parameters()) {
+    if (parameter.id == ParameterId::style) continue;
+    properties[std::string(parameter.name)] = {{"description", parameter.description}};
+  }
+  Json problem = response("What is wrong, in words", "application/problem+json");
+  Json body = {{"required", true}};
+  body["content"]["application/json"]["schema"] = {{"type", "object"},
+                                                   {"properties", std::move(properties)}};
+  Json post = {{"operationId", "postStyle"},
+               {"summary", "Keep a style; the id is the same for equal styles"},
+               {"requestBody", std::move(body)}};
+  post["responses"] = {{"201", response("The id of the style", "application/json")},
+                       {"400", problem}};
+  return post;
+}
+
 }  // namespace
 
 std::string openapi_json(const std::string& base_url) {
@@ -251,6 +278,7 @@ std::string openapi_json(const std::string& base_url) {
   for (const Operation& operation : operations()) {
     paths[std::string(operation.path)] = operation_json(operation);
   }
+  paths["/styles"]["post"] = post_style_json();
   Json json;
   json["openapi"] = "3.0.3";
   json["info"] = {{"title", "Trapeze"},
