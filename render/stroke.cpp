@@ -9,6 +9,7 @@ namespace trapeze {
 namespace {
 
 constexpr double kMiterLimit = 4;
+constexpr std::uint16_t kMostMet = 3;  // more are no different
 // Lines go on beyond their ends by so many pixels, so that joins that open less need not be drawn.
 constexpr double kOverlap = 1.0 / 32;
 
@@ -205,13 +206,15 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   measure(vertices, edges, view);
   Pen pen(stroke, scale, levels);
   for (const Line& line : lines_) pen.draw_line(line);
-  meet_.assign(std::bit_ceil(4 * edges.size() + 1), Meeting());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    meet(edges[i].from, lines_[i], pen);
-    meet(edges[i].to, lines_[i].turned(), pen);
+  meet_.assign(std::bit_ceil(3 * edges.size() + 1), Meeting());
+  for (std::uint32_t i = 0; i < edges.size(); ++i) {
+    meet(edges[i].from, i, false, pen);
+    meet(edges[i].to, i, true, pen);
   }
   for (const Meeting& meeting : meet_) {
-    if (meeting.count == 1) pen.draw_dot(meeting.line.from, meeting.line.along);
+    if (meeting.count != 1) continue;
+    const Line line = leaving(meeting.line, meeting.is_end);
+    pen.draw_dot(line.from, line.along);
   }
 }
 
@@ -234,19 +237,27 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
   }
 }
 
-// The line leaves the vertex. Two that meet are joined; where more do, rings touch.
-void Stroker::meet(std::uint32_t vertex, const Line& line, Pen& pen) {
-  std::size_t i = (vertex * 0x9e3779b1u) & (meet_.size() - 1);
+// Two lines that meet are joined; where more do, rings touch.
+void Stroker::meet(std::uint32_t vertex, std::uint32_t line, bool is_end, Pen& pen) {
+  std::size_t i = (vertex * 0x9e3779b1u) >> 7 & (meet_.size() - 1);
   while (meet_[i].count > 0 && meet_[i].vertex != vertex) i = (i + 1) & (meet_.size() - 1);
   Meeting& meeting = meet_[i];
-  if (++meeting.count == 1) {
-    meeting.vertex = vertex;
-    meeting.line = line;
-  } else if (meeting.count == 2) {
-    pen.draw_join(meeting.line.turned(), line);
-  } else {
-    pen.draw_dot(line.from, line.along);
+  if (meeting.count < kMostMet) ++meeting.count;
+  if (meeting.count == 1) {
+    meeting = {vertex, 1, is_end, line};
+    return;
   }
+  const Line second = leaving(line, is_end);
+  if (meeting.count == 2) {
+    pen.draw_join(leaving(meeting.line, meeting.is_end).turned(), second);
+  } else {
+    pen.draw_dot(second.from, second.along);
+  }
+}
+
+// As it goes away from its beginning, or from its end.
+Stroker::Line Stroker::leaving(std::uint32_t line, bool is_end) const {
+  return is_end ? lines_[line].turned() : lines_[line];
 }
 
 }  // namespace trapeze

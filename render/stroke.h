@@ -65,14 +65,16 @@ class Stroker {
   // What is known of a vertex while lines are joined.
   struct Meeting {
     std::uint32_t vertex = 0;
-    std::uint32_t count = 0;  // of lines met there
-    Line line = {};           // the first, as it leaves
+    std::uint16_t count = 0;  // of lines met there
+    bool is_end = false;      // of the first line; else its beginning
+    std::uint32_t line = 0;   // the number of the first
   };
   class Pen;
 
   void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                const View& view);
-  void meet(std::uint32_t vertex, const Line& line, Pen& pen);
+  void meet(std::uint32_t vertex, std::uint32_t line, bool is_end, Pen& pen);
+  Line leaving(std::uint32_t line, bool is_end) const;
 
   std::vector<Line> lines_;
   std::vector<Meeting> meet_;  // by vertex, open addressing

@@ -24,7 +24,7 @@ namespace trapeze {
 struct DrawingTools {
   ClassDust dust;
   Stroker stroker;
-  LoopLengthCache loop_lengths{std::size_t{32} << 20};
+  LoopLengthCache loop_lengths{std::size_t{64} << 20};
   std::vector<TrapezoidRange> ranges;
   std::vector<ClassMote> motes;
   std::vector<Box> places;

@@ -41,7 +41,7 @@ std::vector<LoopEdge> measure(const Layer& layer, Level level, std::uint32_t row
 
 const std::vector<LoopEdge>& LoopLengthCache::find(const Layer& layer, Level level,
                                                    std::uint32_t row) {
-  const Key key{layer.mesh().id, level, row};
+  const Key key{layer.mesh().id, row, level};
   if (const auto found = by_key_.find(key); found != by_key_.end()) {
     entries_.splice(entries_.begin(), entries_, found->second);
     return entries_.front().edges;

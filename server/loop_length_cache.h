@@ -6,8 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <list>
-#include <map>
-#include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "core/layer.h"
@@ -25,7 +24,19 @@ class LoopLengthCache {
   const std::vector<LoopEdge>& find(const Layer& layer, Level level, std::uint32_t row);
 
  private:
-  using Key = std::tuple<std::uint64_t, Level, std::uint32_t>;  // of mesh, level and row
+  struct Key {
+    std::uint64_t mesh;
+    std::uint32_t row;
+    Level level;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+      return ((key.mesh * 0x9e3779b97f4a7c15 + key.row) * 0x9e3779b97f4a7c15 + key.level) *
+                 0x9e3779b97f4a7c15 >>
+             20;
+    }
+  };
   struct Entry {
     Key key;
     std::vector<LoopEdge> edges;
@@ -34,7 +45,7 @@ class LoopLengthCache {
   std::size_t budget_;
   std::size_t bytes_ = 0;
   std::list<Entry> entries_;  // the last used first
-  std::map<Key, std::list<Entry>::iterator> by_key_;
+  std::unordered_map<Key, std::list<Entry>::iterator, KeyHash> by_key_;
 };
 
 }  // namespace trapeze
