@@ -1,4 +1,5 @@
 // A running `trapeze serve` with two small layers, and pages of a headless Chromium that show it.
+import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -160,6 +161,40 @@ export async function tiles_drawn(page) {
 export function shown_tiles(page) {
   return page.evaluate(() =>
     [...document.querySelectorAll("img.leaflet-tile")].map((tile) => tile.src).sort());
+}
+
+/** Those of one layer, or of several that are drawn together. */
+export function of_layer(tiles, name) {
+  return tiles.filter((url) => url.includes(`/tiles/${name}/`));
+}
+
+export function hash_of(page) {
+  return page.evaluate(() => location.hash);
+}
+
+/** How many pixels of the layer's tiles have this colour and are not transparent. */
+export function pixels_of_colour(page, name, [r, g, b]) {
+  return page.evaluate(([name, r, g, b]) => {
+    let count = 0;
+    for (const tile of document.querySelectorAll(`img.leaflet-tile[src*="/tiles/${name}/"]`)) {
+      const canvas = new OffscreenCanvas(tile.naturalWidth, tile.naturalHeight);
+      const context = canvas.getContext("2d");
+      context.drawImage(tile, 0, 0);
+      const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 250 && data[i] === r && data[i + 1] === g && data[i + 2] === b) count++;
+      }
+    }
+    return count;
+  }, [name, r, g, b]);
+}
+
+/** What every undisturbed visit must satisfy. */
+export function assert_nothing_went_wrong(server, seen) {
+  assert.deepEqual(seen.errors, []);
+  assert.deepEqual(seen.requests.filter((url) => !url.startsWith(server.base)), [],
+    "nothing is fetched from elsewhere");
+  assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200 && status !== 304), []);
 }
 
 export async function save_screenshot(page, name) {
