@@ -15,7 +15,9 @@ export function simplify_in_words(pixels) {
 export class DetailPanel {
   /** `on_change` is called without arguments. */
   constructor(on_change) {
-    this.simplify_ = input("range", { min: 0, max: STEPS.length - 1, step: 1 });
+    this.simplify_ = input("range", {
+      min: 0, max: STEPS.length - 1, step: 1, "aria-label": "Simplify",
+    });
     this.told_ = document.createElement("output");
     this.strict_ = input("checkbox");
     this.small_ = select(SMALL);

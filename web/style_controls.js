@@ -53,7 +53,8 @@ export function switched_colour_control(parameter, label, first, on_change) {
 /** `range`: {min, max, step, usual: a function that tells the number, format: number to text}. */
 export function number_control(parameter, label, range, on_change) {
   const { min, max, step, usual, format } = range;
-  const slider = input("range", { min, max, step });
+  // Else the name would be that of its label, which holds the number, too.
+  const slider = input("range", { min, max, step, "aria-label": label });
   const told = document.createElement("output");
   let value = null;
   const tell = (number) => {
