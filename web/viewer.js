@@ -279,7 +279,7 @@ class Viewer {
         is_shown && this.compare_ !== null ? query_part([...drawn, ...full]) : null);
     });
     const pixels = Number(this.shared_.get("simplify") ?? 0.25);
-    const left_text = pixels === 0 ? simplify_in_words(0) : `to ${simplify_in_words(pixels)}`;
+    const left_text = pixels === 0 ? simplify_in_words(0) : `simplified to ${simplify_in_words(pixels)}`;
     this.comparison_.show(this.compare_, left_text);
     this.show_legend_();
     $("tile-url").value = this.tile_url_();

@@ -8,8 +8,8 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-const HERE = dirname(fileURLToPath(import.meta.url));
-const WEB = join(HERE, "..", "..", "web");
+export const HERE = dirname(fileURLToPath(import.meta.url));
+export const WEB = join(HERE, "..", "..", "web");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const SKIPPED = 77;
 const START_TIMEOUT_MS = 60_000; // sanitizers on a busy machine
@@ -20,7 +20,7 @@ function skip(reason) {
 }
 
 function load_playwright() {
-  const require = createRequire(join(WEB, "package.json"));
+  const require = createRequire(join(HERE, "package.json"));
   try {
     return require("playwright-core");
   } catch {
@@ -108,13 +108,15 @@ export async function start_server() {
   return server;
 }
 
-export async function start_browser() {
+/** `options` are further ones of Chromium's command line. */
+export async function start_browser(options = []) {
   const { chromium } = load_playwright();
   if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed; run script/bootstrap`);
   return chromium.launch({
     executablePath: CHROMIUM,
     args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+      "--disable-background-networking", "--disable-component-update", "--disable-sync",
+      ...options],
   });
 }
 
@@ -130,12 +132,12 @@ export const PHONE = {
 export async function new_page(browser, options = DESKTOP) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
-  const seen = { requests: [], tiles: [], errors: [] };
+  const seen = { requests: [], answers: [], tiles: [], errors: [] };
   page.on("request", (request) => seen.requests.push(request.url()));
   page.on("response", (response) => {
-    if (response.url().includes("/tiles/")) {
-      seen.tiles.push({ url: response.url(), status: response.status() });
-    }
+    const answer = { url: response.url(), status: response.status() };
+    seen.answers.push(answer);
+    if (answer.url.includes("/tiles/")) seen.tiles.push(answer);
   });
   page.on("console", (message) => {
     if (message.type() === "error") seen.errors.push(message.text());
