@@ -27,6 +27,7 @@ const PAGE = [
   "layer_panel.js",
   "legend.js",
   "map_layer.js",
+  "named_styles.js",
   "place_hash.js",
   "style_controls.js",
   "style_form.js",

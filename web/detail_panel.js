@@ -2,8 +2,8 @@
 
 import { choose, element, input, select } from "./elements.js";
 
-const USUAL_SIMPLIFY = 0.25;
-const STEPS = [0, USUAL_SIMPLIFY, 0.5, 1, 2, 4, 8, 16, 32, 64];
+const BUILTIN = [["simplify", "0.25"], ["topology", "strict"], ["small", "dust"], ["debug", ""]];
+const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const SMALL = [["dust", "as a tint"], ["keep", "a pixel large"], ["drop", "left out"]];
 const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["tile", "Borders of tiles"]];
 
@@ -23,7 +23,8 @@ export class DetailPanel {
     this.small_ = select(SMALL);
     this.compare_ = input("checkbox");
     this.debug_ = DEBUG.map(([word]) => Object.assign(input("checkbox"), { value: word }));
-    this.pixels_ = USUAL_SIMPLIFY;
+    this.pixels_ = 0;
+    this.usual_ = new Map();
 
     this.simplify_.addEventListener("input", () => this.tell_(STEPS[this.simplify_.value]));
     this.simplify_.addEventListener("change", () => (this.pixels_ = STEPS[this.simplify_.value]));
@@ -41,25 +42,35 @@ export class DetailPanel {
 
   /** {shared: Map of parameters, without those that have their usual value; is_comparing}. */
   read() {
-    const shared = new Map();
-    if (this.pixels_ !== USUAL_SIMPLIFY) shared.set("simplify", String(this.pixels_));
-    if (!this.strict_.checked) shared.set("topology", "fast");
-    if (this.small_.value !== SMALL[0][0]) shared.set("small", this.small_.value);
     const debug = this.debug_.filter(({ checked }) => checked).map(({ value }) => value);
-    if (debug.length) shared.set("debug", debug.join(","));
+    const chosen = new Map([
+      ["simplify", String(this.pixels_)],
+      ["topology", this.strict_.checked ? "strict" : "fast"],
+      ["small", this.small_.value],
+      ["debug", debug.join(",")],
+    ]);
+    const shared = new Map([...chosen].filter(([name, value]) => value !== this.usual_.get(name)));
     return { shared, is_comparing: this.compare_.checked };
   }
 
-  show({ shared, is_comparing }) {
-    this.pixels_ = Number(shared.get("simplify") ?? USUAL_SIMPLIFY);
+  /** `usual` is what holds where `shared` says nothing: a Map of parameters, perhaps not of all. */
+  show({ shared, is_comparing }, usual) {
+    this.usual_ = new Map([...BUILTIN, ...usual]);
+    const shown = new Map([...this.usual_, ...shared]);
+    this.pixels_ = Number(shown.get("simplify"));
     // An address may hold any number; the slider then stands at the next smaller step.
     this.simplify_.value = STEPS.findLastIndex((step) => step <= this.pixels_);
     this.tell_(this.pixels_);
-    this.strict_.checked = shared.get("topology") !== "fast";
-    choose(this.small_, shared.get("small") ?? SMALL[0][0]);
+    this.strict_.checked = shown.get("topology") === "strict";
+    choose(this.small_, shown.get("small"));
     this.compare_.checked = is_comparing;
-    const debug = (shared.get("debug") ?? "").split(",");
+    const debug = shown.get("debug").split(",");
     for (const box of this.debug_) box.checked = debug.includes(box.value);
+  }
+
+  /** How far it is simplified now, in pixels. */
+  get pixels() {
+    return this.pixels_;
   }
 
   tell_(pixels) {

@@ -6,13 +6,13 @@ import { StyleForm } from "./style_form.js";
 /**
  * One row of the list for `layer`. `on_change` is called with {is_on, style} whenever the user
  * changes something; see StyleForm for the rest. Returns the element, and functions that show
- * another such state and what the server finds wrong with the style.
+ * another such state, with the `usual` style, and what the server finds wrong with the style.
  */
-export function layer_row(layer, usual, suggest, on_change) {
+export function layer_row(layer, builtin_fill, suggest, on_change) {
   const title = String(layer.title || layer.name);
   const is_on = input("checkbox");
   const change = () => on_change({ is_on: is_on.checked, style: form.read() });
-  const form = new StyleForm({ ...layer, title }, usual, suggest, change);
+  const form = new StyleForm({ ...layer, title }, builtin_fill, suggest, change);
   is_on.addEventListener("change", change);
 
   const colour = form.fill.node.querySelector("input");
@@ -26,7 +26,7 @@ export function layer_row(layer, usual, suggest, on_change) {
     row,
     show: (state) => {
       is_on.checked = state.is_on;
-      form.show(state.style);
+      form.show(state.style, state.usual);
     },
     show_problem: (problem) => {
       form.show_problem(problem);

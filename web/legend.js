@@ -2,13 +2,13 @@
 
 import { css_of } from "./colours.js";
 import { element } from "./elements.js";
-import { swatch } from "./style_controls.js";
 import { query_part } from "./tile_query.js";
 
 const LINE = "var(--pattern) 0 1px, transparent 1px 5px";
 const PATTERNS = {
   hatch: [`repeating-linear-gradient(-45deg, ${LINE})`],
-  crosshatch: [`repeating-linear-gradient(-45deg, ${LINE})`, `repeating-linear-gradient(45deg, ${LINE})`],
+  crosshatch: [`repeating-linear-gradient(-45deg, ${LINE})`,
+    `repeating-linear-gradient(45deg, ${LINE})`],
   stripes: ["repeating-linear-gradient(-45deg, var(--pattern) 0 3px, transparent 3px 6px)"],
   dots: ["radial-gradient(circle, var(--pattern) 1.2px, transparent 1.7px) 0 0 / 5px 5px"],
   checker: ["conic-gradient(var(--pattern) 25%, transparent 0 50%, var(--pattern) 0 75%, " +
@@ -29,7 +29,8 @@ export async function ask_legend(base, name, style) {
       return { entries: told.layers[0].entries };
     }
     if (response.status >= 400 && response.status < 500) {
-      return { problem: { detail: String(told?.detail ?? told?.title), parameter: told?.parameter } };
+      const detail = String(told?.detail ?? told?.title);
+      return { problem: { detail, parameter: told?.parameter } };
     }
   } catch {
     // The tiles will tell whether the server is there.
@@ -49,7 +50,10 @@ export function legend_section(title, entries, style) {
 }
 
 function patch_of(entry, style) {
-  const patch = swatch(String(entry.fill), entry["fill-opacity"]);
+  const ink = element("span", "ink");
+  ink.style.background = css_of(String(entry.fill));
+  ink.style.opacity = entry["fill-opacity"];
+  const patch = element("span", "swatch", ink);
   const pattern = PATTERNS[style.get("pattern")];
   if (pattern) patch.append(pattern_of(pattern, style));
   if (entry.stroke) {

@@ -4,6 +4,7 @@
 //   ...&on=countries                            only these layers (default: all)
 //   ...&water.fill=ff8800&water.pattern=hatch   parameters of a layer, where changed
 //   ...&simplify=4&debug=mesh                   parameters of all layers, where changed
+//   ...&style=night                             a style that the server knows by that name
 //   ...&compare=0.5                             full detail to the right of the middle
 //   ...&at=51.5,-0.12                           the place whose features are told
 //
@@ -18,6 +19,7 @@ const LONGEST_SIMPLIFY = 64;
 const PARAMETER = /^[a-z]+(-[a-z]+)*$/;
 
 const READ_SHARED = {
+  style: (text) => /^[A-Za-z0-9_-]{1,64}$/.test(text),
   simplify: (text) => is_number(text, 0, LONGEST_SIMPLIFY),
   topology: (text) => ["strict", "fast"].includes(text),
   small: (text) => ["dust", "keep", "drop"].includes(text),

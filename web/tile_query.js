@@ -1,7 +1,7 @@
 // Addresses of tiles, legends and features, from what is set in the viewer.
 
 /** What holds for all layers alike; everything else is set layer by layer. */
-export const SHARED_PARAMETERS = ["simplify", "topology", "small", "debug"];
+export const SHARED_PARAMETERS = ["style", "simplify", "topology", "small", "debug"];
 
 /** `parameters`: a Map, or pairs, of name and value. Ends up as "a=b&c=d". */
 export function query_text(parameters) {

@@ -20,10 +20,11 @@ export function watch_tiles(tiles, tell) {
 /** A tile that the server kept carries no times of drawing. */
 function summary_of(entry) {
   const steps = entry.serverTiming.map(({ duration }) => duration);
+  const is_drawn = steps.length > 0 && entry.transferSize > 0;
   return {
     // Not what the browser waits before it asks: it asks for six tiles at a time.
     total: entry.responseEnd - (entry.requestStart || entry.startTime),
-    drawing: steps.length && entry.transferSize > 0 ? steps.reduce((sum, step) => sum + step) : null,
+    drawing: is_drawn ? steps.reduce((sum, step) => sum + step) : null,
   };
 }
 

@@ -6,22 +6,23 @@ import { attribution_nodes, link_to } from "./attribution.js";
 import { load_catalog } from "./catalog.js";
 import { Comparison } from "./comparison.js";
 import { DetailPanel, simplify_in_words } from "./detail_panel.js";
+import { choose } from "./elements.js";
 import { FeaturePanel, ask_features } from "./feature_panel.js";
 import { values_in_view, wrapped_longitude } from "./feature_samples.js";
 import { layer_row } from "./layer_panel.js";
 import { ask_legend, legend_section } from "./legend.js";
 import { MapLayer } from "./map_layer.js";
+import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
 import { format_hash, parse_hash } from "./place_hash.js";
 import { parameters_of_layers, path_of_layers, query_part } from "./tile_query.js";
 import { watch_tiles } from "./tile_timing.js";
 
 const MAX_ZOOM = 22;
 const MAX_LATITUDE = 85.0511287798066;
-// For layers whose style the catalog does not tell.
-const COLOURS = ["d8c99b", "4f8fba", "8aa867", "c97b63", "9a86b8", "d8a94c"];
-const OPACITY = 0.8;
+const BUILTIN_FILL = "808080"; // of layers whose style the catalog does not tell
 const PHONE = "(max-width: 600px)";
 const DOUBLE_CLICK_MS = 250;
+const MESSAGE_MS = 6000;
 
 const BASE = document.baseURI;
 const TILES = new URL("tiles/", BASE).href;
@@ -49,15 +50,6 @@ function tell_trouble(name, is_missing_tiles) {
 /** Anything may stand in the catalog: only what has a name can be shown. */
 function usable_layers(catalog) {
   return catalog.layers.filter((layer) => typeof layer?.name === "string" && layer.name !== "");
-}
-
-function style_of_catalog(layer, i) {
-  const fill = /^#?([0-9a-f]{6})$/i.exec(layer.style?.fill ?? "")?.[1];
-  const opacity = layer.style?.["fill-opacity"];
-  return {
-    fill: (fill ?? COLOURS[i % COLOURS.length]).toLowerCase(),
-    opacity: opacity >= 0 && opacity <= 1 ? opacity : fill ? 1 : OPACITY,
-  };
 }
 
 /** Where all layers can be seen, or the world if they span most of it. */
@@ -165,10 +157,11 @@ class Viewer {
     show_attribution(this.map_, this.layers_);
     show_about(catalog, this.layers_);
 
-    this.show_view_(view);
-    this.map_.on("moveend", () => this.write_address_());
-    window.addEventListener("hashchange", () => this.read_address_());
-    this.write_address_();
+    this.show_view_(view).then(() => {
+      this.map_.on("moveend", () => this.write_address_());
+      window.addEventListener("hashchange", () => this.read_address_());
+      this.write_address_();
+    });
   }
 
   // ---- made once
@@ -176,11 +169,12 @@ class Viewer {
   make_map_layers_() {
     const simplified = make_pane(this.map_, "simplified");
     const full = make_pane(this.map_, "full");
-    const layers_in = (pane) => this.layers_.map((layer, i) => new MapLayer(this.map_, TILES, layer, {
-      z_index: i + 1,
-      pane,
-      on_trouble: (is_missing) => tell_trouble(`${layer.name} ${pane}`, is_missing),
-    }));
+    const layers_in = (pane) => this.layers_.map((layer, i) =>
+      new MapLayer(this.map_, TILES, layer, {
+        z_index: i + 1,
+        pane,
+        on_trouble: (is_missing) => tell_trouble(`${layer.name} ${pane}`, is_missing),
+      }));
     this.map_layers_ = layers_in("simplified");
     this.full_layers_ = layers_in("full");
     this.comparison_ = new Comparison(this.map_, simplified, full, (part) => {
@@ -190,10 +184,12 @@ class Viewer {
   }
 
   make_panels_() {
-    this.rows_ = this.layers_.map((layer, i) => layer_row(layer, style_of_catalog(layer, i),
+    this.rows_ = this.layers_.map((layer, i) => layer_row(layer, BUILTIN_FILL,
       (property) => this.values_in_view_(layer.name, property), (state) => this.change_(i, state)));
     // The list reads from top to bottom as the layers lie over each other.
     $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
+    load_style_names(BASE).then((names) => this.show_style_names_(names));
+    $("style").addEventListener("change", () => this.change_named_style_($("style").value));
     this.detail_ = new DetailPanel(() => this.change_detail_());
     $("detail").append(this.detail_.node);
     this.features_ = new FeaturePanel($("features"), {
@@ -218,7 +214,11 @@ class Viewer {
   // ---- what is shown
 
   /** Everything but the place. */
-  show_view_(view) {
+  async show_view_(view) {
+    this.view_ = view;
+    const named = await this.load_named_style_(view.shared);
+    if (this.view_ !== view) return;
+    this.named_ = named;
     this.shared_ = view.shared;
     this.compare_ = view.compare;
     this.at_ = view.at;
@@ -227,12 +227,53 @@ class Viewer {
       style: view.styles.get(name) ?? new Map(), // as it stands in the panel
       drawn: null, // the last style that the server took
       entries: [], // of its legend
+      usual: new Map(), // what holds where the style says nothing
     }));
-    this.rows_.forEach(({ show }, i) => show(this.states_[i]));
-    this.detail_.show({ shared: this.shared_, is_comparing: this.compare_ !== null });
+    this.show_usual_();
     this.states_.forEach((_, i) => this.prove_style_(i));
     if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
     else this.features_.hide();
+  }
+
+  /** The panel, after what is usual may have changed. */
+  show_usual_() {
+    this.states_.forEach((state, i) => {
+      state.usual = usual_style(this.layers_[i], this.named_);
+      this.rows_[i].show(state);
+    });
+    this.detail_.show({ shared: this.shared_, is_comparing: this.compare_ !== null },
+      usual_shared(this.named_));
+    choose($("style"), this.shared_.get("style") ?? "");
+    $("style-row").hidden = $("style").options.length < 2;
+  }
+
+  show_style_names_(names) {
+    const chosen = $("style").value;
+    $("style").replaceChildren(new Option("that of each layer", ""),
+      ...names.map((name) => new Option(name, name)));
+    choose($("style"), chosen);
+    $("style-row").hidden = $("style").options.length < 2;
+  }
+
+  /** What the style is made of that is named in `shared`, from which an unknown name is taken. */
+  async load_named_style_(shared) {
+    const named = await load_style(BASE, shared.get("style"));
+    if (named) return named;
+    say(`There is no style "${shared.get("style")}".`);
+    setTimeout(() => say(""), MESSAGE_MS);
+    shared.delete("style");
+    return {};
+  }
+
+  async change_named_style_(name) {
+    const shared = new Map([...(name ? [["style", name]] : []),
+      ...[...this.shared_].filter(([key]) => key !== "style")]);
+    const named = await this.load_named_style_(shared);
+    if ($("style").value !== name) return;
+    this.shared_ = shared;
+    this.named_ = named;
+    this.show_usual_();
+    this.states_.forEach((_, i) => this.prove_style_(i));
   }
 
   go_to_(place) {
@@ -248,21 +289,25 @@ class Viewer {
 
   change_detail_() {
     const { shared, is_comparing } = this.detail_.read();
-    this.shared_ = shared;
+    const named = [...this.shared_].filter(([key]) => key === "style");
+    this.shared_ = new Map([...named, ...shared]);
     this.compare_ = is_comparing ? (this.compare_ ?? 0.5) : null;
     this.draw_();
     this.write_address_();
   }
 
-  /** The map keeps the last style that was right: the server judges before any tile is asked for. */
+  /** The map keeps the last style that was right: the server judges before tiles are asked for. */
   async prove_style_(i) {
     const state = this.states_[i];
     const { style } = state;
     if (style.size === 0) state.drawn = style;
     this.draw_();
     this.write_address_();
-    const { problem = null, entries = [] } = await ask_legend(BASE, this.layers_[i].name, style);
+    const name = this.shared_.get("style");
+    const { problem = null, entries = [] } = await ask_legend(BASE, this.layers_[i].name,
+      name ? [...style, ["style", name]] : style);
     if (this.states_[i] !== state || state.style !== style) return;
+    if (this.shared_.get("style") !== name) return;
     this.rows_[i].show_problem(problem);
     if (!problem) Object.assign(state, { drawn: style, entries });
     else state.drawn ??= new Map();
@@ -271,24 +316,31 @@ class Viewer {
   }
 
   draw_() {
+    const full = new Map([...this.shared_, ["simplify", "0"]]);
+    let is_lowest = true;
     this.states_.forEach(({ is_on, drawn }, i) => {
       const is_shown = is_on && drawn !== null;
-      const full = new Map([...this.shared_, ["simplify", "0"]]);
-      this.map_layers_[i].show(is_shown ? query_part([...drawn, ...this.shared_]) : null);
-      this.full_layers_[i].show(
-        is_shown && this.compare_ !== null ? query_part([...drawn, ...full]) : null);
+      const query = (shared) => query_part([...drawn, ...shared, ...this.background_(is_lowest)]);
+      this.map_layers_[i].show(is_shown ? query(this.shared_) : null);
+      this.full_layers_[i].show(is_shown && this.compare_ !== null ? query(full) : null);
+      if (is_shown) is_lowest = false;
     });
-    const pixels = Number(this.shared_.get("simplify") ?? 0.25);
-    const left_text = pixels === 0 ? simplify_in_words(0) : `simplified to ${simplify_in_words(pixels)}`;
-    this.comparison_.show(this.compare_, left_text);
+    const { pixels } = this.detail_;
+    const words = simplify_in_words(pixels);
+    this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`);
     this.show_legend_();
     $("tile-url").value = this.tile_url_();
   }
 
+  /** That of a named style would hide what lies below: the lowest layer alone brings it along. */
+  background_(is_lowest) {
+    return this.named_.background && !is_lowest ? [["background", "0000"]] : [];
+  }
+
   show_legend_() {
-    const sections = this.states_.flatMap(({ is_on, drawn, entries }, i) =>
+    const sections = this.states_.flatMap(({ is_on, drawn, entries, usual }, i) =>
       is_on && entries.length
-        ? [legend_section(this.title_of_(this.layers_[i].name), entries, drawn)] : []);
+        ? [legend_section(this.title_of_(this.layers_[i].name), entries, over(usual, drawn))] : []);
     $("legend-body").replaceChildren(...sections.reverse());
     $("legend").hidden = sections.length === 0;
   }
@@ -315,8 +367,10 @@ class Viewer {
     this.at_ = at;
     this.write_address_();
     // Of the address, and not yet proved, is as good as drawn here.
-    const layers = this.layers_.flatMap(({ name }, i) =>
-      this.states_[i].is_on ? [{ name, style: this.states_[i].drawn ?? this.states_[i].style }] : []);
+    const layers = this.layers_.flatMap(({ name }, i) => {
+      const { is_on, drawn, style } = this.states_[i];
+      return is_on ? [{ name, style: drawn ?? style }] : [];
+    });
     try {
       if (layers.length === 0) throw new Error("No layer is shown.");
       const found = await ask_features(BASE, layers, this.shared_, at, this.map_.getZoom());

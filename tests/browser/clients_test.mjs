@@ -120,7 +120,7 @@ function assert_map(pixels, lake) {
 const XYZ = [/\/tiles\/land,lake\/5\/16\/11\.png\?lake\.fill=ff0000/];
 const WMTS = [
   /\/wmts\?(?=.*layer=land&)(?=.*tilematrix=5&)(?=.*tilecol=16(&|$))(?=.*tilerow=11(&|$))/i,
-  /\/tiles\/lake\/5\/16\/11\.png$/,
+  /\/tiles\/lake\/s\/default\/5\/16\/11\.png$/,
 ];
 
 const CLIENTS = [

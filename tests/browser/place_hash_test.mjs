@@ -16,8 +16,8 @@ test("what is written is read back", () => {
       ["a,b", new Map([["fill", "ff8800"], ["classes", "'x:y&z#':red,*:eee"]])],
       ["dots.in.it", new Map([["filter", "name = '100 % + 1'"]])],
     ]),
-    shared: new Map([["simplify", "4"], ["debug", "mesh,tile"], ["topology", "fast"],
-      ["small", "drop"]]),
+    shared: new Map([["style", "night-2"], ["simplify", "4"], ["debug", "mesh,tile"],
+      ["topology", "fast"], ["small", "drop"]]),
     compare: 0.25,
     at: { lat: -12.3456789, lon: 179.5 },
   });
@@ -53,7 +53,8 @@ test("a place that is none is left out", () => {
 test("a part that is none is left out and the rest is kept", () => {
   const wrong = ["fill=red", "a.fill=", "a.fill", ".fill=red", "%.fill=red", "a.=red", "a.Fill=red",
     "a.b<c=1", "a.fill=%", "x=y", "=", "simplify=", "simplify=-1", "simplify=65", "simplify=x",
-    "topology=loose", "small=", "debug=mesh,all", "compare=1.5", "compare=", "at=1", "at=1,2,3",
+    "topology=loose", "style=a.b", "style=", "small=", "debug=mesh,all", "compare=1.5",
+    "compare=", "at=1", "at=1,2,3",
     "at=86,0", "at=0,181", "at=,", "toString=1", "__proto__=1"];
   for (const part of wrong) {
     assert.deepEqual(parse_hash(`#1/2/3&${part}&on=b`),

@@ -44,6 +44,18 @@ const config = (web_root) => `
 address = "127.0.0.1"
 web_root = "${web_root}"
 
+[styles.night]
+background = "#102030"
+simplify = 2
+[styles.night.land]
+fill = "#405060"
+stroke = "#ffffff"
+stroke_width = 3
+color_by = "name"
+classes = "island:ff0000"
+[styles.night.lake]
+pattern = "dots"
+
 [[layer]]
 name = "land"
 file = "${join(HERE, "land.geojson")}"

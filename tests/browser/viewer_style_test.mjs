@@ -28,8 +28,8 @@ async function open(hash = "#5/46/10", options = undefined) {
   await tiles_drawn(page);
   if (await page.locator("#panel-body").isHidden()) await page.click("#panel-toggle");
   for (const title of ["Style of Land", "Detail", "Tiles"]) {
-    await page.locator("summary").and(page.getByLabel(title).or(page.getByText(title, { exact: true })))
-      .click();
+    const named = page.getByLabel(title).or(page.getByText(title, { exact: true }));
+    await page.locator("summary").and(named).click();
   }
   const land = page.locator("#layers li").filter({ has: page.getByLabel("Style of Land") });
   return { page, seen, land };
@@ -124,7 +124,7 @@ test("what is switched off takes its parts along, and the usual style asks for n
   await page.context().close();
 });
 
-test("classes of a text are taken from the view, and can be recoloured, added and removed", async () => {
+test("classes of a text are taken from the view, recoloured, added and removed", async () => {
   const { page, seen, land } = await open();
   await land.getByLabel("Colour by").selectOption("name");
   const mainland = "mainland with a bay and a lake";
@@ -221,6 +221,54 @@ test("an answer that comes late does not undo what was changed since", async () 
   await wait_for_query(page, "land", { fill: "00ff00" });
   assert.ok(!seen.tiles.some(({ url }) => url.includes("ff0000")));
   assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("a named style is asked for, shown in the panel, and changed by what is set", async () => {
+  const { page, seen, land } = await open();
+  await page.getByRole("combobox", { name: "Style", exact: true }).selectOption("night");
+  await wait_for_query(page, "land", { style: "night" });
+  // The background lies below the lowest layer, and does not cover it.
+  await wait_for_query(page, "lake", { style: "night", background: "0000" });
+  assert.ok((await pixels_of_colour(page, "land", [0x40, 0x50, 0x60])) > 1000);
+  assert.ok((await pixels_of_colour(page, "land", [0x10, 0x20, 0x30])) > 1000);
+  assert.equal(await pixels_of_colour(page, "lake", [0x10, 0x20, 0x30]), 0);
+  assert.equal(await page.locator("#detail output").innerText(), "2 px");
+  const width = land.locator(".slider", { hasText: "Width" });
+  assert.equal(await width.locator("output").innerText(), "3 px");
+  assert.deepEqual(await land.locator(".classes input[type=text]").evaluateAll((inputs) =>
+    inputs.map(({ value }) => value)), ["island"]);
+  await assert_survives_reload(page);
+
+  await page.getByLabel("Style of Land").click();
+  await land.getByRole("checkbox", { name: "Outline" }).uncheck();
+  await wait_for_query(page, "land", { style: "night", "stroke-width": "0" });
+  await land.getByRole("checkbox", { name: "Outline" }).check();
+  await wait_for_query(page, "land", { style: "night" });
+  await land.getByLabel("Colour by").selectOption("");
+  await wait_for_query(page, "land", { style: "night", "color-by": "name", classes: "*:405060ff" });
+  await page.locator("#detail summary").click();
+  await slide(page.getByLabel("Simplify"), 1);
+  await wait_for_query(page, "land",
+    { style: "night", simplify: "0.25", "color-by": "name", classes: "*:405060ff" });
+  await page.getByLabel("Style of Lake").click();
+  await page.locator("#layers li").first().getByRole("combobox", { name: "Pattern" })
+    .selectOption("none");
+  await wait_for_query(page, "lake",
+    { style: "night", simplify: "0.25", background: "0000", pattern: "none" });
+  await page.getByRole("combobox", { name: "Style", exact: true }).selectOption("");
+  await wait_for_query(page, "lake", { simplify: "0.25", pattern: "none" });
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("a style that the server does not know is told and left out", async () => {
+  const { page, seen } = await new_page(browser);
+  await page.goto(`${server.base}#5/46/10&style=nonsense`);
+  await page.getByText('There is no style "nonsense".').waitFor();
+  await wait_for_query(page, "land", {});
+  assert.ok(!(await hash_of(page)).includes("style"));
+  assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200), []);
   await page.context().close();
 });
 
