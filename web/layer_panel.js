@@ -1,58 +1,38 @@
-// The list of layers: on or off, colour and opacity of each.
+// The list of layers: on or off, colour, and all that makes the style of each.
+
+import { element, input } from "./elements.js";
+import { StyleForm } from "./style_form.js";
 
 /**
- * One row of the list for `layer`. `state` is {is_on, style: {fill, opacity}}; `on_change` is
- * called with such an object whenever the user changes something. Returns the element and a
- * function that shows another state.
+ * One row of the list for `layer`. `on_change` is called with {is_on, style} whenever the user
+ * changes something; see StyleForm for the rest. Returns the element, and functions that show
+ * another such state, with the `usual` style, and what the server finds wrong with the style.
  */
-export function layer_row(layer, state, on_change) {
+export function layer_row(layer, builtin_fill, suggest, on_change) {
   const title = String(layer.title || layer.name);
-  const is_on = input("checkbox", {});
-  const fill = input("color", { "aria-label": `Colour of ${title}` });
-  const opacity = input("range", { min: 0, max: 1, step: 0.05, "aria-label": `Opacity of ${title}` });
-  const percent = document.createElement("output");
+  const is_on = input("checkbox");
+  const change = () => on_change({ is_on: is_on.checked, style: form.read() });
+  const form = new StyleForm({ ...layer, title }, builtin_fill, suggest, change);
+  is_on.addEventListener("change", change);
 
-  const show = (shown) => {
-    is_on.checked = shown.is_on;
-    fill.value = `#${shown.style.fill}`;
-    opacity.value = shown.style.opacity;
-    percent.textContent = `${Math.round(100 * shown.style.opacity)}%`;
-  };
-  const read = () => ({
-    is_on: is_on.checked,
-    style: { fill: fill.value.slice(1).toLowerCase(), opacity: Number(opacity.value) },
-  });
-  show(state);
-
-  // A slider or colour being dragged tells its number at once; the map follows on release, since
-  // every step of it would be a screen full of new tiles.
-  opacity.addEventListener("input", () => {
-    percent.textContent = `${Math.round(100 * opacity.value)}%`;
-  });
-  for (const control of [is_on, fill, opacity]) {
-    control.addEventListener("change", () => on_change(read()));
-  }
-
-  const row = document.createElement("li");
+  const colour = form.fill.node.querySelector("input");
+  const summary = element("summary", "", "Style");
+  summary.setAttribute("aria-label", `Style of ${title}`);
+  const details = element("details", "", summary, form.node);
+  const row = element("li", "",
+    element("label", "name", is_on, element("span", "", title)), colour, details);
   row.title = String(layer.description ?? "");
-  row.append(
-    element("label", "name", is_on, element("span", "", title)),
-    fill,
-    element("label", "opacity", "Opacity", opacity, percent),
-  );
-  return { row, show };
-}
-
-function input(type, attributes) {
-  const control = document.createElement("input");
-  control.type = type;
-  for (const [name, value] of Object.entries(attributes)) control.setAttribute(name, value);
-  return control;
-}
-
-function element(tag, class_name, ...children) {
-  const made = document.createElement(tag);
-  if (class_name) made.className = class_name;
-  made.append(...children);
-  return made;
+  return {
+    row,
+    show: (state) => {
+      is_on.checked = state.is_on;
+      form.show(state.style, state.usual);
+    },
+    show_problem: (problem) => {
+      form.show_problem(problem);
+      if (!problem) return;
+      details.open = true;
+      form.node.querySelector(".problem").scrollIntoView({ block: "nearest" });
+    },
+  };
 }

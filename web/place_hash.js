@@ -1,43 +1,90 @@
 // What the viewer shows, as the part of its address behind '#':
 //
-//   #4/51.5074/-0.1278                                  zoom, latitude, longitude
-//   #4/51.5074/-0.1278&on=countries                     only these layers (default: all)
-//   #4/51.5074/-0.1278&style=water,ff8800,0.5           fill and opacity of a layer, where changed
+//   #4/51.5074/-0.1278                          zoom, latitude, longitude
+//   ...&on=countries                            only these layers (default: all)
+//   ...&water.fill=ff8800&water.pattern=hatch   parameters of a layer, where changed
+//   ...&simplify=4&debug=mesh                   parameters of all layers, where changed
+//   ...&style=night                             a style that the server knows by that name
+//   ...&compare=0.5                             full detail to the right of the middle
+//   ...&at=51.5,-0.12                           the place whose features are told
 //
-// Names are percent-encoded. Whatever cannot be understood is left out, never an error: people
-// shorten and mistype addresses.
+// Names and values are percent-encoded. Whatever cannot be understood is left out, never an error:
+// people shorten and mistype addresses. Values of a layer's parameters are for the server to judge.
+
+import { encode } from "./tile_query.js";
 
 const MAX_ZOOM = 24;
 const MAX_LATITUDE = 85.0511287798066;
+const LONGEST_SIMPLIFY = 64;
+const PARAMETER = /^[a-z]+(-[a-z]+)*$/;
+
+const READ_SHARED = {
+  style: (text) => /^[A-Za-z0-9_-]{1,64}$/.test(text),
+  simplify: (text) => is_number(text, 0, LONGEST_SIMPLIFY),
+  topology: (text) => ["strict", "fast"].includes(text),
+  small: (text) => ["dust", "keep", "drop"].includes(text),
+  debug: (text) => text.split(",").every((word) => ["mesh", "tile", "vertices"].includes(word)),
+};
 
 /**
  * @typedef {{zoom: number, lat: number, lon: number}} Place
- * @typedef {{fill: string, opacity: number}} Style  fill as "rrggbb", opacity 0 to 1
- * @typedef {{place: ?Place, on: ?string[], styles: Map<string, Style>}} View
+ * @typedef {Map<string, string>} Style  values of parameters by name
+ * @typedef {{place: ?Place, on: ?string[], styles: Map<string, Style>, shared: Style,
+ *   compare: ?number, at: ?{lat: number, lon: number}}} View
  */
 
-/** @returns {View} `place` and `on` are null where the hash does not say. */
+/** @returns {View} null, or empty, is what the hash does not say */
 export function parse_hash(hash) {
   const [place, ...rest] = hash.replace(/^#/, "").split("&");
-  const view = { place: parse_place(place), on: null, styles: new Map() };
+  const view = {
+    place: parse_place(place), on: null, styles: new Map(), shared: new Map(), compare: null,
+    at: null,
+  };
   for (const part of rest) {
     const split = part.indexOf("=");
-    const key = part.slice(0, split);
-    const value = part.slice(split + 1);
-    if (key === "on") view.on = value.split(",").map(decode).filter(Boolean);
-    if (key === "style") add_style(view.styles, value);
+    if (split > 0) read_part(view, part.slice(0, split), part.slice(split + 1));
   }
   return view;
 }
 
 /** The inverse of parse_hash, with the '#'. */
-export function format_hash({ place, on, styles }) {
+export function format_hash({ place, on, styles, shared, compare, at }) {
   const parts = [place ? format_place(place) : ""];
-  if (on) parts.push("on=" + on.map(encode).join(","));
-  for (const [name, { fill, opacity }] of styles) {
-    parts.push(`style=${encode(name)},${fill},${Number(opacity.toFixed(2))}`);
+  if (on) parts.push("on=" + on.map(encode_name).join(","));
+  for (const [layer, style] of styles) {
+    for (const [name, value] of style) parts.push(`${encode_name(layer)}.${name}=${encode(value)}`);
   }
+  for (const [name, value] of shared) parts.push(`${name}=${encode(value)}`);
+  if (compare !== null) parts.push(`compare=${Number(compare.toFixed(3))}`);
+  if (at) parts.push(`at=${Number(at.lat.toFixed(7))},${Number(at.lon.toFixed(7))}`);
   return "#" + parts.join("&");
+}
+
+function read_part(view, key, value) {
+  if (key === "on") {
+    view.on = value.split(",").map(decode).filter(Boolean);
+  } else if (key === "compare") {
+    if (is_number(value, 0, 1)) view.compare = Number(value);
+  } else if (key === "at") {
+    view.at = parse_point(value);
+  } else if (Object.hasOwn(READ_SHARED, key)) {
+    if (READ_SHARED[key](decode(value))) view.shared.set(key, decode(value));
+  } else {
+    read_layer_parameter(view.styles, key, decode(value));
+  }
+}
+
+function read_layer_parameter(styles, key, value) {
+  const dot = key.lastIndexOf(".");
+  const layer = decode(key.slice(0, Math.max(dot, 0)));
+  const name = key.slice(dot + 1);
+  if (!layer || !PARAMETER.test(name) || value === "") return;
+  if (!styles.has(layer)) styles.set(layer, new Map());
+  styles.get(layer).set(name, value);
+}
+
+function is_number(text, min, max) {
+  return text.trim() !== "" && Number(text) >= min && Number(text) <= max;
 }
 
 function parse_place(text) {
@@ -48,22 +95,21 @@ function parse_place(text) {
   return { zoom, lat, lon };
 }
 
+function parse_point(text) {
+  const [lat, lon, ...more] = text.split(",");
+  if (more.length || lon === undefined) return null;
+  if (!is_number(lat, -MAX_LATITUDE, MAX_LATITUDE) || !is_number(lon, -180, 180)) return null;
+  return { lat: Number(lat), lon: Number(lon) };
+}
+
 function format_place({ zoom, lat, lon }) {
   // One pixel of a tile is 360 / 2^(zoom + 8) degrees: enough digits for less than that.
   const digits = Math.max(0, Math.ceil(((zoom + 8) * Math.LN2 - Math.log(360)) / Math.LN10) + 1);
   return [Number(zoom.toFixed(2)), lat.toFixed(digits), lon.toFixed(digits)].join("/");
 }
 
-function add_style(styles, text) {
-  const [name, fill, opacity] = text.split(",");
-  const number = opacity === undefined || opacity === "" ? NaN : Number(opacity);
-  if (!decode(name) || !/^[0-9a-f]{6}$/i.test(fill ?? "")) return;
-  if (!(number >= 0 && number <= 1)) return;
-  styles.set(decode(name), { fill: fill.toLowerCase(), opacity: number });
-}
-
 /** The comma is a separator here. */
-function encode(name) {
+function encode_name(name) {
   return encodeURIComponent(name).replaceAll(",", "%2C");
 }
 

@@ -4,16 +4,28 @@
 
 import { attribution_nodes, link_to } from "./attribution.js";
 import { load_catalog } from "./catalog.js";
+import { Comparison } from "./comparison.js";
+import { DetailPanel, simplify_in_words } from "./detail_panel.js";
+import { choose } from "./elements.js";
+import { FeaturePanel, ask_features } from "./feature_panel.js";
+import { values_in_view, wrapped_longitude } from "./feature_samples.js";
 import { layer_row } from "./layer_panel.js";
+import { ask_legend, legend_section } from "./legend.js";
 import { MapLayer } from "./map_layer.js";
+import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
 import { format_hash, parse_hash } from "./place_hash.js";
+import { parameters_of_layers, path_of_layers, query_part } from "./tile_query.js";
+import { watch_tiles } from "./tile_timing.js";
 
 const MAX_ZOOM = 22;
 const MAX_LATITUDE = 85.0511287798066;
-// For layers whose style the catalog does not tell.
-const COLOURS = ["d8c99b", "4f8fba", "8aa867", "c97b63", "9a86b8", "d8a94c"];
-const OPACITY = 0.8;
+const BUILTIN_FILL = "808080"; // of layers whose style the catalog does not tell
+const PHONE = "(max-width: 600px)";
+const DOUBLE_CLICK_MS = 250;
+const MESSAGE_MS = 6000;
 
+const BASE = document.baseURI;
+const TILES = new URL("tiles/", BASE).href;
 const $ = (id) => document.getElementById(id);
 
 // ---- what is said at the foot of the map
@@ -38,15 +50,6 @@ function tell_trouble(name, is_missing_tiles) {
 /** Anything may stand in the catalog: only what has a name can be shown. */
 function usable_layers(catalog) {
   return catalog.layers.filter((layer) => typeof layer?.name === "string" && layer.name !== "");
-}
-
-function style_of_catalog(layer, i) {
-  const fill = /^#?([0-9a-f]{6})$/i.exec(layer.style?.fill ?? "")?.[1];
-  const opacity = layer.style?.["fill-opacity"];
-  return {
-    fill: (fill ?? COLOURS[i % COLOURS.length]).toLowerCase(),
-    opacity: opacity >= 0 && opacity <= 1 ? opacity : fill ? 1 : OPACITY,
-  };
 }
 
 /** Where all layers can be seen, or the world if they span most of it. */
@@ -82,6 +85,12 @@ function make_map() {
   return map;
 }
 
+function make_pane(map, name) {
+  const pane = map.createPane(name);
+  pane.style.zIndex = 200; // where Leaflet has its own tiles
+  return pane;
+}
+
 /** Leaflet's own control takes markup; ours takes nodes, so that no text can become markup. */
 function show_attribution(map, layers) {
   const control = L.control({ position: "bottomright" });
@@ -103,46 +112,168 @@ function show_about(catalog, layers) {
   $("about").textContent = parts.join(", ");
 }
 
-function make_panel_foldable() {
-  const toggle = $("panel-toggle");
+function make_foldable(toggle, body) {
   const open = (is_open) => {
     toggle.setAttribute("aria-expanded", String(is_open));
-    $("panel-body").hidden = !is_open;
+    body.hidden = !is_open;
   };
-  toggle.addEventListener("click", () => open($("panel-body").hidden));
-  open(!window.matchMedia("(max-width: 600px)").matches);
+  toggle.addEventListener("click", () => open(body.hidden));
+  open(!window.matchMedia(PHONE).matches);
 }
 
-/** Keeps panel, map and address the same, whichever of them changes. */
+function make_address_copyable() {
+  $("copy").addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText($("tile-url").value);
+    } catch {
+      // No clipboard without a secure connection, or without leave: the old way.
+      $("tile-url").select();
+      document.execCommand("copy");
+    }
+    $("copy").textContent = "Copied";
+    setTimeout(() => ($("copy").textContent = "Copy"), 1500);
+  });
+}
+
+/** Calls `act` with the place of a click that is not the first half of a double click. */
+function on_single_click(map, act) {
+  let waiting = null;
+  map.on("click", ({ latlng }) => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => act(latlng), DOUBLE_CLICK_MS);
+  });
+  map.on("dblclick", () => clearTimeout(waiting));
+}
+
+/** Keeps panels, map and address the same, whichever of them changes. */
 class Viewer {
   constructor(catalog) {
     this.layers_ = usable_layers(catalog);
-    this.defaults_ = this.layers_.map(style_of_catalog);
-    this.states_ = this.states_of_(parse_hash(location.hash));
+    const view = parse_hash(location.hash);
     this.map_ = make_map();
-    this.go_to_(parse_hash(location.hash).place);
-
-    const tiles = new URL("tiles/", document.baseURI).href;
-    this.map_layers_ = this.layers_.map((layer, i) =>
-      new MapLayer(this.map_, tiles, layer, i + 1, (missing) => tell_trouble(layer.name, missing)));
-    this.rows_ = this.layers_.map((layer, i) =>
-      layer_row(layer, this.states_[i], (state) => this.change_(i, state)));
-    // The list reads from top to bottom as the layers lie over each other.
-    $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
+    this.go_to_(view.place);
+    this.make_map_layers_();
+    this.make_panels_();
     show_attribution(this.map_, this.layers_);
     show_about(catalog, this.layers_);
 
-    this.draw_();
-    this.map_.on("moveend", () => this.write_address_());
-    window.addEventListener("hashchange", () => this.read_address_());
-    this.write_address_();
+    this.show_view_(view).then(() => {
+      this.map_.on("moveend", () => this.write_address_());
+      window.addEventListener("hashchange", () => this.read_address_());
+      this.write_address_();
+    });
   }
 
-  states_of_(view) {
-    return this.layers_.map(({ name }, i) => ({
+  // ---- made once
+
+  make_map_layers_() {
+    const simplified = make_pane(this.map_, "simplified");
+    const full = make_pane(this.map_, "full");
+    const layers_in = (pane) => this.layers_.map((layer, i) =>
+      new MapLayer(this.map_, TILES, layer, {
+        z_index: i + 1,
+        pane,
+        on_trouble: (is_missing) => tell_trouble(`${layer.name} ${pane}`, is_missing),
+      }));
+    this.map_layers_ = layers_in("simplified");
+    this.full_layers_ = layers_in("full");
+    this.comparison_ = new Comparison(this.map_, simplified, full, (part) => {
+      this.compare_ = part;
+      this.write_address_();
+    });
+  }
+
+  make_panels_() {
+    this.rows_ = this.layers_.map((layer, i) => layer_row(layer, BUILTIN_FILL,
+      (property) => this.values_in_view_(layer.name, property), (state) => this.change_(i, state)));
+    // The list reads from top to bottom as the layers lie over each other.
+    $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
+    load_style_names(BASE).then((names) => this.show_style_names_(names));
+    $("style").addEventListener("change", () => this.change_named_style_($("style").value));
+    this.detail_ = new DetailPanel(() => this.change_detail_());
+    $("detail").append(this.detail_.node);
+    this.features_ = new FeaturePanel($("features"), {
+      choose: (feature) => this.choose_(feature),
+      go_to: ({ bbox: [west, south, east, north] }) =>
+        this.map_.fitBounds([[south, west], [north, east]]),
+      close: () => this.close_features_(),
+      title_of: (name) => this.title_of_(name),
+    });
+    on_single_click(this.map_, (place) => this.identify_(place));
+    $("map").addEventListener("keydown", (event) => {
+      if (event.target !== $("map")) return;
+      if (event.key === "Enter") this.identify_(this.map_.getCenter(), { is_by_key: true });
+      if (event.key === "Escape") this.close_features_();
+    });
+  }
+
+  title_of_(name) {
+    return String(this.layers_.find((layer) => layer.name === name)?.title || name);
+  }
+
+  // ---- what is shown
+
+  /** Everything but the place. */
+  async show_view_(view) {
+    this.view_ = view;
+    const named = await this.load_named_style_(view.shared);
+    if (this.view_ !== view) return;
+    this.named_ = named;
+    this.shared_ = view.shared;
+    this.compare_ = view.compare;
+    this.at_ = view.at;
+    this.states_ = this.layers_.map(({ name }) => ({
       is_on: view.on === null || view.on.includes(name),
-      style: view.styles.get(name) ?? this.defaults_[i],
+      style: view.styles.get(name) ?? new Map(), // as it stands in the panel
+      drawn: null, // the last style that the server took
+      entries: [], // of its legend
+      usual: new Map(), // what holds where the style says nothing
     }));
+    this.show_usual_();
+    this.states_.forEach((_, i) => this.prove_style_(i));
+    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
+    else this.features_.hide();
+  }
+
+  /** The panel, after what is usual may have changed. */
+  show_usual_() {
+    this.states_.forEach((state, i) => {
+      state.usual = usual_style(this.layers_[i], this.named_);
+      this.rows_[i].show(state);
+    });
+    this.detail_.show({ shared: this.shared_, is_comparing: this.compare_ !== null },
+      usual_shared(this.named_));
+    choose($("style"), this.shared_.get("style") ?? "");
+    $("style-row").hidden = $("style").options.length < 2;
+  }
+
+  show_style_names_(names) {
+    const chosen = $("style").value;
+    $("style").replaceChildren(new Option("that of each layer", ""),
+      ...names.map((name) => new Option(name, name)));
+    choose($("style"), chosen);
+    $("style-row").hidden = $("style").options.length < 2;
+  }
+
+  /** What the style is made of that is named in `shared`, from which an unknown name is taken. */
+  async load_named_style_(shared) {
+    const named = await load_style(BASE, shared.get("style"));
+    if (named) return named;
+    say(`There is no style "${shared.get("style")}".`);
+    setTimeout(() => say(""), MESSAGE_MS);
+    shared.delete("style");
+    return {};
+  }
+
+  async change_named_style_(name) {
+    const shared = new Map([...(name ? [["style", name]] : []),
+      ...[...this.shared_].filter(([key]) => key !== "style")]);
+    const named = await this.load_named_style_(shared);
+    if ($("style").value !== name) return;
+    this.shared_ = shared;
+    this.named_ = named;
+    this.show_usual_();
+    this.states_.forEach((_, i) => this.prove_style_(i));
   }
 
   go_to_(place) {
@@ -150,24 +281,155 @@ class Viewer {
     else show_everything(this.map_, this.layers_);
   }
 
-  change_(i, state) {
-    this.states_[i] = state;
+  change_(i, { is_on, style }) {
+    this.states_[i].is_on = is_on;
+    this.states_[i].style = style;
+    this.prove_style_(i);
+  }
+
+  change_detail_() {
+    const { shared, is_comparing } = this.detail_.read();
+    const named = [...this.shared_].filter(([key]) => key === "style");
+    this.shared_ = new Map([...named, ...shared]);
+    this.compare_ = is_comparing ? (this.compare_ ?? 0.5) : null;
+    this.draw_();
+    this.write_address_();
+  }
+
+  /** The map keeps the last style that was right: the server judges before tiles are asked for. */
+  async prove_style_(i) {
+    const state = this.states_[i];
+    const { style } = state;
+    if (style.size === 0) state.drawn = style;
+    this.draw_();
+    this.write_address_();
+    const name = this.shared_.get("style");
+    const { problem = null, entries = [] } = await ask_legend(BASE, this.layers_[i].name,
+      name ? [...style, ["style", name]] : style);
+    if (this.states_[i] !== state || state.style !== style) return;
+    if (this.shared_.get("style") !== name) return;
+    this.rows_[i].show_problem(problem);
+    if (!problem) Object.assign(state, { drawn: style, entries });
+    else state.drawn ??= new Map();
     this.draw_();
     this.write_address_();
   }
 
   draw_() {
-    this.map_layers_.forEach((layer, i) => {
-      layer.restyle(this.states_[i].style);
-      layer.show(this.states_[i].is_on);
+    const full = new Map([...this.shared_, ["simplify", "0"]]);
+    let is_lowest = true;
+    this.states_.forEach(({ is_on, drawn }, i) => {
+      const is_shown = is_on && drawn !== null;
+      const query = (shared) => query_part([...drawn, ...shared, ...this.background_(is_lowest)]);
+      this.map_layers_[i].show(is_shown ? query(this.shared_) : null);
+      this.full_layers_[i].show(is_shown && this.compare_ !== null ? query(full) : null);
+      if (is_shown) is_lowest = false;
+    });
+    const { pixels } = this.detail_;
+    const words = simplify_in_words(pixels);
+    this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`);
+    this.show_legend_();
+    $("tile-url").value = this.tile_url_();
+  }
+
+  /** That of a named style would hide what lies below: the lowest layer alone brings it along. */
+  background_(is_lowest) {
+    return this.named_.background && !is_lowest ? [["background", "0000"]] : [];
+  }
+
+  show_legend_() {
+    const sections = this.states_.flatMap(({ is_on, drawn, entries, usual }, i) =>
+      is_on && entries.length
+        ? [legend_section(this.title_of_(this.layers_[i].name), entries, over(usual, drawn))] : []);
+    $("legend-body").replaceChildren(...sections.reverse());
+    $("legend").hidden = sections.length === 0;
+  }
+
+  /** Those that are on, the lowest first, in the style that is drawn. */
+  drawn_layers_() {
+    return this.layers_.flatMap(({ name }, i) => {
+      const { is_on, drawn } = this.states_[i];
+      return is_on && drawn ? [{ name, style: drawn }] : [];
     });
   }
 
+  tile_url_() {
+    const layers = this.drawn_layers_();
+    if (layers.length === 0) return "";
+    const query = query_part(parameters_of_layers(layers, this.shared_));
+    return `${TILES}${path_of_layers(layers)}/{z}/{x}/{y}.png${query}`;
+  }
+
+  // ---- features under a place
+
+  async identify_({ lat, lng }, { is_by_key = false } = {}) {
+    const at = { lat, lon: wrapped_longitude(lng) };
+    this.at_ = at;
+    this.write_address_();
+    // Of the address, and not yet proved, is as good as drawn here.
+    const layers = this.layers_.flatMap(({ name }, i) => {
+      const { is_on, drawn, style } = this.states_[i];
+      return is_on ? [{ name, style: drawn ?? style }] : [];
+    });
+    try {
+      if (layers.length === 0) throw new Error("No layer is shown.");
+      const found = await ask_features(BASE, layers, this.shared_, at, this.map_.getZoom());
+      if (this.at_ !== at) return;
+      this.found_ = found;
+      this.choose_(found.find((feature) => this.is_highlighted_(feature)) ?? found[0]);
+    } catch (error) {
+      if (this.at_ === at) this.features_.show_message(error.message);
+    }
+    if (is_by_key) this.features_.focus();
+  }
+
+  /** `feature` of those found, or nothing. */
+  choose_(feature) {
+    this.states_.forEach((state, i) => {
+      const is_of_layer = feature?.layer === this.layers_[i].name;
+      this.highlight_(i, is_of_layer ? String(feature.id) : null);
+    });
+    if (feature) this.features_.show(this.found_, feature);
+    else this.features_.show_message("There is nothing here.");
+  }
+
+  close_features_() {
+    this.at_ = null;
+    this.features_.hide();
+    this.states_.forEach((_, i) => this.highlight_(i, null));
+    this.write_address_();
+    $("map").focus({ preventScroll: true });
+  }
+
+  highlight_(i, ids) {
+    const state = this.states_[i];
+    if ((state.style.get("highlight") ?? null) === ids) return;
+    state.style = new Map(state.style);
+    if (ids === null) state.style.delete("highlight");
+    else state.style.set("highlight", ids);
+    this.rows_[i].show(state);
+    this.prove_style_(i);
+  }
+
+  is_highlighted_({ layer, id }) {
+    const state = this.states_[this.layers_.findIndex(({ name }) => name === layer)];
+    return state?.style.get("highlight") === String(id);
+  }
+
+  values_in_view_(layer, property) {
+    const bounds = this.map_.getBounds();
+    const box = {
+      west: bounds.getWest(), south: bounds.getSouth(), east: bounds.getEast(),
+      north: bounds.getNorth(),
+    };
+    return values_in_view(BASE, layer, property, box, this.map_.getZoom());
+  }
+
+  // ---- the address
+
   read_address_() {
     const view = parse_hash(location.hash);
-    this.states_ = this.states_of_(view);
-    this.rows_.forEach(({ show }, i) => show(this.states_[i]));
-    this.draw_();
+    this.show_view_(view);
     if (view.place) this.go_to_(view.place);
   }
 
@@ -175,22 +437,24 @@ class Viewer {
   write_address_() {
     const { lat, lng } = this.map_.getCenter();
     const on = this.layers_.filter((_, i) => this.states_[i].is_on).map(({ name }) => name);
-    const styles = new Map();
-    this.layers_.forEach(({ name }, i) => {
-      const { fill, opacity } = this.states_[i].style;
-      const { fill: usual_fill, opacity: usual_opacity } = this.defaults_[i];
-      if (fill !== usual_fill || opacity !== usual_opacity) styles.set(name, { fill, opacity });
-    });
     const hash = format_hash({
       place: { zoom: this.map_.getZoom(), lat, lon: lng },
       on: on.length === this.layers_.length ? null : on,
-      styles,
+      // Until the server has judged it, what the address said.
+      styles: new Map(this.layers_.map(({ name }, i) =>
+        [name, this.states_[i].drawn ?? this.states_[i].style])),
+      shared: this.shared_,
+      compare: this.compare_,
+      at: this.at_,
     });
     history.replaceState(null, "", hash);
   }
 }
 
-make_panel_foldable();
-const catalog = await load_catalog(new URL("catalog", document.baseURI), say);
+make_foldable($("panel-toggle"), $("panel-body"));
+make_foldable($("legend-toggle"), $("legend-body"));
+make_address_copyable();
+watch_tiles(TILES, (line) => ($("timing").textContent = line));
+const catalog = await load_catalog(new URL("catalog", BASE), say);
 if (usable_layers(catalog).length === 0) say("The server has no layers.");
 new Viewer(catalog);

@@ -1,4 +1,5 @@
 // A running `trapeze serve` with two small layers, and pages of a headless Chromium that show it.
+import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -7,8 +8,8 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-const HERE = dirname(fileURLToPath(import.meta.url));
-const WEB = join(HERE, "..", "..", "web");
+export const HERE = dirname(fileURLToPath(import.meta.url));
+export const WEB = join(HERE, "..", "..", "web");
 const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const SKIPPED = 77;
 const START_TIMEOUT_MS = 60_000; // sanitizers on a busy machine
@@ -19,7 +20,7 @@ function skip(reason) {
 }
 
 function load_playwright() {
-  const require = createRequire(join(WEB, "package.json"));
+  const require = createRequire(join(HERE, "package.json"));
   try {
     return require("playwright-core");
   } catch {
@@ -42,6 +43,18 @@ const config = (web_root) => `
 [server]
 address = "127.0.0.1"
 web_root = "${web_root}"
+
+[styles.night]
+background = "#102030"
+simplify = 2
+[styles.night.land]
+fill = "#405060"
+stroke = "#ffffff"
+stroke_width = 3
+color_by = "name"
+classes = "island:ff0000"
+[styles.night.lake]
+pattern = "dots"
 
 [[layer]]
 name = "land"
@@ -107,13 +120,15 @@ export async function start_server() {
   return server;
 }
 
-export async function start_browser() {
+/** `options` are further ones of Chromium's command line. */
+export async function start_browser(options = []) {
   const { chromium } = load_playwright();
   if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed; run script/bootstrap`);
   return chromium.launch({
     executablePath: CHROMIUM,
     args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+      "--disable-background-networking", "--disable-component-update", "--disable-sync",
+      ...options],
   });
 }
 
@@ -129,12 +144,12 @@ export const PHONE = {
 export async function new_page(browser, options = DESKTOP) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
-  const seen = { requests: [], tiles: [], errors: [] };
+  const seen = { requests: [], answers: [], tiles: [], errors: [] };
   page.on("request", (request) => seen.requests.push(request.url()));
   page.on("response", (response) => {
-    if (response.url().includes("/tiles/")) {
-      seen.tiles.push({ url: response.url(), status: response.status() });
-    }
+    const answer = { url: response.url(), status: response.status() };
+    seen.answers.push(answer);
+    if (answer.url.includes("/tiles/")) seen.tiles.push(answer);
   });
   page.on("console", (message) => {
     if (message.type() === "error") seen.errors.push(message.text());
@@ -160,6 +175,40 @@ export async function tiles_drawn(page) {
 export function shown_tiles(page) {
   return page.evaluate(() =>
     [...document.querySelectorAll("img.leaflet-tile")].map((tile) => tile.src).sort());
+}
+
+/** Those of one layer, or of several that are drawn together. */
+export function of_layer(tiles, name) {
+  return tiles.filter((url) => url.includes(`/tiles/${name}/`));
+}
+
+export function hash_of(page) {
+  return page.evaluate(() => location.hash);
+}
+
+/** How many pixels of the layer's tiles have this colour and are not transparent. */
+export function pixels_of_colour(page, name, [r, g, b]) {
+  return page.evaluate(([name, r, g, b]) => {
+    let count = 0;
+    for (const tile of document.querySelectorAll(`img.leaflet-tile[src*="/tiles/${name}/"]`)) {
+      const canvas = new OffscreenCanvas(tile.naturalWidth, tile.naturalHeight);
+      const context = canvas.getContext("2d");
+      context.drawImage(tile, 0, 0);
+      const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 250 && data[i] === r && data[i + 1] === g && data[i + 2] === b) count++;
+      }
+    }
+    return count;
+  }, [name, r, g, b]);
+}
+
+/** What every undisturbed visit must satisfy. */
+export function assert_nothing_went_wrong(server, seen) {
+  assert.deepEqual(seen.errors, []);
+  assert.deepEqual(seen.requests.filter((url) => !url.startsWith(server.base)), [],
+    "nothing is fetched from elsewhere");
+  assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200 && status !== 304), []);
 }
 
 export async function save_screenshot(page, name) {

@@ -1,0 +1,178 @@
+// Colours by attribute: the property, and a list of values with colours, or breaks with a ramp.
+
+import { CLASS_COLOURS, COLOUR_OF_OTHERS, rgb_of } from "./colours.js";
+import { format_classes, parse_classes } from "./class_list.js";
+import { button, choose, element, input, mark_wrong, select } from "./elements.js";
+
+// Those of ColorBrewer that lead from one end to another, and so have a colour for any count.
+const RAMPS = ["YlGnBu", "YlOrRd", "Blues", "Greens", "Oranges", "Purples", "Reds", "Greys", "BuGn",
+  "BuPu", "GnBu", "OrRd", "PuBu", "PuBuGn", "PuRd", "RdPu", "YlGn", "YlOrBr", "BrBG", "PiYG", "PRGn",
+  "PuOr", "RdBu", "RdGy", "RdYlBu", "RdYlGn", "Spectral"];
+const BY_VALUE = "values";
+const BY_RANGE = "ranges";
+
+export class ClassEditor {
+  /**
+   * @param fields of the layer: {name, type: "string"|"integer"|"number"}
+   * @param suggest async, of a field's name: values that stand in the view, the commonest first
+   */
+  constructor(fields, suggest, on_change) {
+    this.fields_ = fields;
+    this.suggest_ = suggest;
+    this.on_change_ = on_change;
+    this.classes_ = [];
+    this.property_ = select([["", "one colour"], ...fields.map(({ name }) => [name, name])]);
+    this.way_ = select([[BY_RANGE, "by range"], [BY_VALUE, "by value"]],
+      { "aria-label": "Classes by" });
+    this.breaks_ = input("text", { placeholder: "10, 100, 1000", inputmode: "decimal" });
+    this.ramp_ = select(RAMPS.map((name) => [name, name]));
+    this.rows_ = element("ul", "classes");
+    this.hint_ = element("p", "hint");
+    this.hint_.setAttribute("role", "status");
+    this.node = this.make_node_();
+    this.listen_();
+  }
+
+  /** Pairs of parameter and value; none while there are no classes yet. */
+  read() {
+    const property = this.property_.value;
+    if (property === "") return [];
+    if (this.is_by_range_()) {
+      const breaks = this.breaks_.value.replaceAll(/[\s;,]+/g, ",").replace(/^,|,$/g, "");
+      if (breaks === "") return [];
+      return [["color-by", property], ["breaks", breaks], ["ramp", this.ramp_.value]];
+    }
+    const named = this.classes_.filter(({ kind, value }) => kind !== "value" || value !== "");
+    if (named.length === 0) return [];
+    return [["color-by", property], ["classes", format_classes(named)]];
+  }
+
+  /** `style`: a Map of parameters. */
+  show(style) {
+    choose(this.property_, style.get("color-by") ?? "");
+    this.breaks_.value = style.get("breaks") ?? "";
+    choose(this.ramp_, style.get("ramp") ?? RAMPS[0]);
+    this.classes_ = parse_classes(style.get("classes") ?? "") ?? [];
+    this.way_.value = style.has("classes") ? BY_VALUE : BY_RANGE;
+    this.show_parts_();
+    this.show_rows_();
+  }
+
+  mark_wrong(parameter) {
+    mark_wrong(this.property_, parameter === "color-by");
+    mark_wrong(this.breaks_, parameter === "breaks");
+    mark_wrong(this.ramp_, parameter === "ramp");
+  }
+
+  is_by_range_() {
+    return this.is_of_numbers_() && this.way_.value === BY_RANGE;
+  }
+
+  is_of_numbers_() {
+    const field = this.fields_.find(({ name }) => name === this.property_.value);
+    return field !== undefined && field.type !== "string";
+  }
+
+  make_node_() {
+    this.by_range_ = element("div", "part",
+      element("label", "row tall", "Breaks", this.breaks_),
+      element("label", "row", "Ramp", this.ramp_));
+    this.add_ = button("Add a class");
+    this.by_value_ = element("div", "part", this.rows_, this.add_);
+    this.suggest_button_ = button("Take them from the view");
+    this.body_ = element("div", "part", this.way_, this.by_range_, this.by_value_,
+      this.suggest_button_, this.hint_);
+    return element("div", "", element("label", "row", "Colour by", this.property_), this.body_);
+  }
+
+  listen_() {
+    this.property_.addEventListener("change", () => this.change_property_());
+    this.way_.addEventListener("change", () => {
+      this.show_parts_();
+      this.on_change_();
+    });
+    this.breaks_.addEventListener("change", () => this.on_change_());
+    this.ramp_.addEventListener("change", () => this.on_change_());
+    this.suggest_button_.addEventListener("click", () => this.take_from_view_());
+    this.add_.addEventListener("click", () => {
+      const colour = CLASS_COLOURS[this.classes_.length % CLASS_COLOURS.length];
+      this.classes_.push({ kind: "value", value: "", colour });
+      this.show_rows_();
+      this.rows_.lastElementChild.querySelector("input").focus();
+    });
+  }
+
+  change_property_() {
+    this.classes_ = [];
+    this.breaks_.value = "";
+    this.way_.value = BY_RANGE;
+    this.show_parts_();
+    this.show_rows_();
+    if (this.property_.value === "") this.on_change_();
+    else this.take_from_view_();
+  }
+
+  async take_from_view_() {
+    const property = this.property_.value;
+    this.hint_.textContent = "Looking…";
+    const values = await this.suggest_(property);
+    if (this.property_.value !== property) return;
+    this.hint_.textContent = values.length ? "" : "There are no values in the view.";
+    if (values.length === 0) return this.on_change_();
+    if (this.is_by_range_()) this.breaks_.value = quantiles(values.map(Number)).join(", ");
+    else this.classes_ = classes_of(values);
+    this.show_rows_();
+    this.on_change_();
+  }
+
+  show_parts_() {
+    this.body_.hidden = this.property_.value === "";
+    this.way_.hidden = !this.is_of_numbers_();
+    this.by_range_.hidden = !this.is_by_range_();
+    this.by_value_.hidden = this.is_by_range_();
+    this.hint_.textContent = "";
+  }
+
+  show_rows_() {
+    this.rows_.replaceChildren(...this.classes_.map((wanted, i) => this.row_of_(wanted, i)));
+  }
+
+  row_of_(wanted, i) {
+    const name = { others: "all others", null: "no value" }[wanted.kind];
+    const value = input("text", { "aria-label": `Value of class ${i + 1}` });
+    value.value = name ?? wanted.value;
+    value.readOnly = name !== undefined;
+    value.addEventListener("change", () => {
+      wanted.value = value.value;
+      this.on_change_();
+    });
+    const colour = input("color", { "aria-label": `Colour of ${value.value || `class ${i + 1}`}` });
+    colour.value = `#${rgb_of(wanted.colour)}`;
+    colour.addEventListener("change", () => {
+      wanted.colour = colour.value.slice(1).toLowerCase();
+      this.on_change_();
+    });
+    const remove = button("×", { "aria-label": `Remove ${value.value || `class ${i + 1}`}` });
+    remove.addEventListener("click", () => {
+      this.classes_.splice(i, 1);
+      this.show_rows_();
+      this.add_.focus();
+      this.on_change_();
+    });
+    return element("li", "", value, colour, remove);
+  }
+}
+
+function classes_of(values) {
+  const classes = values.slice(0, CLASS_COLOURS.length).map((value, i) =>
+    ({ kind: "value", value: String(value), colour: CLASS_COLOURS[i] }));
+  return [...classes, { kind: "others", value: "", colour: COLOUR_OF_OTHERS }];
+}
+
+/** Up to four numbers that part the values into groups of like size, each with few digits. */
+function quantiles(values) {
+  const sorted = [...values].sort((a, b) => a - b);
+  const breaks = [0.2, 0.4, 0.6, 0.8].map((part) =>
+    Number(sorted[Math.floor(part * sorted.length)].toPrecision(2)));
+  return [...new Set(breaks)].sort((a, b) => a - b);
+}

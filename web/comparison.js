@@ -1,0 +1,57 @@
+// Two pictures of one map side by side: what lies left of the divider, and what lies right of it.
+
+import { element, input } from "./elements.js";
+
+const HANDLE = 44; // pixels; as in viewer.css
+
+export class Comparison {
+  /**
+   * @param map the Leaflet map
+   * @param left, right panes of the map
+   * @param on_change called with the part of the width that is left of the divider, 0 to 1
+   */
+  constructor(map, left, right, on_change) {
+    this.map_ = map;
+    this.left_ = left;
+    this.right_ = right;
+    this.slider_ = input("range", { min: 0, max: 1, step: 0.01 });
+    this.slider_.setAttribute("aria-label", "Divider between the simplified map and every vertex");
+    this.left_label_ = element("span", "left");
+    this.line_ = element("div", "divider", this.left_label_, element("span", "right", "every vertex"));
+    this.node_ = element("div", "comparison", this.line_, this.slider_);
+    map.getContainer().after(this.node_);
+    this.slider_.addEventListener("input", () => this.clip_());
+    this.slider_.addEventListener("change", () => on_change(Number(this.slider_.value)));
+    map.on("move resize zoomend", () => this.clip_());
+    this.show(null);
+  }
+
+  /** `part` as on_change tells it; null shows the left picture alone. */
+  show(part, left_text = "") {
+    this.node_.hidden = part === null;
+    if (part !== null) this.slider_.value = part;
+    this.left_label_.textContent = left_text;
+    this.clip_();
+  }
+
+  clip_() {
+    if (this.node_.hidden) {
+      this.left_.style.clipPath = "";
+      return;
+    }
+    const { x: width, y: height } = this.map_.getSize();
+    // The middle of the slider's handle, which stays inside the window.
+    const middle = HANDLE / 2 + Number(this.slider_.value) * (width - HANDLE);
+    this.line_.style.left = `${middle}px`;
+    this.left_.style.clipPath = this.clip_path_(0, middle, height);
+    this.right_.style.clipPath = this.clip_path_(middle, width, height);
+  }
+
+  /** Panes move with the map: the path is in their coordinates. */
+  clip_path_(left, right, height) {
+    const { x, y } = this.map_.containerPointToLayerPoint([0, 0]);
+    const corner = (dx, dy) => `${x + dx}px ${y + dy}px`;
+    return `polygon(${corner(left, 0)}, ${corner(right, 0)}, ${corner(right, height)}, ` +
+      `${corner(left, height)})`;
+  }
+}

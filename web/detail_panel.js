@@ -1,0 +1,80 @@
+// What holds for all layers: how far they are simplified, and what is drawn to look inside.
+
+import { choose, element, input, select } from "./elements.js";
+
+const BUILTIN = [["simplify", "0.25"], ["topology", "strict"], ["small", "dust"], ["debug", ""]];
+const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
+const SMALL = [["dust", "as a tint"], ["keep", "a pixel large"], ["drop", "left out"]];
+const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["tile", "Borders of tiles"]];
+
+/** "0.25 px", or in words that nothing is left out. */
+export function simplify_in_words(pixels) {
+  return pixels === 0 ? "every vertex" : `${pixels} px`;
+}
+
+export class DetailPanel {
+  /** `on_change` is called without arguments. */
+  constructor(on_change) {
+    this.simplify_ = input("range", {
+      min: 0, max: STEPS.length - 1, step: 1, "aria-label": "Simplify",
+    });
+    this.told_ = document.createElement("output");
+    this.strict_ = input("checkbox");
+    this.small_ = select(SMALL);
+    this.compare_ = input("checkbox");
+    this.debug_ = DEBUG.map(([word]) => Object.assign(input("checkbox"), { value: word }));
+    this.pixels_ = 0;
+    this.usual_ = new Map();
+
+    this.simplify_.addEventListener("input", () => this.tell_(STEPS[this.simplify_.value]));
+    this.simplify_.addEventListener("change", () => (this.pixels_ = STEPS[this.simplify_.value]));
+    for (const control of [this.simplify_, this.strict_, this.small_, this.compare_,
+      ...this.debug_]) {
+      control.addEventListener("change", on_change);
+    }
+    this.node = element("div", "part",
+      element("label", "row slider", element("span", "", "Simplify"), this.simplify_, this.told_),
+      element("label", "check", this.compare_, "Compare with every vertex"),
+      element("label", "check", this.strict_, "Borders never cross"),
+      element("label", "row", "Too small", this.small_),
+      ...DEBUG.map(([, text], i) => element("label", "check", this.debug_[i], text)));
+  }
+
+  /** {shared: Map of parameters, without those that have their usual value; is_comparing}. */
+  read() {
+    const debug = this.debug_.filter(({ checked }) => checked).map(({ value }) => value);
+    const chosen = new Map([
+      ["simplify", String(this.pixels_)],
+      ["topology", this.strict_.checked ? "strict" : "fast"],
+      ["small", this.small_.value],
+      ["debug", debug.join(",")],
+    ]);
+    const shared = new Map([...chosen].filter(([name, value]) => value !== this.usual_.get(name)));
+    return { shared, is_comparing: this.compare_.checked };
+  }
+
+  /** `usual` is what holds where `shared` says nothing: a Map of parameters, perhaps not of all. */
+  show({ shared, is_comparing }, usual) {
+    this.usual_ = new Map([...BUILTIN, ...usual]);
+    const shown = new Map([...this.usual_, ...shared]);
+    this.pixels_ = Number(shown.get("simplify"));
+    // An address may hold any number; the slider then stands at the next smaller step.
+    this.simplify_.value = STEPS.findLastIndex((step) => step <= this.pixels_);
+    this.tell_(this.pixels_);
+    this.strict_.checked = shown.get("topology") === "strict";
+    choose(this.small_, shown.get("small"));
+    this.compare_.checked = is_comparing;
+    const debug = shown.get("debug").split(",");
+    for (const box of this.debug_) box.checked = debug.includes(box.value);
+  }
+
+  /** How far it is simplified now, in pixels. */
+  get pixels() {
+    return this.pixels_;
+  }
+
+  tell_(pixels) {
+    this.told_.textContent = simplify_in_words(pixels);
+    this.simplify_.setAttribute("aria-valuetext", simplify_in_words(pixels));
+  }
+}

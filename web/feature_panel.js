@@ -1,0 +1,88 @@
+// What lies under a place: the features with their attributes, one of them chosen.
+
+import { button, element } from "./elements.js";
+import { path_of_layers, parameters_of_layers, query_part } from "./tile_query.js";
+
+/**
+ * The features of `layers` ({name, style}, the lowest first) as they are drawn at `zoom`, the topmost
+ * first. Throws an Error with words for people.
+ */
+export async function ask_features(base, layers, shared, { lat, lon }, zoom) {
+  const parameters = [["z", zoom], ...parameters_of_layers(layers, shared)];
+  const path = `identify/${path_of_layers(layers)}/${lon},${lat}${query_part(parameters)}`;
+  let response;
+  try {
+    response = await fetch(new URL(path, base));
+  } catch {
+    throw new Error("The server cannot be reached.");
+  }
+  const told = await response.json().catch(() => null);
+  if (!response.ok) {
+    throw new Error(told?.detail ?? `The server answered with status ${response.status}.`);
+  }
+  if (!Array.isArray(told?.features)) throw new Error("The answer cannot be understood.");
+  return told.features;
+}
+
+export class FeaturePanel {
+  /**
+   * @param node the empty element of the panel
+   * @param act {choose(feature), go_to(feature), close()}; title_of(name of a layer)
+   */
+  constructor(node, act) {
+    this.node_ = node;
+    this.act_ = act;
+    node.addEventListener("keydown", (event) => event.key === "Escape" && act.close());
+  }
+
+  hide() {
+    this.node_.hidden = true;
+  }
+
+  show_message(text) {
+    this.fill_(element("h2", "", "Features here"), [element("p", "hint", text)]);
+  }
+
+  /** `features` of an answer, `chosen` one of them. */
+  show(features, chosen) {
+    const title = element("h2", "", this.name_of_(chosen));
+    const parts = [this.attributes_of_(chosen)];
+    if (features.length > 1) parts.unshift(this.list_of_(features, chosen));
+    const go = button("Go to it");
+    go.addEventListener("click", () => this.act_.go_to(chosen));
+    parts.push(go);
+    this.fill_(title, parts);
+  }
+
+  focus() {
+    this.node_.querySelector("button")?.focus();
+  }
+
+  fill_(title, parts) {
+    const close = button("×", { "aria-label": "Close" });
+    close.addEventListener("click", () => this.act_.close());
+    this.node_.replaceChildren(element("header", "", title, close), ...parts);
+    this.node_.hidden = false;
+  }
+
+  name_of_(feature) {
+    return `${this.act_.title_of(feature.layer)} ${feature.id}`;
+  }
+
+  list_of_(features, chosen) {
+    const items = features.map((feature) => {
+      const choose = button(this.name_of_(feature),
+        { "aria-pressed": String(feature === chosen) });
+      choose.addEventListener("click", () => this.act_.choose(feature));
+      return element("li", "", choose);
+    });
+    return element("ul", "found", ...items);
+  }
+
+  attributes_of_(feature) {
+    const rows = Object.entries(feature.properties ?? {}).flatMap(([name, value]) =>
+      [element("dt", "", name), element("dd", "", value === null ? "–" : String(value))]);
+    if (rows.length === 0) return element("p", "hint", "It has no attributes.");
+    return element("dl", "", ...rows);
+  }
+}

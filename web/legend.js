@@ -1,0 +1,76 @@
+// What the server says about a style: the entries of its legend, or what is wrong with it.
+
+import { css_of } from "./colours.js";
+import { element } from "./elements.js";
+import { query_part } from "./tile_query.js";
+
+const LINE = "var(--pattern) 0 1px, transparent 1px 5px";
+const PATTERNS = {
+  hatch: [`repeating-linear-gradient(-45deg, ${LINE})`],
+  crosshatch: [`repeating-linear-gradient(-45deg, ${LINE})`,
+    `repeating-linear-gradient(45deg, ${LINE})`],
+  stripes: ["repeating-linear-gradient(-45deg, var(--pattern) 0 3px, transparent 3px 6px)"],
+  dots: ["radial-gradient(circle, var(--pattern) 1.2px, transparent 1.7px) 0 0 / 5px 5px"],
+  checker: ["conic-gradient(var(--pattern) 25%, transparent 0 50%, var(--pattern) 0 75%, " +
+    "transparent 0) 0 0 / 8px 8px"],
+};
+
+/**
+ * Asks for the legend of one layer in a style, which is also how a style is proved before tiles are
+ * asked for. @returns {entries} or {problem: {detail, parameter}}; neither if there is no answer.
+ */
+export async function ask_legend(base, name, style) {
+  let response;
+  try {
+    response = await fetch(new URL(`legend/${encodeURIComponent(name)}.json${query_part(style)}`,
+      base));
+    const told = await response.json();
+    if (response.ok && Array.isArray(told?.layers?.[0]?.entries)) {
+      return { entries: told.layers[0].entries };
+    }
+    if (response.status >= 400 && response.status < 500) {
+      const detail = String(told?.detail ?? told?.title);
+      return { problem: { detail, parameter: told?.parameter } };
+    }
+  } catch {
+    // The tiles will tell whether the server is there.
+  }
+  return {};
+}
+
+/** One layer of the legend: `entries` of the server, `style` for what they do not tell. */
+export function legend_section(title, entries, style) {
+  const items = entries.map((entry) => {
+    const label = entries.length > 1 ? entry.label : title;
+    return element("li", "", patch_of(entry, style), element("span", "", String(label)));
+  });
+  const list = element("ul", "", ...items);
+  if (entries.length <= 1) return list;
+  return element("section", "", element("h3", "", title), list);
+}
+
+function patch_of(entry, style) {
+  const ink = element("span", "ink");
+  ink.style.background = css_of(String(entry.fill));
+  ink.style.opacity = entry["fill-opacity"];
+  const patch = element("span", "swatch", ink);
+  const pattern = PATTERNS[style.get("pattern")];
+  if (pattern) patch.append(pattern_of(pattern, style));
+  if (entry.stroke) {
+    const width = Math.min(Math.max(entry["stroke-width"], 1), 3);
+    patch.style.border = `${width}px ${line_of(style)} ${css_of(String(entry.stroke))}`;
+  }
+  return patch;
+}
+
+function pattern_of(pattern, style) {
+  const ink = element("span", "ink");
+  ink.style.setProperty("--pattern", css_of(style.get("pattern-color") ?? "000"));
+  ink.style.background = pattern.join(", ");
+  ink.style.opacity = style.get("opacity") ?? 1;
+  return ink;
+}
+
+function line_of(style) {
+  return style.has("stroke-dasharray") ? "dashed" : "solid";
+}

@@ -1,0 +1,55 @@
+// Styles that the server knows by name, and what is usual for a layer: its own style, and over it
+// the named one.
+
+import { SHARED_PARAMETERS } from "./tile_query.js";
+
+// They make sense together only.
+export const CLASS_PARAMETERS = ["color-by", "classes", "breaks", "ramp"];
+
+/** Those of the configuration; [] if the server does not tell. */
+export async function load_style_names(base) {
+  const told = await ask(new URL("styles", base));
+  return Array.isArray(told?.styles) ? told.styles.filter((name) => typeof name === "string") : [];
+}
+
+/** The document of a style; {} for no name, null if the server has none of that name. */
+export async function load_style(base, name) {
+  if (name === undefined) return {};
+  return ask(new URL(`styles/${encodeURIComponent(name)}`, base));
+}
+
+async function ask(url) {
+  try {
+    const response = await fetch(url);
+    return response.ok ? await response.json() : null;
+  } catch {
+    return null;
+  }
+}
+
+/** What holds for a layer of the catalog where nothing else is set: a Map of parameters. */
+export function usual_style(layer, named) {
+  const { layers, ...of_all } = named;
+  const usual = over(parameters_in(layer.style), parameters_in(of_all));
+  return over(usual, parameters_in(layers?.[layer.name]));
+}
+
+/** What a named style sets for all layers alike. */
+export function usual_shared(named) {
+  const all = parameters_in(named);
+  return new Map(SHARED_PARAMETERS.filter((name) => all.has(name)).map((name) =>
+    [name, all.get(name)]));
+}
+
+/** `upper` over `lower`; rules that make classes are taken as a whole or not at all. */
+export function over(lower, upper) {
+  const has_classes = CLASS_PARAMETERS.some((name) => upper.has(name));
+  const kept = [...lower].filter(([name]) => !has_classes || !CLASS_PARAMETERS.includes(name));
+  return new Map([...kept, ...upper]);
+}
+
+function parameters_in(document) {
+  const is_value = (value) => typeof value === "string" || Number.isFinite(value);
+  return new Map(Object.entries(document ?? {}).filter(([, value]) => is_value(value))
+    .map(([name, value]) => [name, String(value).replace(/^#/, "")]));
+}

@@ -1,0 +1,118 @@
+// Controls of single parameters. Each has {parameter, node, builtin, read, show, mark_wrong}: `read`
+// gives the value as the parameter takes it, `show` takes such a value, which may come from an
+// address and is kept as it was written until the user touches the control. `builtin` tells what
+// holds where neither a layer nor a style nor a query says anything; `show` of null shows that.
+
+import { rgb_of } from "./colours.js";
+import { choose, element, input, mark_wrong, select } from "./elements.js";
+
+export function colour_control(parameter, label, builtin, on_change) {
+  const picker = input("color", { "aria-label": label });
+  let value = builtin;
+  const control = {
+    parameter,
+    node: element("label", "row", label, picker),
+    builtin: () => builtin,
+    read: () => value,
+    show: (shown) => {
+      value = shown ?? builtin;
+      picker.value = `#${rgb_of(value)}`;
+    },
+    mark_wrong: (is_wrong) => mark_wrong(picker, is_wrong),
+  };
+  picker.addEventListener("change", () => {
+    value = picker.value.slice(1).toLowerCase();
+    on_change();
+  });
+  return control;
+}
+
+/**
+ * As colour_control, with a box that switches what the colour belongs to on and off; it has
+ * besides {is_on, switch_to}. `first`: colour before one is picked.
+ */
+export function switched_colour_control(parameter, label, first, on_change) {
+  const box = input("checkbox");
+  const colour = colour_control(parameter, `Colour of ${label.toLowerCase()}`, first, on_change);
+  const picker = colour.node.querySelector("input");
+  const control = {
+    ...colour,
+    node: element("div", "row", element("label", "check", box, label), picker),
+    builtin: () => null,
+    is_on: () => box.checked,
+    switch_to: (is_on) => {
+      box.checked = is_on;
+      picker.hidden = !is_on;
+    },
+    mark_wrong: (is_wrong) => mark_wrong(box, is_wrong),
+  };
+  box.addEventListener("change", () => {
+    control.switch_to(box.checked);
+    on_change();
+  });
+  return control;
+}
+
+/** `range`: {min, max, step, builtin: a function that tells the number, format: number to text}. */
+export function number_control(parameter, label, range, on_change) {
+  const { min, max, step, builtin, format } = range;
+  // Else the name would be that of its label, which holds the number, too.
+  const slider = input("range", { min, max, step, "aria-label": label });
+  const told = document.createElement("output");
+  let value = null;
+  const tell = (text) => {
+    told.textContent = format(Number(text));
+    slider.setAttribute("aria-valuetext", format(Number(text)));
+  };
+  const control = {
+    parameter,
+    node: element("label", "row slider", element("span", "", label), slider, told),
+    builtin: () => String(builtin()),
+    read: () => value ?? control.builtin(),
+    show: (shown) => {
+      value = shown;
+      slider.value = control.read();
+      tell(control.read());
+    },
+    refresh: () => control.show(value),
+    mark_wrong: (is_wrong) => mark_wrong(slider, is_wrong),
+  };
+  // A slider being dragged tells its number at once; the map follows on release, since every step
+  // of it would be a screen full of new tiles.
+  slider.addEventListener("input", () => tell(slider.value));
+  slider.addEventListener("change", () => {
+    value = String(Number(slider.value));
+    on_change();
+  });
+  return control;
+}
+
+/** `options`: pairs of value and text; the first is built in. */
+export function choice_control(parameter, label, options, on_change) {
+  const list = select(options);
+  const builtin = options[0][0];
+  list.addEventListener("change", on_change);
+  return {
+    parameter,
+    node: element("label", "row", label, list),
+    builtin: () => builtin,
+    read: () => list.value,
+    show: (shown) => choose(list, shown ?? builtin),
+    mark_wrong: (is_wrong) => mark_wrong(list, is_wrong),
+  };
+}
+
+export function text_control(parameter, label, placeholder, on_change) {
+  const field = input("text", {
+    placeholder, autocomplete: "off", autocapitalize: "off", spellcheck: "false",
+  });
+  field.addEventListener("change", on_change);
+  return {
+    parameter,
+    node: element("label", "row tall", label, field),
+    builtin: () => "",
+    read: () => field.value.trim(),
+    show: (shown) => (field.value = shown ?? ""),
+    mark_wrong: (is_wrong) => mark_wrong(field, is_wrong),
+  };
+}

@@ -1,0 +1,227 @@
+// The style of one layer: a control for every parameter, told apart by what it is for.
+
+import { ClassEditor } from "./class_editor.js";
+import { button, element } from "./elements.js";
+import { CLASS_PARAMETERS, over } from "./named_styles.js";
+import {
+  choice_control, colour_control, number_control, switched_colour_control, text_control,
+} from "./style_controls.js";
+
+const DASHES = [["1,0", "solid"], ["6,4", "dashed"], ["1,3", "dotted"],
+  ["9,3,1,3", "dash and dot"]];
+const PATTERNS = ["none", "hatch", "crosshatch", "stripes", "dots", "checker"];
+const UPRIGHT_PATTERNS = ["dots", "checker"];
+const FIRST_STROKE = "33414f"; // friendlier than what a width alone gives:
+const BUILTIN_STROKE = "000000";
+
+const percent = (number) => `${Math.round(100 * number)}%`;
+const pixels = (number) => `${number} px`;
+const degrees = (number) => `${number}°`;
+
+export class StyleForm {
+  /**
+   * @param layer of the catalog: {name, title, fields}
+   * @param builtin_fill colour where not even the layer has one
+   * @param suggest of the name of a property: values that stand in the view
+   * @param on_change called without arguments when the user has changed something
+   */
+  constructor(layer, builtin_fill, suggest, on_change) {
+    this.on_change_ = on_change;
+    this.usual_ = new Map();
+    this.kept_ = new Map();
+    this.fill = colour_control("fill", `Colour of ${layer.title}`, builtin_fill,
+      () => this.change_());
+    this.make_controls_();
+    this.make_groups_(layer, suggest);
+    this.problem_ = element("p", "problem");
+    this.problem_.setAttribute("role", "alert");
+    this.node = this.make_node_();
+  }
+
+  /** The style as a Map of parameters and values, without those that have their usual value. */
+  read() {
+    const style = new Map(this.kept_);
+    for (const { gate, controls } of this.groups_) {
+      if (gate && !gate.is_on()) {
+        if (gate.is_usually_on()) style.set(...gate.off);
+        continue;
+      }
+      for (const control of gate ? [gate.control, ...controls] : controls) {
+        const { parameter, builtin, read } = control;
+        const usual = this.usual_.get(parameter) ?? builtin();
+        if (read() !== "" && read() !== usual) style.set(parameter, read());
+      }
+    }
+    for (const [parameter, value] of this.changed_classes_()) style.set(parameter, value);
+    return style;
+  }
+
+  /** `style` as read() gives it, over the `usual` one. */
+  show(style, usual) {
+    this.usual_ = usual;
+    const shown = over(usual, style);
+    if (has_outline(shown) && !shown.has("stroke")) shown.set("stroke", BUILTIN_STROKE);
+    const controls = this.controls_();
+    for (const { parameter, show } of controls) show(shown.get(parameter) ?? null);
+    this.stroke_.switch_to(has_outline(shown));
+    this.classes_.show(shown);
+    this.show_gates_();
+    // What has no control here, such as stroke-linejoin of an address, stays as it is.
+    const known = [...controls.map(({ parameter }) => parameter), ...CLASS_PARAMETERS];
+    this.kept_ = new Map([...style].filter(([parameter]) => !known.includes(parameter)));
+    this.show_problem(null);
+  }
+
+  /** What the server found wrong: {detail, parameter}, or null. */
+  show_problem(problem) {
+    this.problem_.remove();
+    this.problem_.textContent = problem?.detail ?? "";
+    if (problem) this.group_of_(problem.parameter).append(this.problem_);
+    for (const { parameter, mark_wrong } of this.controls_()) {
+      mark_wrong(parameter === problem?.parameter);
+    }
+    this.classes_.mark_wrong(problem?.parameter);
+  }
+
+  make_controls_() {
+    const change = () => this.change_();
+    this.stroke_ = switched_colour_control("stroke", "Outline", FIRST_STROKE, () => {
+      // What was off may have had no width.
+      if (this.stroke_.is_on() && Number(this.stroke_width_.read()) === 0) {
+        this.stroke_width_.show(has_outline(this.usual_) ? this.usual_.get("stroke-width") : null);
+      }
+      change();
+    });
+    this.stroke_width_ =
+      number_control("stroke-width", "Width", range(0.25, 8, 0.25, 1, pixels), change);
+    this.pattern_ =
+      choice_control("pattern", "Pattern", PATTERNS.map((name) => [name, name]), change);
+    this.pattern_angle_ = number_control("pattern-angle", "Angle", {
+      min: -90, max: 90, step: 5, format: degrees,
+      builtin: () => (UPRIGHT_PATTERNS.includes(this.pattern_.read()) ? 0 : 45),
+    }, change);
+  }
+
+  make_groups_(layer, suggest) {
+    const change = () => this.change_();
+    const fields = (Array.isArray(layer.fields) ? layer.fields : [])
+      .filter((field) => typeof field?.name === "string");
+    this.classes_ = new ClassEditor(fields, suggest, change);
+    this.groups_ = [
+      {
+        name: "Fill",
+        controls: [
+          this.fill,
+          number_control("fill-opacity", "Fill opacity", range(0, 1, 0.05, 1, percent), change),
+          number_control("opacity", "Opacity", range(0, 1, 0.05, 1, percent), change),
+        ],
+      },
+      {
+        name: "Outline",
+        gate: {
+          control: this.stroke_,
+          is_on: this.stroke_.is_on,
+          is_usually_on: () => has_outline(this.usual_),
+          off: ["stroke-width", "0"],
+        },
+        controls: [
+          this.stroke_width_,
+          choice_control("stroke-dasharray", "Dashes", DASHES, change),
+          number_control("stroke-opacity", "Line opacity", range(0, 1, 0.05, 1, percent), change),
+        ],
+      },
+      {
+        name: "Pattern",
+        gate: {
+          control: this.pattern_,
+          is_on: () => this.pattern_.read() !== "none",
+          is_usually_on: () => (this.usual_.get("pattern") ?? "none") !== "none",
+          off: ["pattern", "none"],
+        },
+        controls: [
+          colour_control("pattern-color", "Colour of pattern", "000000", change),
+          number_control("pattern-size", "Size", range(2, 32, 1, 8, pixels), change),
+          this.pattern_angle_,
+        ],
+      },
+      {
+        name: "Features",
+        controls: [text_control("filter", "Filter", example_filter(fields[0]), change)],
+      },
+    ];
+  }
+
+  make_node_() {
+    for (const group of this.groups_) {
+      // The colour of the fill is shown beside the name of the layer.
+      const shown = [group.gate?.control, ...group.controls]
+        .filter((control) => control && control !== this.fill);
+      group.node = fieldset(group.name, ...shown.map(({ node }) => node));
+    }
+    const reset = button("Back to the usual style");
+    reset.addEventListener("click", () => {
+      this.show(new Map(), this.usual_);
+      this.on_change_();
+    });
+    this.class_group_ = fieldset("Classes", this.classes_.node);
+    const [fill, ...others] = this.groups_.map(({ node }) => node);
+    return element("div", "style-form", fill, this.class_group_, ...others, reset);
+  }
+
+  /** Pairs of parameter and value; none if the classes are the usual ones. */
+  changed_classes_() {
+    const pairs = this.classes_.read();
+    const usual = CLASS_PARAMETERS.filter((name) => this.usual_.has(name));
+    const is_usual = pairs.length === usual.length &&
+      pairs.every(([name, value]) => this.usual_.get(name) === value);
+    if (is_usual) return [];
+    if (pairs.length > 0) return pairs;
+    // No classes where there usually are some: one for all features.
+    return [["color-by", this.usual_.get("color-by")], ["classes", `*:${this.fill.read()}`]];
+  }
+
+  controls_() {
+    return this.groups_.flatMap(({ gate, controls }) =>
+      (gate ? [gate.control, ...controls] : controls));
+  }
+
+  /** Where the parameter is set; the last group if it has no control. */
+  group_of_(parameter) {
+    if (CLASS_PARAMETERS.includes(parameter)) return this.class_group_;
+    const found = this.groups_.find(({ gate, controls }) =>
+      [gate?.control, ...controls].some((control) => control?.parameter === parameter));
+    return (found ?? this.groups_.at(-1)).node;
+  }
+
+  show_gates_() {
+    for (const { gate, controls } of this.groups_) {
+      for (const { node } of controls) if (gate) node.hidden = !gate.is_on();
+    }
+  }
+
+  change_() {
+    this.pattern_angle_.refresh(); // as it may depend on the pattern
+    this.show_gates_();
+    this.on_change_();
+  }
+}
+
+function range(min, max, step, builtin, format) {
+  return { min, max, step, builtin: () => builtin, format };
+}
+
+function has_outline(style) {
+  if (!style.has("stroke") && !style.has("stroke-width")) return false;
+  return Number(style.get("stroke-width") ?? 1) > 0;
+}
+
+function example_filter(field) {
+  if (!field) return "";
+  return field.type === "string" ? `${field.name} = 'value'` : `${field.name} > 10`;
+}
+
+function fieldset(name, ...children) {
+  const made = element("fieldset", "", ...children);
+  made.setAttribute("aria-label", name);
+  return made;
+}
