@@ -222,13 +222,17 @@ class Viewer {
     this.shared_ = view.shared;
     this.compare_ = view.compare;
     this.at_ = view.at;
-    this.states_ = this.layers_.map(({ name }) => ({
-      is_on: view.on === null || view.on.includes(name),
-      style: view.styles.get(name) ?? new Map(), // as it stands in the panel
-      drawn: null, // the last style that the server took
-      entries: [], // of its legend
-      usual: new Map(), // what holds where the style says nothing
-    }));
+    this.states_ = this.layers_.map(({ name }, i) => {
+      const style = view.styles.get(name) ?? new Map();
+      return {
+        is_on: view.on === null || view.on.includes(name),
+        style, // as it stands in the panel
+        // The last style that the server took; what sets nothing is right.
+        drawn: style.size === 0 ? style : (this.states_?.[i].drawn ?? null),
+        entries: [], // of its legend
+        usual: new Map(), // what holds where the style says nothing
+      };
+    });
     this.show_usual_();
     this.states_.forEach((_, i) => this.prove_style_(i));
     if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
@@ -427,10 +431,11 @@ class Viewer {
 
   // ---- the address
 
-  read_address_() {
+  async read_address_() {
     const view = parse_hash(location.hash);
-    this.show_view_(view);
-    if (view.place) this.go_to_(view.place);
+    await this.show_view_(view);
+    // Moving writes the address: of this view, unless another has come meanwhile.
+    if (view.place && this.view_ === view) this.go_to_(view.place);
   }
 
   /** Says only what differs from the defaults, and makes no step in the history. */
