@@ -104,8 +104,8 @@ void Service::open_server(const Config& config) {
         site_->handle(request, std::move(respond));
       },
       [this](const Answered& answered) { observe(answered); });
-  spdlog::info("listening on {} port {}, {} I/O threads", config.server.address, server_->port(),
-               config.server.threads);
+  where_.push_back(fmt::format("listening on {} port {}, {} I/O threads", config.server.address,
+                               server_->port(), config.server.threads));
 }
 
 void Service::open_admin(const Config& config) {
@@ -121,8 +121,8 @@ void Service::open_admin(const Config& config) {
                                         [this](const HttpRequest& request, const Respond& respond) {
                                           respond(admin_site_->answer(request));
                                         });
-  spdlog::info("for those who run the server: listening on {} port {} too", config.admin.address,
-               admin_->port());
+  where_.push_back(fmt::format("for those who run the server: listening on {} port {} too",
+                               config.admin.address, admin_->port()));
 }
 
 void Service::act_on_signals() {
@@ -133,7 +133,9 @@ void Service::act_on_signals() {
   });
 }
 
+// Told only now, as who reads it may send a signal at once.
 void Service::run() {
+  for (const std::string& line : where_) spdlog::info("{}", line);
   // As long as the other, to be watched while it ends.
   std::thread admin;
   if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });

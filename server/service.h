@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/access_log.h"
 #include "server/admin_site.h"
@@ -60,6 +61,7 @@ class Service {
   TileCache cache_;
   std::unique_ptr<TileService> tiles_;
   std::unique_ptr<Site> site_;
+  std::vector<std::string> where_;  // it listens, for the log
   std::unique_ptr<HttpServer> server_;
   std::unique_ptr<AdminSite> admin_site_;  // these two are null if there is no admin address
   std::unique_ptr<HttpServer> admin_;
