@@ -291,8 +291,10 @@ for (const map of raced) gnuplot(plotViews(map, folder))
 if (raced.length > 0) gnuplot(plotStages(raced, folder))
 if (report.growth.length > 0) gnuplot(plotGrowth(report.growth, folder))
 writeFileSync(join(bench, 'RESULTS.md'), page().replace(/\n{3,}/g, '\n\n').trimEnd() + '\n')
-writeFileSync(join(folder, 'summary.json'), JSON.stringify(summary(), roundNumbers, 1) + '\n')
+writeFileSync(join(folder, 'summary.json'), JSON.stringify(summary(), portable, 1) + '\n')
 
-function roundNumbers(key, value) {
+// Where the files lie is of this machine only.
+function portable(key, value) {
+  if (key === 'file') return basename(value)
   return typeof value === 'number' && !Number.isInteger(value) ? Number(value.toPrecision(4)) : value
 }
