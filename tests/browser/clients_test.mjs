@@ -6,7 +6,7 @@ import { extname, join, normalize } from "node:path";
 import test, { after, before } from "node:test";
 
 import {
-  HERE, WEB, new_page, save_screenshot, start_browser, start_server,
+  HERE, WEB, new_page, save_screenshot, start_browser_and_server,
 } from "./served_viewer.mjs";
 
 const SIZE = 512;
@@ -29,21 +29,17 @@ const TYPES = {
 };
 
 // WebGL without a GPU.
-const browser = await start_browser(["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]);
-let server;
+const { browser, server } = await start_browser_and_server(
+  ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+);
 let pages;
 
 before(async () => {
-  server = await start_server();
   pages = createServer(answer);
   await new Promise((resolve) => pages.listen(0, "127.0.0.1", resolve));
 });
 
-after(async () => {
-  await browser.close();
-  pages?.close();
-  assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
-});
+after(() => pages?.close());
 
 async function answer(request, response) {
   const { pathname } = new URL(request.url, "http://localhost");

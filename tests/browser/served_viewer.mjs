@@ -6,6 +6,7 @@ import { createRequire } from "node:module";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
+import { after } from "node:test";
 import { fileURLToPath } from "node:url";
 
 export const HERE = dirname(fileURLToPath(import.meta.url));
@@ -85,7 +86,7 @@ async function wait_until_ready(base, server) {
 }
 
 /** Starts the server on a free port; the result is closed with `close`. */
-export async function start_server() {
+async function start_server() {
   const binary = process.env.TRAPEZE_BINARY;
   if (!binary) throw new Error("TRAPEZE_BINARY must name the program to test");
   const folder = mkdtempSync(join(tmpdir(), "trapeze-viewer-"));
@@ -121,7 +122,7 @@ export async function start_server() {
 }
 
 /** `options` are further ones of Chromium's command line. */
-export async function start_browser(options = []) {
+async function start_browser(options) {
   const { chromium } = load_playwright();
   if (!existsSync(CHROMIUM)) skip(`${CHROMIUM} is not installed; run script/bootstrap`);
   return chromium.launch({
@@ -130,6 +131,18 @@ export async function start_browser(options = []) {
       "--disable-background-networking", "--disable-component-update", "--disable-sync",
       ...options],
   });
+}
+
+/** Both, closed when the tests of the file have ended; the server must then end in order. */
+export async function start_browser_and_server(options = []) {
+  const browser = await start_browser(options);
+  let server;
+  after(async () => {
+    await browser.close();
+    assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
+  });
+  server = await start_server();
+  return { browser, server };
 }
 
 export const DESKTOP = { viewport: { width: 1280, height: 800 } };

@@ -1,25 +1,15 @@
 // What lies under a click is told and highlighted.
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
+import test from "node:test";
 
 import {
   PHONE, assert_nothing_went_wrong, hash_of, new_page, pixels_of_colour, save_screenshot,
-  start_browser, start_server, tiles_drawn,
+  start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 const HIGHLIGHT = [0xff, 0xcc, 0x00];
 
-const browser = await start_browser();
-let server;
-
-before(async () => {
-  server = await start_server();
-});
-
-after(async () => {
-  await browser.close();
-  assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
-});
+const { browser, server } = await start_browser_and_server();
 
 async function open(hash, options = undefined) {
   const { page, seen } = await new_page(browser, options);

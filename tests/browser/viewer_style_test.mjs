@@ -1,25 +1,15 @@
 // Every control of the viewer changes the tiles that it asks for, and the address keeps it.
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
+import test from "node:test";
 
 import {
   PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour, save_screenshot,
-  shown_tiles, start_browser, start_server, tiles_drawn,
+  shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 const FAILED_RESOURCE = /^Failed to load resource/; // said of every answer that is not 2xx
 
-const browser = await start_browser();
-let server;
-
-before(async () => {
-  server = await start_server();
-});
-
-after(async () => {
-  await browser.close();
-  assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
-});
+const { browser, server } = await start_browser_and_server();
 
 /** A page with the panel and the style of the layer "Land" unfolded. */
 async function open(hash = "#5/46/10", options = undefined) {

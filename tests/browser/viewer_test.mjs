@@ -1,26 +1,16 @@
 // The viewer in a headless Chromium, against a running server.
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
+import test from "node:test";
 
 import {
   PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour, save_screenshot,
-  shown_tiles, start_browser, start_server, tiles_drawn,
+  shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 // Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
 const FAILED_RESOURCE = /^Failed to load resource/;
 
-const browser = await start_browser();
-let server;
-
-before(async () => {
-  server = await start_server();
-});
-
-after(async () => {
-  await browser.close();
-  assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
-});
+const { browser, server } = await start_browser_and_server();
 
 async function open(hash = "", options = undefined) {
   const { page, seen } = await new_page(browser, options);
