@@ -8,8 +8,6 @@
 namespace trapeze {
 namespace {
 
-constexpr double kSmallestArea = 0.5;  // cells squared
-
 std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixel) {
   const auto number = [pixel](double v) {
     return static_cast<std::uint64_t>(std::max(0.0, (v - kGridMin) / pixel)) & 0xfffffff;
@@ -58,7 +56,7 @@ void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, do
   std::sort(keys_.begin(), keys_.end());
   for (const std::uint64_t key : keys_) {
     const Sum& sum = sums_[key];
-    if (std::abs(sum.area) < kSmallestArea) continue;
+    if (std::abs(sum.area) < kSmallestMote) continue;
     const double x = sum.x / sum.weight;
     const double y = sum.y / sum.weight;
     motes.push_back({within_pixel(box_of_mote(x, y, std::abs(sum.area)), x, y, pixel),

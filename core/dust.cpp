@@ -8,8 +8,6 @@
 namespace trapeze {
 namespace {
 
-constexpr double kSmallestArea = 0.5;  // cells squared
-
 std::uint64_t spread_bits(std::uint64_t v) {
   v = (v | v << 16) & 0x0000ffff0000ffffull;
   v = (v | v << 8) & 0x00ff00ff00ff00ffull;
@@ -118,7 +116,7 @@ class Settling {
   }
 
   void keep_if_seen(const Mote& m) {
-    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestArea) {
+    if (m.lifespan.born < m.lifespan.dies && std::abs(m.area) >= kSmallestMote) {
       settled_.push_back(m);
     }
   }

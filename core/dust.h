@@ -29,6 +29,9 @@ struct Mote {
 /// The side of a pixel, in cells, whose default tolerance is that of the level.
 double pixel_of_level(Level level);
 
+/// Motes of less are left out, in cells squared.
+constexpr double kSmallestMote = 0.5;
+
 /// Calls visit(x, y, area) for the motes of a loop of that area, laid out along the segment that
 /// was left of it: one a pixel of so many cells.
 template <typename Visit>

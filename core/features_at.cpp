@@ -30,13 +30,11 @@ std::vector<std::uint32_t> features_at(const Layer& layer, Point point, Level le
   layer.select({around(point), level, kLastLevel, SmallPolygons::drop}, ranges);
   const MeshView& mesh = layer.mesh();
   std::vector<std::uint32_t> rows;
-  for (const TrapezoidRange& range : ranges) {
-    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-      if (!holds_point(mesh, mesh.trapezoids[i], point)) continue;
-      const std::uint32_t row = layer.feature_of(i);
-      if (row != Layer::kNoFeature) rows.push_back(row);
-    }
-  }
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    if (!holds_point(mesh, mesh.trapezoids[i], point)) return;
+    const std::uint32_t row = layer.feature_of(i);
+    if (row != Layer::kNoFeature) rows.push_back(row);
+  });
   std::ranges::sort(rows);
   rows.erase(std::ranges::unique(rows).begin(), rows.end());
   return rows;

@@ -59,14 +59,12 @@ void Layer::small_polygons(const Selection& selection, std::vector<Box>& places)
   std::vector<TrapezoidRange> ranges;
   select_dust(selection, ranges);
   const MeshView& mesh = contents_->view;
-  for (const TrapezoidRange& range : ranges) {
-    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-      const MeshTrapezoid& t = mesh.trapezoids[i];
-      const bool is_hole =
-          mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
-      if (!is_hole) places.push_back(box_of(mesh, t));
-    }
-  }
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const MeshTrapezoid& t = mesh.trapezoids[i];
+    const bool is_hole =
+        mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
+    if (!is_hole) places.push_back(box_of(mesh, t));
+  });
 }
 
 const Layer& Layer::without_topology_test() const {

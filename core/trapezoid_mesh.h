@@ -60,4 +60,12 @@ struct TrapezoidRange {
   friend constexpr bool operator==(const TrapezoidRange&, const TrapezoidRange&) = default;
 };
 
+/// Calls visit(trapezoid), its number, for every one of the ranges.
+template <typename Visit>
+void for_each_trapezoid(std::span<const TrapezoidRange> ranges, const Visit& visit) {
+  for (const TrapezoidRange& range : ranges) {
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) visit(i);
+  }
+}
+
 }  // namespace trapeze

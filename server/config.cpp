@@ -319,7 +319,7 @@ class ConfigReader {
 
   void read_named_style(const std::string& name, const toml::node& node) {
     const toml::table* table = node.as_table();
-    if (!is_style_name(name) || name == StyleBook::kDefaultName || table == nullptr) {
+    if (!is_url_name(name) || name == StyleBook::kDefaultName || table == nullptr) {
       return fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name of "
                                     "1 to 64 letters, digits, '_' or '-' other than \"{}\"",
                                     StyleBook::kDefaultName));
@@ -415,9 +415,9 @@ std::string variable_of(const Setting<Config>& setting) {
 std::string layer_name_of_file(const std::string& file) {
   std::filesystem::path path(file);
   if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
-  std::string name = path.stem().string().substr(0, kMaxLayerNameLength);
+  std::string name = path.stem().string().substr(0, kMaxUrlNameLength);
   for (char& c : name) {
-    if (!is_layer_name(std::string_view(&c, 1))) c = '_';
+    if (!is_url_name(std::string_view(&c, 1))) c = '_';
   }
   return name.empty() ? "layer" : name;
 }

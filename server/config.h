@@ -19,7 +19,7 @@
 namespace trapeze {
 
 struct LayerConfig {
-  std::string name;      // is_layer_name() holds
+  std::string name;      // is_url_name() holds
   std::string file;      // empty only if `prepared` is set
   std::string prepared;  // a prepared file of it, which is served in its place; may be empty
   std::string title;     // the name if not set
@@ -93,7 +93,7 @@ struct Config {
   LimitsConfig limits;
   LogConfig log;
   AdminConfig admin;
-  std::map<std::string, StyleQuery> styles;  // by name, for which is_style_name() holds
+  std::map<std::string, StyleQuery> styles;  // by name, for which is_url_name() holds
   std::vector<LayerConfig> layers;           // names are unique
 };
 

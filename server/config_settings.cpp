@@ -406,7 +406,7 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "name", [](auto& layer) -> auto& { return layer.name; },
           "1 to 64 letters, digits, '_' or '-'",
           [](const std::string& name) {
-            return is_layer_name(name) ? std::optional(name) : std::nullopt;
+            return is_url_name(name) ? std::optional(name) : std::nullopt;
           },
           same, "the layer as it appears in URLs"),
       path<LayerConfig>(

@@ -148,10 +148,7 @@ std::optional<FilterLiteral> parse_number(std::string_view text) {
 std::string text_of_literal(const FilterLiteral& literal) {
   if (const auto* integer = std::get_if<std::int64_t>(&literal)) return fmt::format("{}", *integer);
   if (const auto* real = std::get_if<double>(&literal)) return fmt::format("{}", *real);
-  std::string quoted = "'";
-  for (const char c : std::get<std::string>(literal))
-    quoted += c == '\'' ? "''" : std::string(1, c);
-  return quoted + "'";
+  return single_quoted(std::get<std::string>(literal));
 }
 
 std::string text_of_name(const std::string& name) {
@@ -620,6 +617,12 @@ BoundFilter::Truth BoundFilter::evaluate_any(const Node& node, std::uint32_t row
     if (truth == Truth::yes) break;
   }
   return truth;
+}
+
+std::string single_quoted(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + "'";
 }
 
 Problem unknown_property(std::string_view parameter, const std::string& property,

@@ -101,6 +101,9 @@ class BoundFilter {
   Node root_;
 };
 
+/// The text in single quotes; a quote in it is written twice.
+std::string single_quoted(std::string_view text);
+
 /// The problem of a parameter that names a property which the layer has not.
 Problem unknown_property(std::string_view parameter, const std::string& property,
                          const FeatureTable& features);

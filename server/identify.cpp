@@ -88,7 +88,8 @@ Level level_of(const IdentifyRequest& request, const LayerConfig& layer) {
   if (!request.zoom) return 0;
   const double cells_per_pixel =
       static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
-  return nearest_level(tolerance_in_pixels(request.style, layer) * cells_per_pixel);
+  const StyleQuery query = request.style.with_defaults(layer.name, layer.style);
+  return nearest_level(tolerance_in_pixels(query, layer.name) * cells_per_pixel);
 }
 
 bool is_drawn(const IdentifyRequest& request, const LayerConfig& config) {

@@ -7,11 +7,6 @@
 namespace trapeze {
 namespace {
 
-const Layer& painted_layer(const TilePlan& plan, const LayerPaint& paint) {
-  const Layer& layer = *plan.dataset->layers()[paint.layer].layer;
-  return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
-}
-
 /// At least `side` cells wide and high, around the same middle.
 Box widened(const Box& box, std::int64_t side) {
   const auto widen = [side](std::int32_t& min, std::int32_t& max) {
@@ -37,13 +32,6 @@ Box with_margin(const Box& box, double margin) {
   };
   return {cell(box.min_x - cells), cell(box.min_y - cells), cell(box.max_x + cells),
           cell(box.max_y + cells)};
-}
-
-template <typename Visit>
-void for_each_trapezoid(std::span<const TrapezoidRange> ranges, const Visit& visit) {
-  for (const TrapezoidRange& range : ranges) {
-    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) visit(i);
-  }
 }
 
 /// To ranges in ascending order.
@@ -77,7 +65,7 @@ void LayerDrawing::ClassDrawing::add_place(const Box& place, bool is_hole) {
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
                           const FeatureClasses* classes, DrawingTools& tools) {
   paint_ = &paint;
-  layer_ = &painted_layer(plan, paint);
+  layer_ = &plan.layer_of(paint);
   class_count_ = 0;
   line_count_ = 0;
   by_number_.assign(style().paints.size(), nullptr);

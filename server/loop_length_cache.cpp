@@ -19,13 +19,11 @@ std::vector<LoopEdge> measure(const Layer& layer, Level level, std::uint32_t row
   const MeshView& mesh = layer.mesh();
   std::vector<std::uint32_t> edges;
   const auto add = [&](const std::vector<TrapezoidRange>& ranges) {
-    for (const TrapezoidRange& range : ranges) {
-      for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-        if (layer.feature_of(i) != row) continue;
-        edges.push_back(mesh.trapezoids[i].left);
-        edges.push_back(mesh.trapezoids[i].right);
-      }
-    }
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      if (layer.feature_of(i) != row) return;
+      edges.push_back(mesh.trapezoids[i].left);
+      edges.push_back(mesh.trapezoids[i].right);
+    });
   };
   std::vector<TrapezoidRange> ranges;
   layer.select({box, level, kLastLevel, SmallPolygons::drop}, ranges);

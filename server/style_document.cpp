@@ -22,10 +22,7 @@ Problem wrong(std::string detail, std::string parameter = {}, std::string takes 
 }
 
 std::string class_value_text(std::string_view text) {
-  if (text == "*" || text == "null") return std::string(text);
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-  return result + "'";
+  return text == "*" || text == "null" ? std::string(text) : single_quoted(text);
 }
 
 /// As the value is written in a query; nothing for what has no place there.
@@ -104,7 +101,7 @@ class DocumentReader {
         (!layer.empty() && !parameter->is_per_layer)) {
       return unknown(name, layer);
     }
-    if (!layer.empty() && !is_layer_name(layer)) {
+    if (!layer.empty() && !is_url_name(layer)) {
       return wrong(fmt::format("\"{}\" cannot name a layer.", layer), "layers", "layer names");
     }
     auto text = value_text(*parameter, value);

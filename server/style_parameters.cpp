@@ -381,10 +381,7 @@ std::string format_class(const ColourClass& colour_class) {
   const std::string& value = colour_class.value;
   const bool is_plain = !value.empty() && value != "*" && value != "null" &&
                         value.find_first_of("',:") == std::string::npos;
-  if (is_plain) return value + ":" + colour;
-  std::string quoted = "'";
-  for (const char c : value) quoted += c == '\'' ? "''" : std::string(1, c);
-  return quoted + "':" + colour;
+  return (is_plain ? value : single_quoted(value)) + ":" + colour;
 }
 
 /// Calls `format` with each of the items, and puts commas between.
@@ -503,7 +500,7 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
     case Type::filter:
       return parse_filter(text);
     case Type::style:
-      if (is_style_name(text)) return std::string(text);
+      if (is_url_name(text)) return std::string(text);
       break;
   }
   return std::nullopt;
@@ -552,14 +549,6 @@ std::string describe_values(const StyleParameter& parameter) {
       return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
   }
   return {};
-}
-
-bool is_style_name(std::string_view name) {
-  constexpr std::size_t kMaxLength = 64;
-  return !name.empty() && name.size() <= kMaxLength && std::ranges::all_of(name, [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-           c == '-';
-  });
 }
 
 OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,

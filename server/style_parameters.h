@@ -120,9 +120,6 @@ struct StyleSetting {
   ParameterValue value;
 };
 
-/// Whether `name` can name a style: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
-bool is_style_name(std::string_view name);
-
 /// The style that a query asks for: settings in the order (layer, parameter), each at most once.
 /// Named styles have been put in place of their names before (see style_book.h).
 class StyleQuery {

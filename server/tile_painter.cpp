@@ -19,11 +19,6 @@ constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 150};
 constexpr Rgba kVertexColour{0xc0, 0x20, 0x20, 255};
 constexpr Rgba kBorderColour{0x70, 0x20, 0x90, 255};
 
-const Layer& painted_layer(const TilePlan& plan, const LayerPaint& paint) {
-  const Layer& layer = *plan.dataset->layers()[paint.layer].layer;
-  return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
-}
-
 }  // namespace
 
 TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer,
@@ -128,7 +123,7 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   const Stopwatch stopwatch(tile.times.encode_ms);
   if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
   tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
-                         : std::make_shared<const std::string>(encode(plan.format));
+                           : std::make_shared<const std::string>(encode(plan.format));
   return tile;
 }
 
@@ -162,7 +157,7 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
   spread_palette(picture);
   for (const LayerPaint& paint : plan.layers) {
-    const Layer& layer = painted_layer(plan, paint);
+    const Layer& layer = plan.layer_of(paint);
     std::vector<TrapezoidRange> ranges;
     layer.select({view.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
     if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);

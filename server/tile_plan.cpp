@@ -17,8 +17,9 @@ double cells_per_pixel(const TileId& tile, int scale) {
   return static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
 }
 
-Level level_of_layer(const TileRequest& request, const LayerConfig& config) {
-  return nearest_level(tolerance_in_pixels(request.style, config) *
+Level level_of_layer(const TileRequest& request, const StyleQuery& query,
+                     const std::string& layer) {
+  return nearest_level(tolerance_in_pixels(query, layer) *
                        cells_per_pixel(request.tile, request.scale));
 }
 
@@ -44,6 +45,11 @@ DebugMarks debug_marks(const StyleQuery& query) {
 }
 
 }  // namespace
+
+const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
+  const Layer& layer = *dataset->layers()[paint.layer].layer;
+  return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
+}
 
 Level TilePlan::pixel_level() const {
   return nearest_level(cells_per_pixel(tile, scale) / 4);
@@ -71,9 +77,8 @@ std::string entity_tag_of(std::string_view key) {
   return fmt::format("\"{:016x}\"", hash.value());
 }
 
-double tolerance_in_pixels(const StyleQuery& query, const LayerConfig& config) {
-  const auto value =
-      query.with_defaults(config.name, config.style).value_for(config.name, ParameterId::simplify);
+double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {
+  const auto value = query.value_for(layer, ParameterId::simplify);
   return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
@@ -93,10 +98,10 @@ OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const 
     if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
     const LayerConfig& config = served.config;
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
-    const StyleQuery query = request.style.with_defaults(name, config.style);
     if (!std::get<LayerStyle>(style).is_visible() && !plan.debug.any()) continue;
+    const StyleQuery query = request.style.with_defaults(name, config.style);
     plan.layers.push_back({*layer, std::get<LayerStyle>(std::move(style)),
-                           level_of_layer(request, config), topology_of_layer(query, name),
+                           level_of_layer(request, query, name), topology_of_layer(query, name),
                            small_of_layer(query, name)});
   }
   return plan;

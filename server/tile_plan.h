@@ -49,6 +49,9 @@ struct TilePlan {
   DebugMarks debug = {};
   TileFormat format = TileFormat::png;
 
+  /// What the paint is for, made with or without the topological consistency test as it says; the
+  /// first to ask for one without it waits until it is made.
+  const Layer& layer_of(const LayerPaint& paint) const;
   /// The level of a quarter of a pixel of the picture.
   Level pixel_level() const;
   /// Equal for plans that give the same picture with the same program, however the requests were
@@ -63,7 +66,8 @@ std::string entity_tag_of(std::string_view key);
 /// The problem is 404 for a layer that is not in the dataset.
 OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
-/// How far the drawn boundary of the layer may be from the true one.
-double tolerance_in_pixels(const StyleQuery& query, const LayerConfig& config);
+/// How far the drawn boundary of the layer may be from the true one. The query has the layer's own
+/// defaults in it.
+double tolerance_in_pixels(const StyleQuery& query, const std::string& layer);
 
 }  // namespace trapeze

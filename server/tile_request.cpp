@@ -79,20 +79,12 @@ std::string_view content_type_of(TileFormat format) {
   return format == TileFormat::webp ? "image/webp" : "image/png";
 }
 
-bool is_layer_name(std::string_view name) {
-  return !name.empty() && name.size() <= kMaxLayerNameLength &&
-         std::ranges::all_of(name, [](char c) {
-           return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-                  c == '-';
-         });
-}
-
 OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
   std::vector<std::string> layers;
   while (true) {
     const std::size_t comma = std::min(list.find(','), list.size());
     const std::string_view name = list.substr(0, comma);
-    if (!is_layer_name(name)) {
+    if (!is_url_name(name)) {
       return Problem{400,
                      "The path names layers by 1 to 64 letters, digits, '_' or '-' each, "
                      "separated by commas.",

@@ -15,11 +15,7 @@ namespace trapeze {
 
 constexpr std::size_t kMaxTargetLength = 4096;  // bytes of path and query together
 constexpr std::size_t kMaxLayersPerTile = 16;
-constexpr std::size_t kMaxLayerNameLength = 64;
 constexpr int kMaxScale = 4;
-
-/// Whether `name` can name a layer: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
-bool is_layer_name(std::string_view name);
 
 enum class TileFormat : std::uint8_t { png, webp };
 

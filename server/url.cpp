@@ -133,6 +133,12 @@ std::optional<std::vector<QueryPair>> decode_query(std::string_view query) {
   return pairs;
 }
 
+bool is_url_name(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxUrlNameLength && std::ranges::all_of(name, [](char c) {
+    return is_alphanumeric(c) || c == '_' || c == '-';
+  });
+}
+
 bool is_allowed_host(std::string_view host, std::span<const std::string> allowed) {
   const std::string name = to_lower(host);
   return std::ranges::any_of(allowed, [&name](const std::string& entry) {

@@ -37,6 +37,11 @@ using QueryPair = std::pair<std::string, std::string>;
 /// left out. Nothing if one is malformed.
 std::optional<std::vector<QueryPair>> decode_query(std::string_view query);
 
+constexpr std::size_t kMaxUrlNameLength = 64;
+
+/// Whether `name` can stand for a layer or a style in a URL: 1 to 64 of A-Z, a-z, 0-9, '_' and '-'.
+bool is_url_name(std::string_view name);
+
 /// Whether `host` can be the Host of an absolute URL: a name, an IPv4 or a bracketed IPv6 address,
 /// with or without a port.
 bool is_valid_host(std::string_view host);

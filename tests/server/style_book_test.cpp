@@ -56,7 +56,7 @@ TEST(StyleBookTest, EqualStylesHaveOneIdEverywhere) {
   const std::string id = std::get<std::string>(one.post(testing::style_of("fill=red&stroke=f00")));
   EXPECT_EQ(std::get<std::string>(two.post(testing::style_of("stroke=red&fill=ff0000ff"))), id);
   EXPECT_NE(std::get<std::string>(two.post(testing::style_of("fill=red"))), id);
-  EXPECT_TRUE(is_style_name(id));
+  EXPECT_TRUE(is_url_name(id));
   ASSERT_NE(one.find(id), nullptr);
   EXPECT_EQ(one.find(id)->canonical_text(), "fill=ff0000ff&stroke=ff0000ff");
   EXPECT_EQ(one.find("0123456789abcdef"), nullptr);
