@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -44,24 +45,14 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
   const std::size_t count = graph.corners().size();
   weights_.assign(count, std::numeric_limits<double>::quiet_NaN());
   order_.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isnan(weights_[CornerId(i)])) continue;
-    ring_.clear();
-    ring_corners_.clear();
-    CornerId c(i);
-    do {
-      ring_.push_back(graph.point(graph.corner(c).vertex));
-      ring_corners_.push_back(c);
-      c = graph.corner(c).next;
-    } while (c != CornerId(i));
-    const auto ring_weights = ring_weights_.weigh(ring_, options.weights);
-    for (std::size_t k = 0; k < ring_.size(); ++k) {
-      weights_[ring_corners_[k]] = ring_weights[k];
-      if (!std::isfinite(ring_weights[k])) continue;
-      const CornerId corner = ring_corners_[k];
-      order_.push_back({ring_weights[k], graph.corner(corner).vertex, corner});
-    }
+  for (std::size_t i = 0; i < count && graph.is_coverage(); ++i) {
+    const Corner& corner = graph.corner(CornerId(i));
+    if (corner.is_end() && corner.prev.is_none()) weigh_arc(CornerId(i));
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::isnan(weights_[CornerId(i)])) weigh_loop(CornerId(i));
+  }
+  if (graph.is_coverage()) add_regions();
   std::sort(order_.begin(), order_.end());
   position_ = 0;
   epsilon_ = 0;
@@ -73,66 +64,187 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
   counts_ = {};
 }
 
-std::optional<CornerId> PriorityStack::next_candidate() {
-  if (!retries_.empty()) {
-    std::pop_heap(retries_.begin(), retries_.end(), std::greater<>());
-    const CornerId c = retries_.back().corner;
-    retries_.pop_back();
-    return c;
+void PriorityStack::weigh_loop(CornerId first) {
+  ring_.clear();
+  ring_corners_.clear();
+  CornerId c = first;
+  do {
+    ring_.push_back(graph_->point(graph_->corner(c).vertex));
+    ring_corners_.push_back(c);
+    c = graph_->corner(c).next;
+  } while (c != first);
+  add_candidates(ring_weights_.weigh(ring_, options_.weights));
+}
+
+void PriorityStack::weigh_arc(CornerId first) {
+  ring_.clear();
+  ring_corners_.clear();
+  for (CornerId c = first; !c.is_none(); c = graph_->corner(c).next) {
+    ring_.push_back(graph_->point(graph_->corner(c).vertex));
+    ring_corners_.push_back(c);
   }
-  if (position_ == order_.size()) return std::nullopt;
+  add_candidates(ring_weights_.weigh_arc(ring_, options_.weights));
+}
+
+void PriorityStack::add_candidates(std::span<const double> weights) {
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const CornerId corner = ring_corners_[k];
+    weights_[corner] = weights[k];
+    if (!std::isfinite(weights[k])) continue;
+    order_.push_back({weights[k], graph_->corner(corner).vertex, corner});
+  }
+}
+
+void PriorityStack::add_regions() {
+  borders_.assign(*graph_);
+  region_weights_.clear();
+  for (std::size_t i = 0; i < borders_.count(); ++i) {
+    const double weight = borders_.weight(RegionId(i));
+    region_weights_.push_back(weight);
+    if (std::isfinite(weight)) order_.push_back({weight, {}, corner_for(RegionId(i))});
+  }
+  is_dissolved_.assign(weights_.size(), false);
+}
+
+std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
+  // What is due already goes before what is yet to come.
+  const bool has_more = position_ < order_.size();
+  if (!retries_.empty() &&
+      (retries_.front().weight <= epsilon_ || !has_more || retries_.front() < order_[position_])) {
+    std::pop_heap(retries_.begin(), retries_.end(), std::greater<>());
+    const Candidate next = retries_.back();
+    retries_.pop_back();
+    epsilon_ = std::max(epsilon_, next.weight);
+    return next;
+  }
+  if (!has_more) return std::nullopt;
   return pop();
 }
 
-CornerId PriorityStack::pop() {
+PriorityStack::Candidate PriorityStack::pop() {
   const Candidate next = order_[position_++];
   epsilon_ = std::max(epsilon_, next.weight);
-  if (position_ + kCornerAhead < order_.size()) {
-    const auto ahead = [this](std::size_t distance) { return order_[position_ + distance]; };
-    fetch(graph_->corners(), ahead(kCornerAhead).corner);
+  if (position_ + kCornerAhead < order_.size()) fetch_candidates();
+  return next;
+}
+
+void PriorityStack::fetch_candidates() const {
+  const auto ahead = [this](std::size_t distance) { return order_[position_ + distance]; };
+  const auto fetch_for = [&](std::size_t distance, const auto& fetch_step) {
+    if (!is_region(ahead(distance).corner)) fetch_step(*graph_, ahead(distance).corner);
+  };
+  fetch_for(kCornerAhead, [&](const TrapezoidalGraph& graph, CornerId corner) {
+    fetch(graph.corners(), corner);
     fetch(waiting_first_, ahead(kCornerAhead).vertex);
-    fetch(state_, ahead(kCornerAhead).corner);
-    fetch_edges(*graph_, ahead(kEdgesAhead).corner);
-    fetch_nodes(*graph_, ahead(kNodesAhead).corner);
-    fetch_neighbours(*graph_, ahead(kNeighboursAhead).corner);
-  }
-  return next.corner;
+    fetch(state_, corner);
+  });
+  fetch_for(kEdgesAhead, fetch_edges);
+  fetch_for(kNodesAhead, fetch_nodes);
+  fetch_for(kNeighboursAhead, fetch_neighbours);
+}
+
+void PriorityStack::enqueue(const Candidate& candidate) {
+  retries_.push_back(candidate);
+  std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
 }
 
 std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, EditLog& log) {
-  Generalization generalization(graph, log);
+  assert(&graph == graph_);
   while (const auto candidate = next_candidate()) {
-    const CornerId c = *candidate;
-    if (!graph.corner(c).is_alive()) continue;  // went with its loop
-    const Decision decision = decide_removal(graph, c, options_.topology);
-    ++counts_.tests;
-    counts_.walked += decision.walked;
-    if (decision.removal == Removal::blocked) {
-      has_blocked_ = true;
-      wait_for(c, decision.blocker);
-      continue;
-    }
-    const Corner gone = graph.corner(c);
-    const VertexId prev = graph.corner(gone.prev).vertex;
-    const VertexId next = graph.corner(gone.next).vertex;
-    if (decision.removal == Removal::loop)
-      last_side_ = longest_side(graph, {prev, gone.vertex, next});
-    generalization.remove(c, decision.removal);
+    const bool has_gone = is_region(candidate->corner)
+                              ? remove_region(region_of(candidate->corner), log)
+                              : remove_corner(candidate->corner, log);
+    if (!has_gone) continue;
     ++counts_.removals;
     counts_.touched += log.touched_nodes().size();
-    last_corner_ = c;
-    last_removal_ = decision.removal;
-    retry_waiting(gone.vertex);
-    if (decision.removal == Removal::loop) {
-      retry_waiting(prev);
-      retry_waiting(next);
-    } else {
-      retry_if_blocked(gone.prev);
-      retry_if_blocked(gone.next);
-    }
     return epsilon_;
   }
   return std::nullopt;
+}
+
+bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
+  const TrapezoidalGraph& graph = *graph_;
+  if (!graph.corner(c).is_alive()) return false;  // went with its loop
+  if (is_to_wait(c)) return false;
+  const Decision decision = decide_removal(graph, c, options_.topology);
+  ++counts_.tests;
+  counts_.walked += decision.walked;
+  if (decision.removal == Removal::blocked) {
+    has_blocked_ = true;
+    wait_for(c, decision.blocker);
+    return false;
+  }
+  const Corner gone = graph.corner(c);
+  const VertexId prev = graph.corner(gone.prev).vertex;
+  const VertexId next = graph.corner(gone.next).vertex;
+  const EdgeId edge_before = graph.corner(gone.prev).edge;
+  if (decision.removal == Removal::loop) {
+    last_side_ = longest_side(graph, {prev, gone.vertex, next});
+    if (graph.is_coverage()) {
+      const TriangleLoop loop = triangle_loop_at(graph, c);
+      borders_.note_lost_loop(loop.long_edge, loop.side, graph.point(last_side_.first),
+                              graph.point(last_side_.second));
+    }
+  }
+  Generalization(graph, log).remove(c, decision.removal);
+  last_corner_ = c;
+  last_removal_ = decision.removal;
+  retry_waiting(gone.vertex);
+  if (decision.removal == Removal::loop) {
+    retry_waiting(prev);
+    retry_waiting(next);
+    return true;
+  }
+  if (graph.is_coverage()) {
+    const EdgeId joined = graph.corner(gone.prev).edge;
+    borders_.note_joined(joined == edge_before ? gone.edge : edge_before, joined, gone.prev);
+  }
+  retry_if_blocked(gone.prev);
+  retry_if_blocked(gone.next);
+  return true;
+}
+
+/// A junction that became a corner is weighed where it stands each time that its turn comes.
+bool PriorityStack::is_to_wait(CornerId c) {
+  if (!graph_->is_coverage() || !is_dissolved_[c.value]) return false;
+  const auto at = [this](CornerId corner) { return graph_->point(graph_->corner(corner).vertex); };
+  const Corner& corner = graph_->corner(c);
+  weights_[c] = std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
+  if (weights_[c] <= epsilon_) return false;
+  state_[c] = State::queued;
+  enqueue({weights_[c], corner.vertex, c});
+  return true;
+}
+
+bool PriorityStack::remove_region(RegionId region, EditLog& log) {
+  const double weight = borders_.weight(region);
+  if (!std::isfinite(weight)) return false;
+  if (weight > epsilon_) {
+    requeue_region(region, weight);
+    return false;
+  }
+  const std::vector<RegionId> takers = borders_.remove(region, log);
+  last_removal_ = Removal::region;
+  for (const VertexId v : borders_.changed()) retry_waiting(v);
+  for (const CornerId c : borders_.dissolved()) {
+    is_dissolved_[c.value] = true;
+    is_to_wait(c);
+    if (state_[c] != State::queued) {
+      state_[c] = State::queued;
+      enqueue({weights_[c], graph_->corner(c).vertex, c});
+    }
+  }
+  // What it has become a part of is not measured anew before its turn comes.
+  double known = 0;
+  for (const RegionId taker : takers) known = std::max(known, region_weights_[taker]);
+  if (!std::isfinite(known)) known = borders_.weight(region);
+  if (std::isfinite(known)) requeue_region(region, known);
+  return true;
+}
+
+void PriorityStack::requeue_region(RegionId region, double weight) {
+  region_weights_[region] = weight;
+  enqueue({weight, {}, corner_for(region)});
 }
 
 void PriorityStack::wait_for(CornerId corner, VertexId blocker) {
@@ -149,8 +261,7 @@ void PriorityStack::retry_waiting(VertexId gone) {
 void PriorityStack::retry_if_blocked(CornerId corner) {
   if (state_[corner] != State::blocked || !graph_->corner(corner).is_alive()) return;
   state_[corner] = State::queued;
-  retries_.push_back({weights_[corner], graph_->corner(corner).vertex, corner});
-  std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
+  enqueue({weights_[corner], graph_->corner(corner).vertex, corner});
 }
 
 AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options)

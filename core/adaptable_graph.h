@@ -8,16 +8,21 @@
 // sequence of removals, and the graph at a tolerance is a prefix of it: its state depends on the
 // tolerance only, never on what was asked before.
 //
+// In a coverage, arcs are weighed each by itself, so that a border is the same whichever side asks,
+// and regions wait in the stack as well (see region_borders.h).
+//
 // Thread-safety: none; different graphs may be used by different threads.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/edit_log.h"
 #include "core/generalization.h"
+#include "core/region_borders.h"
 #include "core/topology_test.h"
 #include "core/trapezoidal_graph.h"
 #include "core/vertex_weight.h"
@@ -56,10 +61,13 @@ class PriorityStack {
   CornerId last_corner() const { return last_corner_; }
   Removal last_removal() const { return last_removal_; }
   std::pair<VertexId, VertexId> last_side() const { return last_side_; }
+  /// Of a coverage: the areas that changed hands when a loop or a region went last.
+  std::span<const Taken> last_taken() const { return borders_.taken(); }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:
-  /// A corner with what it is ordered by, so that sorting looks nowhere else.
+  /// A corner with what it is ordered by, so that sorting looks nowhere else. Numbers of corners
+  /// that there are not stand for regions, which come after the vertices of their weight.
   struct Candidate {
     double weight;
     VertexId vertex;
@@ -67,8 +75,21 @@ class PriorityStack {
     friend auto operator<=>(const Candidate&, const Candidate&) = default;
   };
 
-  std::optional<CornerId> next_candidate();
-  CornerId pop();
+  void weigh_loop(CornerId first);
+  void weigh_arc(CornerId first);
+  void add_candidates(std::span<const double> weights);
+  void add_regions();
+  std::optional<Candidate> next_candidate();
+  Candidate pop();
+  void fetch_candidates() const;
+  void enqueue(const Candidate& candidate);
+  bool is_region(CornerId c) const { return c.value >= weights_.size(); }
+  CornerId corner_for(RegionId region) const { return CornerId(weights_.size() + region.value); }
+  RegionId region_of(CornerId c) const { return RegionId(c.value - weights_.size()); }
+  bool remove_region(RegionId region, EditLog& log);
+  bool is_to_wait(CornerId corner);
+  bool remove_corner(CornerId corner, EditLog& log);
+  void requeue_region(RegionId region, double weight);
   void wait_for(CornerId corner, VertexId blocker);
   void retry_waiting(VertexId gone);
   void retry_if_blocked(CornerId corner);
@@ -80,7 +101,7 @@ class PriorityStack {
   std::size_t position_ = 0;
   double epsilon_ = 0;  // greatest weight popped
 
-  // Corners to try again, smallest first (a heap), and those blocked by each vertex.
+  // Candidates to try again, smallest first (a heap), and corners blocked by each vertex.
   enum class State : std::uint8_t { ahead, blocked, queued };
   struct Waiting {
     CornerId corner;
@@ -93,6 +114,10 @@ class PriorityStack {
   VertexWeights ring_weights_;
   std::vector<Point> ring_;
   std::vector<CornerId> ring_corners_;
+  // Of a coverage.
+  RegionBorders borders_;
+  Table<RegionId, double> region_weights_;  // as they were queued last
+  std::vector<bool> is_dissolved_;          // by corner: was a junction, is weighed where it stands
   bool has_blocked_ = false;
   CornerId last_corner_;
   Removal last_removal_ = Removal::blocked;

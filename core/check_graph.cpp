@@ -136,29 +136,32 @@ class Checker {
 
   void check_corners() {
     std::vector<int> uses(g_.edges().size(), 0);
-    std::vector<std::pair<std::uint32_t, VertexId>> visits;  // loop and vertex
+    std::vector<std::pair<std::uint32_t, VertexId>> visits;  // loop or arc, and vertex
     std::vector<bool> seen(g_.corners().size(), false);
-    std::uint32_t loops = 0;
-    for (std::size_t i = 0; i < g_.corners().size() && ok(); ++i) {
-      if (!g_.corner(CornerId(i)).is_alive() || seen[i]) continue;
+    std::uint32_t runs = 0;
+    const auto walk = [&](CornerId first) {
       std::size_t length = 0;
-      for (CornerId c(i); !seen[c.value] && ok(); c = g_.corner(c).next) {
+      for (CornerId c = first; !c.is_none() && !seen[c.value] && ok(); c = g_.corner(c).next) {
         seen[c.value] = true;
         ++length;
-        const Corner& corner = g_.corner(c);
-        const Corner& next = g_.corner(corner.next);
-        require(next.is_alive() && next.prev == c, "I9: corners ", c.value, " and ",
-                corner.next.value, " do not follow each other");
-        if (!ok()) return;
-        const Edge& e = g_.edge(corner.edge);
-        require(e.is_alive() && e.end[kUp] == std::min(corner.vertex, next.vertex) &&
-                    e.end[kDown] == std::max(corner.vertex, next.vertex),
-                "I9: edge ", corner.edge.value, " is not between its corners");
-        ++uses[corner.edge.value];
-        visits.emplace_back(loops, corner.vertex);
+        check_corner(c, uses);
+        // An arc may come back to where it began.
+        const bool is_last = g_.corner(c).next.is_none();
+        if (!is_last) visits.emplace_back(runs, g_.corner(c).vertex);
       }
+      ++runs;
+      return length;
+    };
+    for (std::size_t i = 0; i < g_.corners().size() && ok(); ++i) {
+      const Corner& corner = g_.corner(CornerId(i));
+      if (!corner.is_end() || !corner.prev.is_none()) continue;
+      require(g_.is_coverage(), "I9: corner ", i, " begins an arc");
+      require(walk(CornerId(i)) >= 2, "I9: an arc has one corner");
+    }
+    for (std::size_t i = 0; i < g_.corners().size() && ok(); ++i) {
+      if (!g_.corner(CornerId(i)).is_alive() || seen[i]) continue;
+      const std::size_t length = walk(CornerId(i));
       require(length >= 3, "I9: a loop has ", length, " corners");
-      ++loops;
     }
     for (std::size_t e = 0; e < uses.size(); ++e) {
       const bool wanted = g_.edge(EdgeId(e)).is_alive() && !g_.is_frame(EdgeId(e));
@@ -169,19 +172,58 @@ class Checker {
             "I9: a loop visits a vertex twice");
   }
 
+  void check_corner(CornerId c, std::vector<int>& uses) {
+    const Corner& corner = g_.corner(c);
+    require(corner.next.is_none() == corner.edge.is_none(), "I9: corner ", c.value,
+            " has an edge and nothing at its end, or none");
+    if (!ok() || corner.next.is_none()) return;
+    const Corner& next = g_.corner(corner.next);
+    require(next.is_alive() && next.prev == c, "I9: corners ", c.value, " and ", corner.next.value,
+            " do not follow each other");
+    if (!ok()) return;
+    const Edge& e = g_.edge(corner.edge);
+    require(e.is_alive() && e.end[kUp] == std::min(corner.vertex, next.vertex) &&
+                e.end[kDown] == std::max(corner.vertex, next.vertex),
+            "I9: edge ", corner.edge.value, " is not between its corners");
+    ++uses[corner.edge.value];
+    if (!next.next.is_none()) check_faces_go_on(corner, next);
+  }
+
+  /// An arc has the same two faces all along; it turns the sides round with its direction.
+  void check_faces_go_on(const Corner& corner, const Corner& next) {
+    const auto face_on_the_left = [this](const Corner& from) {
+      const Edge& e = g_.edge(from.edge);
+      return e.face[e.end[kUp] == from.vertex ? kRight : kLeft];
+    };
+    const auto face_on_the_right = [this](const Corner& from) {
+      const Edge& e = g_.edge(from.edge);
+      return e.face[e.end[kUp] == from.vertex ? kLeft : kRight];
+    };
+    require(face_on_the_left(corner) == face_on_the_left(next) &&
+                face_on_the_right(corner) == face_on_the_right(next),
+            "I9: the faces beside edges ", corner.edge.value, " and ", next.edge.value,
+            " of one loop differ");
+  }
+
   void check_area() {
-    Int128 area = 0;
+    std::vector<Int128> areas(g_.face_count() + 1, 0);
     for (std::size_t i = 0; i < g_.edges().size(); ++i) {
       const Edge& e = g_.edge(EdgeId(i));
       if (!e.is_alive() || g_.is_frame(EdgeId(i))) continue;
+      require(std::max(e.face[kLeft], e.face[kRight]) <= g_.face_count(), "I7: edge ", i,
+              " has a face that there is not");
+      if (!ok()) return;
       const Point u = g_.point(e.end[kUp]);
       const Point l = g_.point(e.end[kDown]);
       const Int128 strip = (Int128{u.x} + l.x) * (std::int64_t{l.y} - u.y);
-      if (e.face[kLeft] != kOutside) area += strip;
-      if (e.face[kRight] != kOutside) area -= strip;
+      areas[e.face[kLeft]] += strip;
+      areas[e.face[kRight]] -= strip;
     }
-    require(area == g_.doubled_area(),
-            "I8: the areas of the inside nodes do not add up to the polygon's");
+    const std::vector<Int128> tiled = g_.doubled_areas();
+    for (FaceId face = 1; face <= g_.face_count(); ++face) {
+      require(areas[face] == tiled[face], "I8: the areas of the nodes of face ", face,
+              " do not add up to the polygon's");
+    }
   }
 
   const TrapezoidalGraph& g_;

@@ -8,7 +8,7 @@ namespace trapeze {
 // side s of an edge has that edge as its own edge on the opposite side.
 
 void Generalization::remove(CornerId corner, Removal removal) {
-  assert(removal != Removal::blocked);
+  assert(removal != Removal::blocked && removal != Removal::region);
   log_.begin();
   switch (removal) {
     case Removal::regular:
@@ -18,6 +18,7 @@ void Generalization::remove(CornerId corner, Removal removal) {
     case Removal::loop:
       return remove_loop(corner);
     case Removal::blocked:
+    case Removal::region:
       return;
   }
 }
@@ -182,6 +183,31 @@ void Generalization::remove_loop(CornerId corner) {
   for (const CornerId c : {loop.top, loop.middle, loop.bottom}) {
     log_.edit(c) = Corner{g_.corner(c).vertex, {}, {}, {}};
   }
+}
+
+// The border between two faces that become one disappears.
+//
+//     T                    T
+//  p1 | q1              |  p1  |       the levels of T and B disappear as well, unless another
+//  ---|           =>    |------|       edge begins or ends there
+//  p2 |---              |  q1  |
+//     | q2              |------|
+//     B                    B
+void Generalization::remove_edge(EdgeId edge) {
+  const Edge gone = g_.edge(edge);
+  const NodeId p = gone.extreme[kLeft][kUp];
+  const NodeId q = gone.extreme[kRight][kUp];
+  const NodeId above = g_.node(p).link[kLeft][kUp];
+  const bool top_disappears = !above.is_none() && g_.node(q).link[kRight][kUp] == above;
+
+  const Zipped zipped = zip(p, q, kLeft, kDown, gone.end[kDown]);
+  kill(edge);
+  const Node& last = g_.node(zipped.last);
+  const NodeId below = last.link[kLeft][kDown];
+  if (!below.is_none() && last.link[kRight][kDown] == below) {
+    merge_levels(zipped.last, below, kDown);
+  }
+  if (top_disappears) merge_levels(above, zipped.first, kDown);
 }
 
 // Two lists of nodes, along the outer sides of two edges that disappear between them, become one.

@@ -28,6 +28,11 @@ class Generalization {
   /// is, and not blocked.
   void remove(CornerId corner, Removal removal);
 
+  /// Removes an edge, as a part of the edit at hand: the nodes beside it become one list. No other
+  /// edge changes, so that no boundary can come to cross another one. Corners are left to the
+  /// caller, and so are faces: those beside the edge are to be the same.
+  void remove_edge(EdgeId edge);
+
  private:
   void remove_regular(CornerId corner);   // vertical generalization
   void remove_extremum(CornerId corner);  // horizontal generalization

@@ -37,9 +37,8 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
   constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
-    segments =
-        node_segments(std::move(segments),
-                      pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+    segments = node_segments(
+        segments, pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
     if (segments.empty()) return false;  // everything cancelled: no area
     boundary_.assign(segments);
     if (trapezoidation_.build(boundary_, graph)) {

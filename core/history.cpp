@@ -1,5 +1,6 @@
 #include "core/history.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -49,8 +50,9 @@ void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& 
 
 }  // namespace
 
-void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
-                             History& history) {
+void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+                             const GeneralizationOptions& options, History& history) {
+  rows_ = rows;
   begin(graph, history);
   stack_.assign(graph, options);
   EditLog log(graph);
@@ -67,9 +69,15 @@ void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOption
       level = next;
     }
     note_touched(log);
-    if (stack_.last_removal() == Removal::loop) note_lost_loop(graph, static_cast<Level>(level));
+    if (stack_.last_removal() == Removal::region) touch_along(graph, log);
+    note_lost_area(graph, static_cast<Level>(level));
     log.forget();
   }
+}
+
+void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
+                             History& history) {
+  record(graph, std::array<std::uint32_t, 1>{0}, options, history);
 }
 
 void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
@@ -88,7 +96,7 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
     if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
   }
   for (std::size_t n = 0; n < graph.nodes().size(); ++n) renew_node(graph, NodeId(n), 0);
-  measure_loops(graph);
+  if (!graph.is_coverage()) measure_loops(graph);
 }
 
 void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
@@ -132,12 +140,47 @@ void HistoryRecorder::note_touched(const EditLog& log) {
   }
 }
 
+/// The nodes along edges that got another face are in another feature now.
+void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& log) {
+  for (const auto& kept : log.touched_edges()) {
+    const Edge& edge = graph.edge(kept.id);
+    if (!edge.is_alive() || (edge.face[kLeft] == kept.record.face[kLeft] &&
+                             edge.face[kRight] == kept.record.face[kRight])) {
+      continue;
+    }
+    for (const Side s : {kLeft, kRight}) {
+      for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
+           n = graph.node(n).link[opposite(s)][kDown])
+        touch(n);
+    }
+  }
+}
+
+void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level) {
+  const Removal removal = stack_.last_removal();
+  if (removal != Removal::loop && removal != Removal::region) return;
+  if (!graph.is_coverage()) return note_lost_loop(graph, level);
+  for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
+}
+
+/// A hole counts as less of what fills it.
+void HistoryRecorder::note_taken(const Taken& taken, Level level) {
+  if (taken.face == kOutside) {
+    history_->grains.push_back(
+        {taken.from, taken.to, -taken.area, level, row_of(taken.taker), Grain::kNobody});
+  } else {
+    history_->grains.push_back({taken.from, taken.to, taken.area, level, row_of(taken.face),
+                                taken.taker == kOutside ? Grain::kNobody : row_of(taken.taker)});
+  }
+}
+
 void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level) {
   // The last triangle was no wider than the tolerance: its longest side stands for the loop.
   const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
   const auto [from, to] = stack_.last_side();
-  history_->grains.push_back(
-      {graph.point(from), graph.point(to), loop.is_hole ? -loop.area : loop.area, level});
+  history_->grains.push_back({graph.point(from), graph.point(to),
+                              loop.is_hole ? -loop.area : loop.area, level, rows_.front(),
+                              Grain::kNobody});
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
@@ -188,11 +231,12 @@ void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level 
   std::uint32_t& version = node_version_[n];
   const bool is_inside = node.is_alive() && graph.face(node) != kOutside;
   const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
+  const std::uint32_t row = is_inside ? row_of(graph.face(node)) : 0;
   if (version != kNoVersion) {
-    if (is_inside && is_open(version, now)) return;
+    if (is_inside && is_open(version, now, row)) return;
     lifespan_of(*history_, version).dies = level;
   }
-  version = is_inside ? open_node(now, level) : kNoVersion;
+  version = is_inside ? open_node(now, row, level) : kNoVersion;
 }
 
 MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
@@ -200,25 +244,30 @@ MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
           edge_version_[node.edge[kLeft]], edge_version_[node.edge[kRight]]};
 }
 
-bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid) const {
+bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid,
+                              std::uint32_t row) const {
   if ((version & kLevelBit) == 0) {
-    return covers_the_same(*history_, history_->trapezoids[version], trapezoid);
+    return history_->rows[version] == row &&
+           covers_the_same(*history_, history_->trapezoids[version], trapezoid);
   }
   const LevelEdge& open = history_->level_edges[version ^ kLevelBit];
-  return !has_height(*history_, trapezoid) && level_edge_of(*history_, trapezoid) == open.edge;
+  return open.row == row && !has_height(*history_, trapezoid) &&
+         level_edge_of(*history_, trapezoid) == open.edge;
 }
 
 // A trapezoid between level vertices has no area and is never drawn; but the edge along it may be.
-std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, Level level) {
+std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::uint32_t row,
+                                         Level level) {
   const Lifespan lifespan{level, kNeverDies};
   if (has_height(*history_, trapezoid)) {
     history_->trapezoids.push_back(trapezoid);
     history_->lifespans.push_back(lifespan);
+    history_->rows.push_back(row);
     return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
   }
   const std::optional<std::uint32_t> edge = level_edge_of(*history_, trapezoid);
   if (!edge) return kNoVersion;
-  history_->level_edges.push_back({*edge, lifespan});
+  history_->level_edges.push_back({*edge, lifespan, row});
   return static_cast<std::uint32_t>(history_->level_edges.size() - 1) | kLevelBit;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/adaptable_graph.h"
@@ -21,17 +22,24 @@ namespace trapeze {
 /// A loop that became too small to keep: its area stays on the map as dust, spread along the
 /// segment that was left of it.
 struct Grain {
+  static constexpr std::uint32_t kNobody = 0xffffffff;
+
   Point from;
   Point to;
-  double area = 0;  // cells squared; negative if the loop was a hole
-  Level born = 0;   // the first level that does without the loop
+  double area = 0;        // cells squared; negative if the loop was a hole
+  Level born = 0;         // the first level that does without the loop
+  std::uint32_t row = 0;  // of the feature
+  /// The feature that covers the place since; kNobody if none does. If one does, the area is to be
+  /// taken from it.
+  std::uint32_t taker = kNobody;
 };
 
-/// A version of an edge whose ends are level, and when it is part of the boundary. The trapezoid
-/// along it has no height and is not stored, so that nothing else tells of it.
+/// A version of an edge whose ends are level, and when it is part of the boundary of a feature. The
+/// trapezoid along it has no height and is not stored, so that nothing else tells of it.
 struct LevelEdge {
   std::uint32_t edge = 0;
   Lifespan lifespan;
+  std::uint32_t row = 0;  // of the feature
 };
 
 /// Versions of many graphs, one after another; indices are relative to the beginning of the arrays.
@@ -40,6 +48,7 @@ struct History {
   std::vector<MeshEdge> edges;
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;  // by trapezoid
+  std::vector<std::uint32_t> rows;  // by trapezoid: the feature that it is a part of
   std::vector<LevelEdge> level_edges;
   std::vector<Grain> grains;
 };
@@ -47,8 +56,11 @@ struct History {
 /// Reusable memory for recording; one a thread.
 class HistoryRecorder {
  public:
-  /// Appends the history of `graph` to `history`. Afterwards `graph` is adapted to the coarsest
-  /// tolerance.
+  /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
+  /// `graph` is adapted to the coarsest tolerance.
+  void record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+              const GeneralizationOptions& options, History& history);
+  /// The same of a single polygon, which is the feature of row 0.
   void record(TrapezoidalGraph& graph, const GeneralizationOptions& options, History& history);
 
   /// Of the last recording.
@@ -58,17 +70,22 @@ class HistoryRecorder {
   void begin(const TrapezoidalGraph& graph, History& history);
   void measure_loops(const TrapezoidalGraph& graph);
   void note_touched(const EditLog& log);
+  void touch_along(const TrapezoidalGraph& graph, const EditLog& log);
+  void note_lost_area(const TrapezoidalGraph& graph, Level level);
   void note_lost_loop(const TrapezoidalGraph& graph, Level level);
+  void note_taken(const Taken& taken, Level level);
   void end_level(const TrapezoidalGraph& graph, Level level);
   void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
   void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
   MeshTrapezoid trapezoid_of(const Node& node) const;
-  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid) const;
-  std::uint32_t open_node(const MeshTrapezoid& trapezoid, Level level);
+  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid, std::uint32_t row) const;
+  std::uint32_t open_node(const MeshTrapezoid& trapezoid, std::uint32_t row, Level level);
+  std::uint32_t row_of(FaceId face) const { return rows_[face - 1]; }
   void open_edge(const TrapezoidalGraph& graph, EdgeId e);
   void touch(NodeId n);
 
   History* history_ = nullptr;
+  std::span<const std::uint32_t> rows_;  // by face - 1
   std::uint32_t vertex_base_ = 0;
   PriorityStack stack_;
   // The version that is open at present, by edge and by node; kNoVersion if there is none. That of

@@ -51,8 +51,8 @@ using EdgeId = Id<struct EdgeTag>;
 using NodeId = Id<struct NodeTag>;
 using CornerId = Id<struct CornerTag>;
 
-/// Number of a face: 0 is outside, 1 inside. A number and not a flag because polygons that share
-/// borders are to live in one graph.
+/// Number of a face: 0 is outside, 1 inside; where polygons that share borders live in one graph,
+/// each has a number of its own.
 using FaceId = std::uint32_t;
 constexpr FaceId kOutside = 0;
 

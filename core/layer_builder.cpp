@@ -15,20 +15,25 @@ namespace {
 constexpr std::uint32_t kUnused = 0xffffffff;
 constexpr double kMostDoubledArea = 9e18;  // what 64 bits hold
 
-/// What one builder holds: the histories of its features one after another.
+/// What one builder holds: the histories of its features and coverages one after another.
 struct Stock {
   struct Part {
-    std::uint32_t row;
+    std::uint32_t row;     // the first one of a coverage
     std::size_t vertices;  // where its arrays begin
     std::size_t edges;
     std::size_t trapezoids;
     std::size_t level_edges;
     std::size_t grains;
-    std::size_t rings;
+  };
+  struct Outline {
+    std::uint32_t row;
+    std::size_t begin;  // rings
+    std::size_t end;
   };
   std::vector<Part> parts;
   History history;
-  Rings outlines;
+  std::vector<Outline> outlines;
+  Rings outline_rings;
 };
 
 /// The parts of all builders in the order of features.
@@ -55,13 +60,8 @@ std::span<const T> part_of(const std::vector<T>& all, const Stock& stock, std::s
   return std::span<const T>(all).subspan(from, to - from);
 }
 
-struct FeatureLevelEdge {
-  LevelEdge level_edge;
-  std::uint32_t row = 0;
-};
-
-FeatureGrain with_feature(const Grain& grain, std::uint32_t row) {
-  const double doubled = std::clamp(2 * grain.area, -kMostDoubledArea, kMostDoubledArea);
+FeatureGrain grain_of(const Grain& grain, double area, std::uint32_t row) {
+  const double doubled = std::clamp(2 * area, -kMostDoubledArea, kMostDoubledArea);
   return {grain.from, grain.to, std::llround(doubled), row, grain.born};
 }
 
@@ -72,12 +72,23 @@ struct GrowingLayer {
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
-  std::vector<FeatureLevelEdge> level_edges;
+  std::vector<LevelEdge> level_edges;
   std::vector<Grain> grains;
   std::vector<FeatureGrain> feature_grains;
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
 };
+
+/// An area that one feature has taken over from another is the dust of one and less of the other;
+/// where features are not told apart, it is as it was.
+void add_grain(const Grain& grain, GrowingLayer& layer) {
+  layer.feature_grains.push_back(grain_of(grain, grain.area, grain.row));
+  if (grain.taker == Grain::kNobody) {
+    layer.grains.push_back(grain);
+  } else {
+    layer.feature_grains.push_back(grain_of(grain, -grain.area, grain.taker));
+  }
+}
 
 /// Lays the histories one after another.
 void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
@@ -96,26 +107,34 @@ void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
          part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
       layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift,
                                   t.left + edge_shift, t.right + edge_shift});
-      layer.feature_of.push_back(stock->parts[p].row);
     }
+    const auto rows = part_of(history.rows, *stock, p, &Stock::Part::trapezoids);
+    layer.feature_of.insert(layer.feature_of.end(), rows.begin(), rows.end());
     const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
-    const std::uint32_t row = stock->parts[p].row;
     for (LevelEdge level_edge :
          part_of(history.level_edges, *stock, p, &Stock::Part::level_edges)) {
       level_edge.edge += edge_shift;
-      layer.level_edges.push_back({level_edge, row});
+      layer.level_edges.push_back(level_edge);
     }
     for (const Grain& grain : part_of(history.grains, *stock, p, &Stock::Part::grains)) {
-      layer.grains.push_back(grain);
-      layer.feature_grains.push_back(with_feature(grain, row));
+      add_grain(grain, layer);
     }
-    layer.outline_ends.resize(stock->parts[p].row,
-                              static_cast<std::uint32_t>(layer.outlines.size()));
-    const std::size_t rings_end =
-        p + 1 < stock->parts.size() ? stock->parts[p + 1].rings : stock->outlines.size();
-    for (std::size_t r = stock->parts[p].rings; r < rings_end; ++r)
-      layer.outlines.add(stock->outlines[r]);
+  }
+}
+
+/// The outlines of all builders in the order of features.
+void concatenate_outlines(const std::vector<const Stock*>& stocks, GrowingLayer& layer) {
+  std::vector<std::pair<const Stock*, Stock::Outline>> outlines;
+  for (const Stock* stock : stocks) {
+    for (const Stock::Outline& outline : stock->outlines) outlines.emplace_back(stock, outline);
+  }
+  std::sort(outlines.begin(), outlines.end(),
+            [](const auto& a, const auto& b) { return a.second.row < b.second.row; });
+  for (const auto& [stock, outline] : outlines) {
+    layer.outline_ends.resize(outline.row, static_cast<std::uint32_t>(layer.outlines.size()));
+    for (std::size_t r = outline.begin; r < outline.end; ++r)
+      layer.outlines.add(stock->outline_rings[r]);
     layer.outline_ends.push_back(static_cast<std::uint32_t>(layer.outlines.size()));
   }
 }
@@ -151,7 +170,7 @@ void order_trapezoids(GrowingLayer& layer) {
 void append_level_edges(GrowingLayer& layer) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   for (std::size_t i = 0; i < layer.level_edges.size(); ++i) {
-    const LevelEdge& level_edge = layer.level_edges[i].level_edge;
+    const LevelEdge& level_edge = layer.level_edges[i];
     const MeshEdge& edge = layer.edges[level_edge.edge];
     Box box;
     box.include(layer.vertices[edge.upper]);
@@ -160,11 +179,11 @@ void append_level_edges(GrowingLayer& layer) {
   }
   std::sort(keys.begin(), keys.end());
   for (const auto& [key, i] : keys) {
-    const auto& [level_edge, row] = layer.level_edges[i];
+    const LevelEdge& level_edge = layer.level_edges[i];
     const MeshEdge& edge = layer.edges[level_edge.edge];
     layer.trapezoids.push_back({edge.upper, edge.lower, level_edge.edge, level_edge.edge});
     layer.lifespans.push_back(level_edge.lifespan);
-    layer.feature_of.push_back(row);
+    layer.feature_of.push_back(level_edge.row);
   }
 }
 
@@ -260,8 +279,22 @@ struct LayerBuilder::State {
   GeneralizationOptions options;
   Stock stock;
   GraphBuilder graph_builder;
+  CoverageBuilder coverage_builder;
   TrapezoidalGraph graph;
   HistoryRecorder recorder;
+
+  void begin_part(std::uint32_t row) {
+    const History& history = stock.history;
+    stock.parts.push_back({row, history.vertices.size(), history.edges.size(),
+                           history.trapezoids.size(), history.level_edges.size(),
+                           history.grains.size()});
+  }
+
+  void add_outline(std::uint32_t row, const Rings& rings) {
+    const std::size_t begin = stock.outline_rings.size();
+    for (std::size_t r = 0; r < rings.size(); ++r) stock.outline_rings.add(rings[r]);
+    stock.outlines.push_back({row, begin, stock.outline_rings.size()});
+  }
 };
 
 LayerBuilder::LayerBuilder(const GeneralizationOptions& options)
@@ -275,13 +308,21 @@ LayerBuilder& LayerBuilder::operator=(LayerBuilder&&) noexcept = default;
 BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   BuildOutcome outcome = state_->graph_builder.build(rings, state_->graph);
   if (!outcome.built) return outcome;
-  Stock& stock = state_->stock;
-  stock.parts.push_back({row, stock.history.vertices.size(), stock.history.edges.size(),
-                         stock.history.trapezoids.size(), stock.history.level_edges.size(),
-                         stock.history.grains.size(), stock.outlines.size()});
-  const Rings outline = rings_of(state_->graph);
-  for (std::size_t r = 0; r < outline.size(); ++r) stock.outlines.add(outline[r]);
-  state_->recorder.record(state_->graph, state_->options, stock.history);
+  state_->begin_part(row);
+  state_->add_outline(row, rings_of(state_->graph));
+  state_->recorder.record(state_->graph, std::span(&row, 1), state_->options,
+                          state_->stock.history);
+  return outcome;
+}
+
+CoverageOutcome LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
+                                           std::span<const Rings> features) {
+  const CoverageOutcome outcome = state_->coverage_builder.build(features, state_->graph);
+  if (!outcome.built) return outcome;
+  state_->begin_part(rows.front());
+  const std::vector<Rings> outlines = rings_of_faces(state_->graph);
+  for (std::size_t i = 0; i < rows.size(); ++i) state_->add_outline(rows[i], outlines[i]);
+  state_->recorder.record(state_->graph, rows, state_->options, state_->stock.history);
   return outcome;
 }
 
@@ -294,6 +335,7 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
   GrowingLayer arrays;
   concatenate(in_order_of_rows(stocks), arrays);
+  concatenate_outlines(stocks, arrays);
   for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);
 
   order_trapezoids(arrays);

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/adaptable_graph.h"
+#include "core/coverage_builder.h"
 #include "core/feature_table.h"
 #include "core/graph_builder.h"
 #include "core/layer.h"
@@ -30,6 +32,12 @@ class LayerBuilder {
   /// collapsed rings are dropped, crossings and touches noded on the grid, inside is even-odd.
   /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
   BuildOutcome add(std::uint32_t row, Rings& rings);
+
+  /// Builds one graph of several features that share borders, see CoverageBuilder. `rows` are in
+  /// ascending order, and none of them is added otherwise. If the outcome does not say built,
+  /// nothing has been added.
+  CoverageOutcome add_coverage(std::span<const std::uint32_t> rows,
+                               std::span<const Rings> features);
 
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
   /// with the same options.

@@ -74,18 +74,17 @@ class SegmentTree {
   std::vector<std::vector<Box>> levels_;
 };
 
-/// What is near on the map comes near in the array, and so under the same boxes of the tree.
-void order_by_place(std::vector<Segment>& segments) {
+/// The numbers of the segments in an order of place: what is near on the map comes near in the
+/// array, and so under the same boxes of the tree.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> order_by_place(
+    const std::vector<Segment>& segments) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
   places.reserve(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     places.emplace_back(hilbert(segments[i].first), static_cast<std::uint32_t>(i));
   }
   std::sort(places.begin(), places.end());
-  std::vector<Segment> ordered;
-  ordered.reserve(segments.size());
-  for (const auto& [place, i] : places) ordered.push_back(segments[i]);
-  segments.swap(ordered);
+  return places;
 }
 
 /// floor(a / b + 1/2) for b > 0.
@@ -215,14 +214,14 @@ std::vector<Pass> find_passes(const std::vector<Segment>& segments, const Segmen
   return passes;
 }
 
-void add_piece(Point a, Point b, std::vector<Segment>& pieces) {
-  if (a != b) pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
+void add_piece(Point a, Point b, std::uint32_t source, std::vector<Piece>& pieces) {
+  if (a != b) pieces.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, source});
 }
 
 /// Appends the pieces of a segment that passes the cells of [begin, end), which are put in order
 /// along the segment: by the distance of the centre in its direction.
-void add_pieces(const Segment& s, std::vector<Pass>::iterator begin,
-                std::vector<Pass>::iterator end, std::vector<Segment>& pieces) {
+void add_pieces(const Segment& s, std::uint32_t source, std::vector<Pass>::iterator begin,
+                std::vector<Pass>::iterator end, std::vector<Piece>& pieces) {
   const auto along = [&s](const Pass& pass) {
     return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) *
                (std::int64_t{pass.hot.x} - s.first.x) +
@@ -232,10 +231,10 @@ void add_pieces(const Segment& s, std::vector<Pass>::iterator begin,
   std::sort(begin, end, [&](const Pass& a, const Pass& b) { return along(a) < along(b); });
   Point last = s.first;
   for (auto pass = begin; pass != end; ++pass) {
-    add_piece(last, pass->hot, pieces);
+    add_piece(last, pass->hot, source, pieces);
     last = pass->hot;
   }
-  add_piece(last, s.second, pieces);
+  add_piece(last, s.second, source, pieces);
 }
 
 void cancel_pairs(std::vector<Segment>& pieces) {
@@ -266,18 +265,27 @@ std::vector<Segment> segments_of(const Rings& rings) {
   return segments;
 }
 
-std::vector<Segment> node_segments(std::vector<Segment> segments, HotCells cells) {
-  order_by_place(segments);
-  const SegmentTree tree(segments);
-  std::vector<Pass> passes = find_passes(segments, tree, hot_cells(segments, tree, cells));
-  std::vector<Segment> pieces;
-  pieces.reserve(segments.size() + passes.size());
+std::vector<Piece> node_pieces(const std::vector<Segment>& segments, HotCells cells) {
+  const auto order = order_by_place(segments);
+  std::vector<Segment> ordered;
+  ordered.reserve(segments.size());
+  for (const auto& [place, source] : order) ordered.push_back(segments[source]);
+  const SegmentTree tree(ordered);
+  std::vector<Pass> passes = find_passes(ordered, tree, hot_cells(ordered, tree, cells));
+  std::vector<Piece> pieces;
+  pieces.reserve(ordered.size() + passes.size());
   auto pass = passes.begin();
-  for (std::size_t i = 0; i < segments.size(); ++i) {
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
     const auto begin = pass;
     while (pass != passes.end() && pass->segment == i) ++pass;
-    add_pieces(segments[i], begin, pass, pieces);
+    add_pieces(ordered[i], order[i].second, begin, pass, pieces);
   }
+  return pieces;
+}
+
+std::vector<Segment> node_segments(const std::vector<Segment>& segments, HotCells cells) {
+  std::vector<Segment> pieces;
+  for (const Piece& piece : node_pieces(segments, cells)) pieces.push_back(piece.segment);
   cancel_pairs(pieces);
   return pieces;
 }

@@ -29,8 +29,17 @@ enum class HotCells : std::uint8_t {
   crossings_and_vertices,
 };
 
+/// A piece of a segment, upper end first.
+struct Piece {
+  Segment segment;
+  std::uint32_t source = 0;  // the index of the segment
+};
+
+/// Leads the segments through the hot cells and returns all pieces, those that coincide as well.
+std::vector<Piece> node_pieces(const std::vector<Segment>& segments, HotCells cells);
+
 /// Leads the segments through the hot cells and returns the pieces, upper end first; those that
 /// coincide an odd number of times once, an even number of times not at all.
-std::vector<Segment> node_segments(std::vector<Segment> segments, HotCells cells);
+std::vector<Segment> node_segments(const std::vector<Segment>& segments, HotCells cells);
 
 }  // namespace trapeze

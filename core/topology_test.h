@@ -26,6 +26,7 @@ enum class Removal : std::uint8_t {
   regular,   // A and B on different sides of V in sweep order: vertical generalization
   extremum,  // A and B on the same side of V: horizontal generalization
   loop,      // the loop is a triangle: it goes as a whole
+  region,    // not of a corner: a region between junctions is given to a neighbour
 };
 
 struct Decision {

@@ -58,14 +58,15 @@ NodeId beyond_tip(const TrapezoidalGraph& g, NodeId tip, Direction d) {
   return beyond.is_none() ? beside : beyond;
 }
 
-/// Where an edge meets the level of a vertex that it spans. A level edge is passed through at once in
-/// sweep order: it is met at the vertex itself.
+/// Where an edge meets the level of a vertex that it spans. A level edge is passed through at once
+/// in sweep order: it is met at the vertex itself.
 double x_at(const TrapezoidalGraph& g, EdgeId e, VertexId level) {
   const Point a = g.point(g.edge(e).end[kUp]);
   const Point b = g.point(g.edge(e).end[kDown]);
   const Point p = g.point(level);
   if (a.y == b.y) return p.x;
-  return a.x + (static_cast<double>(b.x) - a.x) * ((static_cast<double>(p.y) - a.y) / (static_cast<double>(b.y) - a.y));
+  return a.x + (static_cast<double>(b.x) - a.x) *
+                   ((static_cast<double>(p.y) - a.y) / (static_cast<double>(b.y) - a.y));
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ std::vector<Link> TrapezoidalGraph::links() const {
     const Neighbours below = neighbours(n, kDown);
     for (int i = 0; i < below.count; ++i) {
       const NodeId lower = below.node[static_cast<std::size_t>(i)];
-      const LinkKind kind = below.count == 2                     ? LinkKind::division
+      const LinkKind kind = below.count == 2                    ? LinkKind::division
                             : neighbours(lower, kUp).count == 2 ? LinkKind::join
                                                                 : LinkKind::connection;
       found.push_back({n, lower, kind});
@@ -126,7 +127,7 @@ std::vector<Link> TrapezoidalGraph::pseudo_links() const {
 Connectedness TrapezoidalGraph::connectedness(NodeId n) const {
   const bool up = neighbours(n, kUp).count > 0;
   const bool down = neighbours(n, kDown).count > 0;
-  return up && down ? Connectedness::two_sided
+  return up && down   ? Connectedness::two_sided
          : up || down ? Connectedness::one_sided
                       : Connectedness::isolated;
 }
@@ -169,10 +170,16 @@ std::vector<std::vector<NodeId>> TrapezoidalGraph::chains() const {
 }
 
 Int128 TrapezoidalGraph::doubled_area() const {
+  const std::vector<Int128> areas = doubled_areas();
+  return std::accumulate(areas.begin() + 1, areas.end(), Int128{0});
+}
+
+std::vector<Int128> TrapezoidalGraph::doubled_areas() const {
   // Between two levels, twice the area left of an edge from u to l is
   //   (y1 - y0) * (2 x_u (y_l - y_u) + (x_l - x_u) (y0 + y1 - 2 y_u)) / (y_l - y_u).
-  // The fraction is summed per edge, and is whole once the pieces cover the edge from end to end.
-  std::vector<Int128> numerator(edges_.size(), 0);
+  // The fraction is summed per side of an edge, and is whole once the pieces cover the edge from
+  // end to end.
+  std::vector<std::array<Int128, 2>> numerator(edges_.size(), {0, 0});
   for (const NodeId n : inside_nodes()) {
     const Node& node = nodes_[n];
     const std::int64_t y0 = vertices_[node.end[kUp]].y;
@@ -183,18 +190,21 @@ Int128 TrapezoidalGraph::doubled_area() const {
       const Point l = vertices_[edges_[e].end[kDown]];
       const Int128 dx = std::int64_t{l.x} - u.x;
       const Int128 dy = std::int64_t{l.y} - u.y;
-      const Int128 piece = (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
-      numerator[e.value] += side == kRight ? piece : -piece;
+      numerator[e.value][opposite(side)] +=
+          (y1 - y0) * (2 * Int128{u.x} * dy + dx * (y0 + y1 - 2 * std::int64_t{u.y}));
     }
   }
-  Int128 area = 0;
+  std::vector<Int128> areas(face_count_ + std::size_t{1}, 0);
   for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (numerator[e] == 0) continue;
     const Edge& edge = edges_[EdgeId(e)];
-    const Int128 dy = std::int64_t{vertices_[edge.end[kDown]].y} - vertices_[edge.end[kUp]].y;
-    area += numerator[e] / dy;
+    for (const Side side : {kLeft, kRight}) {
+      const Int128 sum = numerator[e][side];
+      if (sum == 0) continue;
+      const Int128 dy = std::int64_t{vertices_[edge.end[kDown]].y} - vertices_[edge.end[kUp]].y;
+      areas[edge.face[side]] += side == kLeft ? sum / dy : -(sum / dy);
+    }
   }
-  return area;
+  return areas;
 }
 
 std::size_t TrapezoidalGraph::memory() const {
@@ -202,11 +212,13 @@ std::size_t TrapezoidalGraph::memory() const {
          nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(Corner);
 }
 
-std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vector<NodeId>& chain) {
+std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph,
+                                   const std::vector<NodeId>& chain) {
   std::vector<StripPoint> strip;
   const auto add_level = [&](const Node& node, Direction d) {
     const double y = graph.point(node.end[d]).y;
-    for (const Side side : {kLeft, kRight}) strip.push_back({x_at(graph, node.edge[side], node.end[d]), y});
+    for (const Side side : {kLeft, kRight})
+      strip.push_back({x_at(graph, node.edge[side], node.end[d]), y});
   };
   if (chain.empty()) return strip;
   add_level(graph.node(chain.front()), kUp);

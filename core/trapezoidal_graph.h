@@ -64,13 +64,19 @@ struct Edge {
 };
 
 /// One visit of a simple loop of the boundary to a vertex, and the edge by which it leaves.
+///
+/// Between polygons that share borders, the boundary consists of arcs too: they lead from one
+/// junction to another, or back to the same one. Their first corner has none before it, their last
+/// one has none after it and no edge.
 struct Corner {
   VertexId vertex;
   EdgeId edge;
   CornerId prev;
   CornerId next;
 
-  bool is_alive() const { return !prev.is_none(); }
+  bool is_alive() const { return !prev.is_none() || !next.is_none(); }
+  /// At a junction, where an arc ends.
+  bool is_end() const { return prev.is_none() != next.is_none(); }
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
@@ -108,6 +114,10 @@ class TrapezoidalGraph {
   const Edge& edge(EdgeId e) const { return edges_[e]; }
   const Node& node(NodeId n) const { return nodes_[n]; }
   const Corner& corner(CornerId c) const { return corners_[c]; }
+  /// Faces are numbered 1 .. face_count(), and kOutside.
+  FaceId face_count() const { return face_count_; }
+  /// The graph of several polygons that share borders.
+  bool is_coverage() const { return face_count_ > 1; }
   EdgeId frame_edge(Side s) const { return frame_[s]; }
 
   FaceId face(const Node& n) const { return edges_[n.edge[kLeft]].face[kRight]; }
@@ -144,6 +154,8 @@ class TrapezoidalGraph {
   /// Twice the exact area of all inside nodes, in cells squared, summed edge by edge over the nodes
   /// along them. Equal to the area of the rings if and only if the nodes tile every edge.
   Int128 doubled_area() const;
+  /// The same by face.
+  std::vector<Int128> doubled_areas() const;
 
   /// Bytes held.
   std::size_t memory() const;
@@ -154,12 +166,14 @@ class TrapezoidalGraph {
   friend class Trapezoidation;  // builds it
   friend class EditLog;         // changes it, by edit records only
   friend class BoundaryLoops;   // pairs the corners
+  friend class BorderArcs;      // pairs those of several polygons
 
   Table<VertexId, Point> vertices_;
   Table<EdgeId, Edge> edges_;
   Table<NodeId, Node> nodes_;
   Table<CornerId, Corner> corners_;
   EdgeId frame_[2];
+  FaceId face_count_ = 1;
 };
 
 /// A point of a quad strip: where the level y of a vertex meets an edge; x is rounded to doubles.

@@ -15,9 +15,22 @@ std::int64_t side_of(Point upper, Point lower, Point p) {
 
 bool Trapezoidation::build(const Boundary& boundary, TrapezoidalGraph& graph) {
   boundary_ = &boundary;
+  face_beyond_ = nullptr;
   graph_ = &graph;
+  return sweep();
+}
+
+bool Trapezoidation::build(const Boundary& boundary, const FaceBeyond& face_beyond,
+                           TrapezoidalGraph& graph) {
+  boundary_ = &boundary;
+  face_beyond_ = &face_beyond;
+  graph_ = &graph;
+  return sweep();
+}
+
+bool Trapezoidation::sweep() {
   start();
-  const std::size_t count = boundary.vertices.size() - 2;
+  const std::size_t count = boundary_->vertices.size() - 2;
   for (std::size_t v = 1; v <= count; ++v) {
     if (!sweep_vertex(VertexId(v))) return false;
   }
@@ -30,6 +43,7 @@ void Trapezoidation::start() {
   const std::size_t count = boundary_->edges.size();
   TrapezoidalGraph& g = *graph_;
   g.vertices_ = boundary_->vertices;
+  g.face_count_ = 1;
   g.corners_.clear();
   g.nodes_.clear();
   g.nodes_.reserve(2 * count + 2);
@@ -124,13 +138,13 @@ bool Trapezoidation::sweep_general(VertexId v) {
   }
   const Slot right = status_[left].next;
 
-  // Faces alternate from left to right (even-odd).
+  // Unless the caller knows better, faces alternate from left to right (even-odd).
   Slot last = left;
   FaceId face = g.edges_[status_[left].edge].face[kRight];
   for (const EdgeId e : starting_) {
     last = insert_after(last, e);
     g.edges_[e].face[kLeft] = face;
-    face = face == kOutside ? 1 : kOutside;
+    face = face_beyond_ != nullptr ? (*face_beyond_)(e, face) : (face == kOutside ? 1 : kOutside);
     g.edges_[e].face[kRight] = face;
   }
   link(kLeft, upper_left, open(left, v));

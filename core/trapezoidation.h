@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,10 @@
 
 namespace trapeze {
 
+/// The face on the right of an edge that has the given one on its left. Two edges that meet at a
+/// vertex of their own lead from one face to the same other one.
+using FaceBeyond = std::function<FaceId(EdgeId edge, FaceId left)>;
+
 /// Reusable memory of the sweep; one a thread.
 class Trapezoidation {
  public:
@@ -23,6 +28,9 @@ class Trapezoidation {
   /// empty (see BoundaryLoops). Returns false, leaving `graph` unspecified, if the boundary is not
   /// noded: two edges cross or overlap, or a vertex lies on an edge.
   bool build(const Boundary& boundary, TrapezoidalGraph& graph);
+
+  /// The same with faces of the caller's; what is left of everything is kOutside.
+  bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph);
 
  private:
   // A place in the status: an edge that crosses the sweep line and what lies right of it.
@@ -38,6 +46,7 @@ class Trapezoidation {
     NodeId right;  // the open node between this edge and the next
   };
 
+  bool sweep();
   void start();
   bool sweep_vertex(VertexId v);
   bool sweep_regular(VertexId v, EdgeId ending, EdgeId starting);
@@ -63,6 +72,7 @@ class Trapezoidation {
   void replace_child(Slot parent, Slot old_child, Slot new_child);
 
   const Boundary* boundary_ = nullptr;
+  const FaceBeyond* face_beyond_ = nullptr;  // none: even-odd
   TrapezoidalGraph* graph_ = nullptr;
   std::vector<Status> status_;
   std::vector<Slot> free_;

@@ -33,22 +33,38 @@ std::optional<WeightRule> weight_rule_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of(WeightRule rule) { return kNames[static_cast<std::size_t>(rule)].first; }
+std::string_view name_of(WeightRule rule) {
+  return kNames[static_cast<std::size_t>(rule)].first;
+}
 
-double squared_distance(Point p, Point a, Point b) { return SegmentDistance(a, b).squared(p); }
+double squared_distance(Point p, Point a, Point b) {
+  return SegmentDistance(a, b).squared(p);
+}
 
 std::span<const double> VertexWeights::weigh(std::span<const Point> ring, WeightRule rule) {
   weights_.assign(ring.size(), kInfinite);
   if (rule == WeightRule::effective_area) {
-    weigh_by_area(ring);
+    weigh_by_area(ring, false);
   } else {
     weigh_by_distance(ring, rule == WeightRule::raised_parents);
   }
   return weights_;
 }
 
-/// The uppermost vertex and the one farthest from it: a choice that any starting point and direction
-/// agree on.
+std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, WeightRule rule) {
+  weights_.assign(arc.size(), kInfinite);
+  if (rule == WeightRule::effective_area) {
+    weigh_by_area(arc, true);
+  } else {
+    farthest_.assign(arc);
+    pieces_.assign(1, {0, arc.size() - 1, kNone});
+    split_pieces(arc, rule == WeightRule::raised_parents);
+  }
+  return weights_;
+}
+
+/// The uppermost vertex and the one farthest from it: a choice that any starting point and
+/// direction agree on.
 VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) const {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -68,7 +84,6 @@ VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) co
   return anchors;
 }
 
-// Binary recursive partitioning, iteratively.
 void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_parents) {
   const std::size_t n = ring.size();
   farthest_.assign(ring);
@@ -76,9 +91,15 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
   const std::size_t a = anchors.first;
   const std::size_t b = anchors.second;
   pieces_.clear();
-  splits_.clear();
   pieces_.push_back({a, b > a ? b : b + n, kNone});
   pieces_.push_back({b, a > b ? a : a + n, kNone});
+  split_pieces(ring, raise_parents);
+}
+
+// Binary recursive partitioning of the pieces at hand, iteratively.
+void VertexWeights::split_pieces(std::span<const Point> points, bool raise_parents) {
+  const std::size_t n = points.size();
+  splits_.clear();
   while (!pieces_.empty()) {
     const Piece piece = pieces_.back();
     pieces_.pop_back();
@@ -98,8 +119,8 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
   }
 }
 
-void VertexWeights::weigh_by_area(std::span<const Point> ring) {
-  const std::size_t n = ring.size();
+void VertexWeights::weigh_by_area(std::span<const Point> points, bool is_arc) {
+  const std::size_t n = points.size();
   before_.resize(n);
   after_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -119,10 +140,13 @@ void VertexWeights::weigh_by_area(std::span<const Point> ring) {
   std::vector<double> area(n);
   std::priority_queue<Entry> queue;
   const auto enqueue = [&](std::size_t i) {
-    area[i] = triangle_area(ring[before_[i]], ring[i], ring[after_[i]]);
-    queue.push({area[i], ring[i], i});
+    area[i] = triangle_area(points[before_[i]], points[i], points[after_[i]]);
+    queue.push({area[i], points[i], i});
   };
-  for (std::size_t i = 0; i < n; ++i) enqueue(i);
+  const auto is_end = [&](std::size_t i) { return is_arc && (i == 0 || i + 1 == n); };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_end(i)) enqueue(i);
+  }
   double largest = 0;
   for (std::size_t left = n; left > 2;) {
     const Entry entry = queue.top();
@@ -138,8 +162,8 @@ void VertexWeights::weigh_by_area(std::span<const Point> ring) {
     before_[q] = p;
     --left;
     if (left > 2) {
-      enqueue(p);
-      enqueue(q);
+      if (!is_end(p)) enqueue(p);
+      if (!is_end(q)) enqueue(q);
     }
   }
 }

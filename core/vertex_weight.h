@@ -40,9 +40,14 @@ class VertexWeights {
   /// equal for the same ring started elsewhere or run through the other way round.
   std::span<const double> weigh(std::span<const Point> ring, WeightRule rule);
 
+  /// The same of an arc between two vertices that stay, which have no finite weight; they may be at
+  /// the same place. At least two points.
+  std::span<const double> weigh_arc(std::span<const Point> arc, WeightRule rule);
+
  private:
+  void split_pieces(std::span<const Point> points, bool raise_parents);
   void weigh_by_distance(std::span<const Point> ring, bool raise_parents);
-  void weigh_by_area(std::span<const Point> ring);
+  void weigh_by_area(std::span<const Point> points, bool is_arc);
   struct Anchors {
     std::size_t first;
     std::size_t second;

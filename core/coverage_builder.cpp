@@ -1,0 +1,293 @@
+#include "core/coverage_builder.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+namespace trapeze {
+namespace {
+
+/// A segment and the feature, by its position, whose boundary it is a part of.
+struct OwnedSegment {
+  Segment segment;
+  std::uint32_t owner = 0;
+};
+
+auto sweep_order(const Segment& s) {
+  return std::tuple(s.first.y, s.first.x, s.second.y, s.second.x);
+}
+
+std::vector<OwnedSegment> segments_of(std::span<const Rings> features) {
+  std::vector<OwnedSegment> segments;
+  for (std::uint32_t owner = 0; owner < features.size(); ++owner) {
+    for (const auto& [a, b] : segments_of(features[owner])) {
+      segments.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, owner});
+    }
+  }
+  return segments;
+}
+
+std::vector<OwnedSegment> node(const std::vector<OwnedSegment>& segments, HotCells cells) {
+  std::vector<Segment> alone;
+  alone.reserve(segments.size());
+  for (const OwnedSegment& s : segments) alone.push_back(s.segment);
+  std::vector<OwnedSegment> pieces;
+  for (const Piece& piece : node_pieces(alone, cells)) {
+    pieces.push_back({piece.segment, segments[piece.source].owner});
+  }
+  return pieces;
+}
+
+/// Numbers for small sets of features, each in ascending order; 0 is the empty one.
+class FeatureSets {
+ public:
+  FeatureSets() { number({}); }
+
+  std::uint32_t number(const std::vector<std::uint32_t>& features) {
+    const auto [found, is_new] =
+        numbers_.try_emplace(features, static_cast<std::uint32_t>(sets_.size()));
+    if (is_new) sets_.push_back(features);
+    return found->second;
+  }
+
+  const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
+  std::size_t size() const { return sets_.size(); }
+
+  /// The features that are in one of two sets and not in the other.
+  std::uint32_t toggled(std::uint32_t a, std::uint32_t b) {
+    const std::uint64_t key = std::uint64_t{a} << 32 | b;
+    const auto [found, is_new] = toggled_.try_emplace(key, 0);
+    if (is_new) {
+      std::vector<std::uint32_t> result;
+      std::ranges::set_symmetric_difference(sets_[a], sets_[b], std::back_inserter(result));
+      found->second = number(result);
+    }
+    return found->second;
+  }
+
+ private:
+  std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
+  std::vector<std::vector<std::uint32_t>> sets_;
+  std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
+};
+
+/// Different segments, and the sets of features whose boundary they are.
+struct Borders {
+  std::vector<Segment> segments;
+  std::vector<std::uint32_t> owners;
+};
+
+/// What a feature has twice is inside of it on both sides, or outside.
+Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
+  std::sort(pieces.begin(), pieces.end(), [](const OwnedSegment& a, const OwnedSegment& b) {
+    return std::tuple(sweep_order(a.segment), a.owner) <
+           std::tuple(sweep_order(b.segment), b.owner);
+  });
+  Borders borders;
+  std::vector<std::uint32_t> owners;
+  for (std::size_t i = 0; i < pieces.size();) {
+    const Segment& segment = pieces[i].segment;
+    owners.clear();
+    for (; i < pieces.size() && pieces[i].segment == segment; ++i) {
+      if (!owners.empty() && owners.back() == pieces[i].owner) {
+        owners.pop_back();
+      } else {
+        owners.push_back(pieces[i].owner);
+      }
+    }
+    if (owners.empty()) continue;
+    borders.segments.push_back(segment);
+    borders.owners.push_back(sets.number(owners));
+  }
+  return borders;
+}
+
+double area_of(const TrapezoidalGraph& g, const Node& node) {
+  const double top = g.point(node.end[kUp]).y;
+  const double bottom = g.point(node.end[kDown]).y;
+  if (top == bottom) return 0;
+  const auto x_at = [&g](EdgeId e, double y) {
+    const Point u = g.point(g.edge(e).end[kUp]);
+    const Point l = g.point(g.edge(e).end[kDown]);
+    return u.x + (static_cast<double>(l.x) - u.x) * ((y - u.y) / (static_cast<double>(l.y) - u.y));
+  };
+  const double middle = (top + bottom) / 2;
+  return (bottom - top) * (x_at(node.edge[kRight], middle) - x_at(node.edge[kLeft], middle));
+}
+
+/// The faces of the graph are sets: how much of the map each covers.
+std::vector<double> areas_of_sets(const TrapezoidalGraph& g, std::size_t count) {
+  std::vector<double> areas(count, 0);
+  for (const NodeId n : g.inside_nodes()) areas[g.face(g.node(n))] += area_of(g, g.node(n));
+  return areas;
+}
+
+void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> overlaps;
+  const std::vector<double> areas = areas_of_sets(g, sets.size());
+  for (std::uint32_t number = 0; number < areas.size(); ++number) {
+    if (areas[number] == 0) continue;
+    const std::vector<std::uint32_t>& set = sets[number];
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      outcome.areas[set[i]] += areas[number];
+      for (std::size_t k = i + 1; k < set.size(); ++k) {
+        overlaps[{set[i], set[k]}] += areas[number];
+      }
+    }
+  }
+  for (const auto& [pair, area] : overlaps) {
+    outcome.overlaps.push_back({pair.first, pair.second, area});
+  }
+}
+
+/// What is drawn of a set: its last feature.
+FaceId face_of(const std::vector<std::uint32_t>& set) {
+  return set.empty() ? kOutside : set.back() + 1;
+}
+
+/// The faces beside each edge.
+using Sides = std::vector<std::pair<FaceId, FaceId>>;
+
+Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t edges) {
+  Sides sides;
+  sides.reserve(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    const Edge& edge = g.edge(EdgeId(e));
+    sides.emplace_back(face_of(sets[edge.face[kLeft]]), face_of(sets[edge.face[kRight]]));
+  }
+  return sides;
+}
+
+/// Drops the segments with one feature on both sides.
+void keep_borders(std::vector<Segment>& segments, Sides& sides) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (sides[i].first == sides[i].second) continue;
+    segments[kept] = segments[i];
+    sides[kept++] = sides[i];
+  }
+  segments.resize(kept);
+  sides.resize(kept);
+}
+
+void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
+  outcome.vertices = g.vertex_count();
+  const Regions regions(g);
+  std::vector<FaceId> first_beside(regions.face.size(), kOutside);
+  std::vector<bool> is_gap(regions.face.size(), false);
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    const Edge& edge = g.edge(EdgeId(i));
+    if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
+    outcome.shared_edges += edge.face[kLeft] != kOutside && edge.face[kRight] != kOutside;
+    for (const Side s : {kLeft, kRight}) {
+      if (edge.face[s] != kOutside) continue;
+      const RegionId hole = regions.beside[EdgeId(i)][s];
+      FaceId& first = first_beside[hole.value];
+      if (first == kOutside) first = edge.face[opposite(s)];
+      if (first != edge.face[opposite(s)] && hole != regions.unbounded) is_gap[hole.value] = true;
+    }
+  }
+  outcome.gaps = static_cast<std::size_t>(std::count(is_gap.begin(), is_gap.end(), true));
+  std::vector<VertexId> ends;
+  for (const Corner& corner : g.corners()) {
+    if (corner.is_end()) ends.push_back(corner.vertex);
+  }
+  std::sort(ends.begin(), ends.end());
+  outcome.junctions =
+      static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+}
+
+}  // namespace
+
+CoverageOutcome CoverageBuilder::build(std::span<const Rings> features, TrapezoidalGraph& graph) {
+  // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
+  constexpr int kQuickPasses = 3;
+  constexpr int kMaxPasses = 7;
+  CoverageOutcome outcome;
+  outcome.areas.assign(features.size(), 0);
+  std::vector<OwnedSegment> pieces = segments_of(features);
+  FeatureSets sets;
+  Borders borders;
+  for (int pass = 0;; ++pass) {
+    if (pass == kMaxPasses) {
+      outcome.failure =
+          "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+      return outcome;
+    }
+    if (pass > 0) {
+      pieces = node(pieces,
+                    pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+    }
+    outcome.noded = pass > 0;
+    borders = unite(pieces, sets);
+    if (borders.segments.empty()) return outcome;
+    boundary_.assign(borders.segments);
+    const FaceBeyond toggle = [&](EdgeId e, FaceId left) {
+      return sets.toggled(left, borders.owners[e.value]);
+    };
+    if (trapezoidation_.build(boundary_, toggle, graph)) break;
+  }
+  note_areas(graph, sets, outcome);
+  Sides sides = sides_of(graph, sets, borders.segments.size());
+  keep_borders(borders.segments, sides);
+  if (borders.segments.empty()) return outcome;
+  boundary_.assign(borders.segments);
+  const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
+  outcome.built = trapezoidation_.build(boundary_, given, graph);
+  if (!outcome.built) return outcome;
+  arcs_.trace(boundary_, static_cast<FaceId>(features.size()), graph);
+  count_borders(graph, outcome);
+  return outcome;
+}
+
+std::vector<Rings> rings_of_faces(const TrapezoidalGraph& g) {
+  // Every side of an edge that lies in a face is an item at both of its ends.
+  struct Item {
+    FaceId face;
+    VertexId vertex;
+    EdgeId edge;
+    auto operator<=>(const Item&) const = default;
+  };
+  std::vector<Item> items;
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    const Edge& edge = g.edge(EdgeId(i));
+    if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
+    for (const FaceId face : edge.face) {
+      if (face == kOutside) continue;
+      for (const VertexId v : edge.end) items.push_back({face, v, EdgeId(i)});
+    }
+  }
+  std::sort(items.begin(), items.end());
+  std::vector<bool> used(items.size(), false);
+  const auto take_edge = [&](const Item& item) {
+    used[static_cast<std::size_t>(std::lower_bound(items.begin(), items.end(), item) -
+                                  items.begin())] = true;
+  };
+  std::vector<Rings> rings(g.face_count());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (used[i]) continue;
+    Rings& of_face = rings[items[i].face - 1];
+    Item at = items[i];
+    do {
+      of_face.points.push_back(g.point(at.vertex));
+      take_edge(at);
+      const Edge& edge = g.edge(at.edge);
+      at.vertex = edge.end[edge.end[kUp] == at.vertex ? kDown : kUp];
+      take_edge(at);
+      // Another edge of the face that leaves from here; each vertex has an even number of them.
+      auto next = std::lower_bound(items.begin(), items.end(), Item{at.face, at.vertex, EdgeId(0)});
+      while (next != items.end() && next->face == at.face && next->vertex == at.vertex &&
+             used[static_cast<std::size_t>(next - items.begin())]) {
+        ++next;
+      }
+      if (next == items.end() || next->face != at.face || next->vertex != at.vertex) break;
+      at = *next;
+    } while (true);
+    of_face.close_ring();
+  }
+  return rings;
+}
+
+}  // namespace trapeze
