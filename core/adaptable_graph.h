@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/coverage_groups.h"
 #include "core/edit_log.h"
 #include "core/generalization.h"
 #include "core/region_borders.h"
@@ -32,6 +33,7 @@ namespace trapeze {
 struct GeneralizationOptions {
   WeightRule weights = WeightRule::douglas_peucker;
   Topology topology = Topology::strict;
+  Coverage coverage = Coverage::off;  // of layers; a graph is what it was built from
 };
 
 /// The corners of a graph in the order in which they are to go, with what blocks them.

@@ -19,10 +19,10 @@ auto sweep_order(const Segment& s) {
   return std::tuple(s.first.y, s.first.x, s.second.y, s.second.x);
 }
 
-std::vector<OwnedSegment> segments_of(std::span<const Rings> features) {
+std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features) {
   std::vector<OwnedSegment> segments;
   for (std::uint32_t owner = 0; owner < features.size(); ++owner) {
-    for (const auto& [a, b] : segments_of(features[owner])) {
+    for (const auto& [a, b] : segments_of(*features[owner])) {
       segments.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, owner});
     }
   }
@@ -201,7 +201,8 @@ void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
 
 }  // namespace
 
-CoverageOutcome CoverageBuilder::build(std::span<const Rings> features, TrapezoidalGraph& graph) {
+CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
+                                       TrapezoidalGraph& graph) {
   // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
   constexpr int kQuickPasses = 3;
   constexpr int kMaxPasses = 7;

@@ -47,7 +47,7 @@ class CoverageBuilder {
   /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
   /// has the place. Never throws for bad geometry: `graph` is meaningful only if the outcome says
   /// built.
-  CoverageOutcome build(std::span<const Rings> features, TrapezoidalGraph& graph);
+  CoverageOutcome build(std::span<const Rings* const> features, TrapezoidalGraph& graph);
 
  private:
   Boundary boundary_;

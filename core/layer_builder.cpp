@@ -315,15 +315,18 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   return outcome;
 }
 
-CoverageOutcome LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
-                                           std::span<const Rings> features) {
-  const CoverageOutcome outcome = state_->coverage_builder.build(features, state_->graph);
-  if (!outcome.built) return outcome;
+LayerBuilder::Together LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
+                                                  std::span<const Rings* const> features) {
+  Together together;
+  together.outcome = state_->coverage_builder.build(features, state_->graph);
+  if (!together.outcome.built) return together;
+  together.apart = overlapping_features(together.outcome, most_overlap(state_->options.coverage));
+  if (!together.apart.empty()) return together;
   state_->begin_part(rows.front());
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);
   for (std::size_t i = 0; i < rows.size(); ++i) state_->add_outline(rows[i], outlines[i]);
   state_->recorder.record(state_->graph, rows, state_->options, state_->stock.history);
-  return outcome;
+  return together;
 }
 
 std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,

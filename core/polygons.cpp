@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/coverage_builder.h"
 #include "core/graph_builder.h"
 
 namespace trapeze {
@@ -128,18 +129,28 @@ void append_polygons(const TrapezoidalGraph& g, Polygons& polygons) {
   polygons.ends.push_back(static_cast<std::uint32_t>(polygons.rings.size()));
 }
 
-}  // namespace
-
-// The corners of an adapted graph need not do: without the topology test its edges may cross.
-Polygons polygons_of(const TrapezoidalGraph& graph) {
+Polygons polygons_of_rings(Rings& rings) {
   Polygons polygons;
-  Rings rings = rings_of(graph);
   TrapezoidalGraph fresh;
   GraphBuilder builder;
   const BuildOutcome outcome = builder.build(rings, fresh);
   polygons.is_noded = outcome.noded;
   polygons.failure = outcome.failure;
   if (outcome.built) append_polygons(fresh, polygons);
+  return polygons;
+}
+
+}  // namespace
+
+// The corners of an adapted graph need not do: without the topology test its edges may cross.
+Polygons polygons_of(const TrapezoidalGraph& graph) {
+  Rings rings = rings_of(graph);
+  return polygons_of_rings(rings);
+}
+
+std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph) {
+  std::vector<Polygons> polygons;
+  for (Rings& rings : rings_of_faces(graph)) polygons.push_back(polygons_of_rings(rings));
   return polygons;
 }
 

@@ -43,4 +43,8 @@ struct Polygons {
 /// each. They depend on what `graph` draws only, not on how it came about.
 Polygons polygons_of(const TrapezoidalGraph& graph);
 
+/// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common
+/// border in common.
+std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph);
+
 }  // namespace trapeze

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/clean_rings.h"
 #include "core/io/checksum.h"
 #include "core/layer_arrays.h"
 #include "core/layer_builder.h"
@@ -45,7 +46,24 @@ void draw_shape(Random& random, int shape, Rings& rings) {
   rings.close_ring();
 }
 
-std::unique_ptr<Layer> build_probe(const GeneralizationOptions& options) {
+/// The same kind of rings as features of one coverage: borders between all of them, junctions, and
+/// regions of all sizes that are to go.
+void add_coverage(Random& random, FeatureTable& features, LayerBuilder& builder) {
+  std::vector<Rings> rings(kShapes);
+  std::vector<std::uint32_t> rows;
+  std::vector<const Rings*> pointers;
+  for (int shape = 0; shape < kShapes; ++shape) {
+    Rings& drawn = rings[static_cast<std::size_t>(shape)];
+    draw_shape(random, shape, drawn);
+    clean_rings(drawn);
+    rows.push_back(features.append(kShapes + shape, {}));
+    pointers.push_back(&drawn);
+  }
+  builder.add_coverage(rows, pointers);
+}
+
+std::unique_ptr<Layer> build_probe(GeneralizationOptions options) {
+  options.coverage = Coverage::on;
   FeatureTable features(std::vector<Field>{});
   std::vector<LayerBuilder> builders;
   builders.emplace_back(options);
@@ -56,6 +74,7 @@ std::unique_ptr<Layer> build_probe(const GeneralizationOptions& options) {
     draw_shape(random, shape, rings);
     builders.front().add(features.append(shape, {}), rings);
   }
+  add_coverage(random, features, builders.front());
   return LayerBuilder::join(builders, std::move(features));
 }
 

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ogr_geometry.h>
@@ -42,6 +44,7 @@ struct BuildTally {
   std::size_t vertices = 0;
   std::size_t collapsed_rings = 0;
   std::size_t repaired = 0;
+  CoverageCounts coverage;
   std::vector<OrderedNote> skips;
   std::vector<OrderedNote> remarks;  // the first kMaxRemarks, on features that were not skipped
 
@@ -51,26 +54,54 @@ struct BuildTally {
   void remark(std::size_t order, std::int64_t id, std::string words);
 };
 
+/// A feature that waits for the others, with which it may share borders.
+struct WaitingFeature {
+  std::size_t order = 0;
+  std::uint32_t row = 0;
+  std::int64_t id = 0;
+  Rings rings;  // clean, not empty
+};
+
 /// Belongs to one thread. Gets its jobs in ascending order.
 class FeatureBuilder {
  public:
   /// `source` must outlive the builder.
   FeatureBuilder(const FeatureSource& source, const GeneralizationOptions& generalization)
-      : reader_(source), builder_(generalization) {}
+      : reader_(source), generalization_(generalization), builder_(generalization) {}
 
-  /// Builds the graph of one feature. Throws SourceError if the whole source cannot be
-  /// understood: it names no CRS and is not in degrees, or there is no way from its CRS.
+  /// Builds the graph of one feature; if coverages are wanted, reads its rings only, and lets it
+  /// wait. Throws SourceError if the whole source cannot be understood: it names no CRS and is not
+  /// in degrees, or there is no way from its CRS.
   void build(const FeatureJob& job);
+
+  std::vector<WaitingFeature> take_waiting() { return std::exchange(waiting_, {}); }
+  /// Builds the graph of a feature that waited. Its rings are used up.
+  void build_apart(WaitingFeature& feature);
+  /// Builds one graph of several, in ascending order of rows; those that overlap others by too much
+  /// are built apart, each by itself, and so are all if it cannot be done. Their rings are used up.
+  void build_together(std::span<WaitingFeature* const> features);
 
   const BuildTally& tally() const { return tally_; }
   LayerBuilder take_builder() { return std::move(builder_); }
 
  private:
-  void count(const FeatureJob& job, const BuildOutcome& outcome);
+  struct Subject {
+    std::size_t order;
+    std::int64_t id;
+  };
+  void wait(const FeatureJob& job, Rings& rings);
+  void count(const Subject& subject, const BuildOutcome& outcome);
+  void count(std::span<WaitingFeature* const> features, const CoverageOutcome& outcome);
 
   SourceRingReader reader_;
+  GeneralizationOptions generalization_;
   LayerBuilder builder_;
+  std::vector<WaitingFeature> waiting_;
   BuildTally tally_;
 };
+
+/// Builds all features that wait in the builders, with those with which they share borders, on a
+/// thread for each builder. What comes of it does not depend on their number.
+void build_waiting(std::vector<FeatureBuilder>& builders, Coverage coverage);
 
 }  // namespace trapeze

@@ -163,6 +163,15 @@ void add_sums(const BuildTally& tally, LoadReport& report) {
   report.vertices += tally.vertices;
   report.collapsed_rings += tally.collapsed_rings;
   report.repaired += tally.repaired;
+  const auto add = [&](std::size_t CoverageCounts::*count) {
+    report.coverage.*count += tally.coverage.*count;
+  };
+  for (const auto count :
+       {&CoverageCounts::groups, &CoverageCounts::features, &CoverageCounts::noded,
+        &CoverageCounts::shared_edges, &CoverageCounts::junctions, &CoverageCounts::overlaps,
+        &CoverageCounts::gaps, &CoverageCounts::apart}) {
+    add(count);
+  }
 }
 
 void sort_by_order(std::vector<OrderedNote>& notes) {
@@ -218,6 +227,8 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options,
   loader.read_all();
   loaded.report.read_seconds = seconds_since(start);
   std::vector<FeatureBuilder>& builders = pool.finish();
+  const Coverage coverage = options.generalization.coverage;
+  if (coverage != Coverage::off) build_waiting(builders, coverage);
   fill_report(loader, builders, source, loaded.report);
   loaded.layer = join_layer(builders, loader.take_table());
   if (options.progress) options.progress(1);

@@ -20,6 +20,18 @@ struct FeatureNote {
   std::string reason;
 };
 
+/// What was found out about polygons that share borders.
+struct CoverageCounts {
+  std::size_t groups = 0;        // of polygons that live in one graph
+  std::size_t features = 0;      // in them
+  std::size_t noded = 0;         // groups in which borders crossed, or lacked vertices on one side
+  std::size_t shared_edges = 0;  // between two features, each once
+  std::size_t junctions = 0;     // vertices where three or more borders meet
+  std::size_t overlaps = 0;      // pairs of features of which one is drawn over a part of the other
+  std::size_t gaps = 0;          // places between features that none of them covers
+  std::size_t apart = 0;         // features that overlap their neighbours by too much to be in one
+};
+
 /// What was found in a source. Every feature is counted once in exactly one of `loaded`,
 /// `other_geometry`, `empty`, `skipped`.
 struct LoadReport {
@@ -39,6 +51,7 @@ struct LoadReport {
   std::size_t vertices = 0;  // in the finished graphs
   std::size_t collapsed_rings = 0;
   std::size_t repaired = 0;  // noded: crossings, touches, overlaps
+  CoverageCounts coverage;   // all 0 if that was off
   std::vector<FeatureNote>
       notes;                // one for each skipped feature, the first hundred of others (repaired)
   double read_seconds = 0;  // wall time until the last feature was read, or the file mapped

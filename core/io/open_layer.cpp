@@ -7,12 +7,14 @@ namespace trapeze {
 
 LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   if (is_prepared_file(path)) {
-    LoadedLayer layer = open_prepared_layer(path, {options.weights, options.prepared_from});
+    LoadedLayer layer =
+        open_prepared_layer(path, {options.weights, options.prepared_from, options.coverage});
     if (options.progress) options.progress(1);
     return layer;
   }
   LoadOptions load;
   load.generalization.weights = options.weights.value_or(WeightRule::douglas_peucker);
+  load.generalization.coverage = options.coverage.value_or(Coverage::off);
   load.progress = options.progress;
   return load_layer(path, load);
 }

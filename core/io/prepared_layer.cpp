@@ -56,7 +56,10 @@ template <typename Report, typename Visit>
 void for_each_count(Report& report, const Visit& visit) {
   for (auto* count : {&report.features, &report.loaded, &report.other_geometry, &report.empty,
                       &report.skipped, &report.polygons, &report.rings, &report.source_vertices,
-                      &report.vertices, &report.collapsed_rings, &report.repaired}) {
+                      &report.vertices, &report.collapsed_rings, &report.repaired,
+                      &report.coverage.groups, &report.coverage.features, &report.coverage.noded,
+                      &report.coverage.shared_edges, &report.coverage.junctions,
+                      &report.coverage.overlaps, &report.coverage.gaps, &report.coverage.apart}) {
     visit(*count);
   }
 }
@@ -113,6 +116,7 @@ std::vector<Field> read_fields(ByteReader& in) {
 void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.weights));
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
+  out.add(static_cast<std::uint8_t>(numbers.options.coverage));
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
   const Layer::Size& size = numbers.size;
@@ -128,6 +132,7 @@ LayerArrays read_numbers(ByteReader& in) {
   LayerArrays numbers;
   numbers.options.weights = take_enum(in, WeightRule::effective_area);
   numbers.options.topology = take_enum(in, Topology::fast);
+  numbers.options.coverage = take_enum(in, Coverage::on);
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();
@@ -214,9 +219,15 @@ void take_arrays(SectionReader& in, LayerArrays& a) {
 }
 
 void check_options(const GeneralizationOptions& options, const PreparedDemands& demands) {
-  if (!demands.weights || *demands.weights == options.weights) return;
-  throw PreparedFileError("was prepared with the weights " + std::string(name_of(options.weights)) +
-                          ", and " + std::string(name_of(*demands.weights)) + " are configured");
+  if (demands.weights && *demands.weights != options.weights) {
+    throw PreparedFileError("was prepared with the weights " +
+                            std::string(name_of(options.weights)) + ", and " +
+                            std::string(name_of(*demands.weights)) + " are configured");
+  }
+  if (demands.coverage && *demands.coverage != options.coverage) {
+    throw PreparedFileError("was prepared with coverage " + std::string(name_of(options.coverage)) +
+                            ", and " + std::string(name_of(*demands.coverage)) + " is configured");
+  }
 }
 
 void check_fingerprint(const GeneralizationOptions& options, std::uint64_t fingerprint) {

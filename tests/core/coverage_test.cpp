@@ -29,12 +29,18 @@ std::vector<Rings> features_from_text(const Texts& texts) {
   return features;
 }
 
+std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  return pointers;
+}
+
 struct BuiltCoverage {
   CoverageOutcome outcome;
   TrapezoidalGraph graph;
 
   explicit BuiltCoverage(const std::vector<Rings>& features) {
-    outcome = CoverageBuilder().build(features, graph);
+    outcome = CoverageBuilder().build(pointers_to(features), graph);
     EXPECT_EQ(outcome.failure, "");
     if (!outcome.built) return;
     EXPECT_EQ(check_graph(graph), "");
@@ -127,7 +133,7 @@ TEST(Coverage, RingsOfFacesAreThoseThatItWasBuiltFrom) {
 void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   TrapezoidalGraph fresh;
-  const CoverageOutcome outcome = CoverageBuilder().build(rings, fresh);
+  const CoverageOutcome outcome = CoverageBuilder().build(pointers_to(rings), fresh);
   EXPECT_FALSE(outcome.noded) << "the borders that are left cross or touch";
   if (!outcome.built) {
     EXPECT_EQ(graph.inside_nodes().size(), 0u);

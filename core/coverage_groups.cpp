@@ -1,0 +1,158 @@
+#include "core/coverage_groups.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "core/noding.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Coverage>, 3> kNames{{
+    {"off", Coverage::off},
+    {"auto", Coverage::automatic},
+    {"on", Coverage::on},
+}};
+
+/// Sets of features that are tied together; the smallest number of each stands for it.
+class Ties {
+ public:
+  explicit Ties(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+
+  void tie(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+  std::vector<std::vector<std::uint32_t>> groups() {
+    std::vector<std::vector<std::uint32_t>> by_first(parent_.size());
+    for (std::uint32_t i = 0; i < parent_.size(); ++i) by_first[find(i)].push_back(i);
+    std::erase_if(by_first, [](const auto& group) { return group.size() < 2; });
+    return by_first;
+  }
+
+ private:
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  std::vector<std::uint32_t> parent_;
+};
+
+struct OwnedSegment {
+  Segment segment;
+  std::uint32_t owner = 0;
+};
+
+auto sort_key(const OwnedSegment& s) {
+  return std::tuple(s.segment.first.y, s.segment.first.x, s.segment.second.y, s.segment.second.x,
+                    s.owner);
+}
+
+void tie_by_edges(std::span<const Rings* const> features, Ties& ties) {
+  std::vector<OwnedSegment> segments;
+  for (std::uint32_t owner = 0; owner < features.size(); ++owner) {
+    for (const auto& [a, b] : segments_of(*features[owner])) {
+      segments.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, owner});
+    }
+  }
+  std::sort(segments.begin(), segments.end(),
+            [](const OwnedSegment& a, const OwnedSegment& b) { return sort_key(a) < sort_key(b); });
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    if (segments[i - 1].segment == segments[i].segment) {
+      ties.tie(segments[i - 1].owner, segments[i].owner);
+    }
+  }
+}
+
+void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
+  struct Place {
+    Box box;
+    std::uint32_t feature;
+  };
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    Place place{Box(), i};
+    for (const Point p : features[i]->points) place.box.include(p);
+    if (!place.box.is_empty()) places.push_back(place);
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tuple(a.box.min_x, a.feature) < std::tuple(b.box.min_x, b.feature);
+  });
+  // From west to east, with those that are not passed yet.
+  std::vector<Place> open;
+  for (const Place& place : places) {
+    std::erase_if(open, [&](const Place& other) { return other.box.max_x < place.box.min_x; });
+    for (const Place& other : open) {
+      if (other.box.intersects(place.box)) ties.tie(other.feature, place.feature);
+    }
+    open.push_back(place);
+  }
+}
+
+}  // namespace
+
+std::optional<Coverage> coverage_from_name(std::string_view name) {
+  for (const auto& [known, coverage] : kNames) {
+    if (known == name) return coverage;
+  }
+  return std::nullopt;
+}
+
+std::string_view name_of(Coverage coverage) {
+  return kNames[static_cast<std::size_t>(coverage)].first;
+}
+
+double most_overlap(Coverage coverage) {
+  return coverage == Coverage::on ? std::numeric_limits<double>::infinity() : 0.01;
+}
+
+std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
+                                                       Coverage coverage) {
+  Ties ties(features.size());
+  if (coverage == Coverage::on) {
+    tie_by_boxes(features, ties);
+  } else {
+    tie_by_edges(features, ties);
+  }
+  return ties.groups();
+}
+
+std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most) {
+  std::vector<Overlap> overlaps;
+  for (const Overlap& overlap : outcome.overlaps) {
+    const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
+    if (overlap.area > most * smaller) overlaps.push_back(overlap);
+  }
+  std::vector<std::uint32_t> apart;
+  std::vector<std::uint32_t> count(outcome.areas.size());
+  while (!overlaps.empty()) {
+    std::fill(count.begin(), count.end(), 0u);
+    for (const Overlap& overlap : overlaps) {
+      ++count[overlap.lower];
+      ++count[overlap.upper];
+    }
+    // The last one of the greatest.
+    const auto most_often = std::max_element(count.rbegin(), count.rend());
+    const auto worst = static_cast<std::uint32_t>(count.rend() - most_often - 1);
+    apart.push_back(worst);
+    std::erase_if(overlaps, [worst](const Overlap& overlap) {
+      return overlap.lower == worst || overlap.upper == worst;
+    });
+  }
+  std::sort(apart.begin(), apart.end());
+  return apart;
+}
+
+}  // namespace trapeze

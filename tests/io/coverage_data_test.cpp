@@ -1,0 +1,232 @@
+// Real coverages stay coverages at every zoom and at odd tolerances.
+#include <geos_c.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/adaptable_graph.h"
+#include "core/check_graph.h"
+#include "core/clean_rings.h"
+#include "core/coverage_builder.h"
+#include "core/coverage_groups.h"
+#include "core/io/feature_source.h"
+#include "core/io/source_ring_reader.h"
+#include "core/polygons.h"
+#include "core/regions.h"
+#include "core/tolerance.h"
+#include "core/web_mercator.h"
+
+namespace trapeze {
+namespace {
+
+constexpr double kTolerancePixels = 0.25;
+// GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
+constexpr std::size_t kMaxHolesForGeos = 500;
+
+double epsilon_of_zoom(int zoom) {
+  const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / 256;
+  return epsilon_of_level(nearest_level(kTolerancePixels * cells_per_pixel));
+}
+
+/// Those of all zooms, and ten that are of none, in ascending order.
+std::vector<double> tolerances() {
+  std::vector<double> epsilons;
+  for (int zoom = 0; zoom <= 22; ++zoom) epsilons.push_back(epsilon_of_zoom(zoom));
+  for (const double odd : {0.3, 1.7, 23.0, 111.1, 1234.5, 7777.7, 54321.0, 3e5, 2.2e6, 1.9e7}) {
+    epsilons.push_back(odd);
+  }
+  std::sort(epsilons.begin(), epsilons.end());
+  return epsilons;
+}
+
+std::vector<Rings> rings_of_source(const std::string& path) {
+  FeatureSource source(path);
+  SourceRingReader reader(source);
+  std::vector<Rings> features;
+  for (SourceFeature next; source.next(next);) {
+    const OGRGeometry* geometry = next.feature->GetGeomFieldRef(next.layer->geometry_field);
+    if (geometry == nullptr || !has_polygons(*geometry)) continue;
+    features.push_back(reader.read(*geometry, next.layer_index).rings);
+    clean_rings(features.back());
+  }
+  return features;
+}
+
+class Geos {
+ public:
+  Geos() : handle_(GEOS_init_r()) {}
+  ~Geos() { GEOS_finish_r(handle_); }
+  Geos(const Geos&) = delete;
+  Geos& operator=(const Geos&) = delete;
+
+  bool is_valid(const Rings& rings, std::size_t begin, std::size_t end) const {
+    std::vector<GEOSGeometry*> holes;
+    GEOSGeometry* shell = ring(rings[begin]);
+    for (std::size_t r = begin + 1; r < end; ++r) holes.push_back(ring(rings[r]));
+    GEOSGeometry* polygon =
+        GEOSGeom_createPolygon_r(handle_, shell, holes.data(), static_cast<unsigned>(holes.size()));
+    const bool is_valid = GEOSisValid_r(handle_, polygon) == 1;
+    GEOSGeom_destroy_r(handle_, polygon);
+    return is_valid;
+  }
+
+ private:
+  GEOSGeometry* ring(std::span<const Point> points) const {
+    std::vector<double> xy;
+    for (std::size_t i = 0; i <= points.size(); ++i) {
+      const Point p = points[i % points.size()];
+      xy.insert(xy.end(), {static_cast<double>(p.x), static_cast<double>(p.y)});
+    }
+    return GEOSGeom_createLinearRing_r(
+        handle_, GEOSCoordSeq_copyFromBuffer_r(
+                     handle_, xy.data(), static_cast<unsigned>(points.size() + 1), false, false));
+  }
+
+  GEOSContextHandle_t handle_;
+};
+
+/// A directed edge of a ring.
+using Step = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
+
+Step step(Point a, Point b) {
+  return {a.x, a.y, b.x, b.y};
+}
+
+/// Bounded places that nothing covers.
+std::size_t count_holes(const TrapezoidalGraph& graph) {
+  const Regions regions(graph);
+  return static_cast<std::size_t>(std::count(regions.face.begin(), regions.face.end(), kOutside)) -
+         1;
+}
+
+class CoverageTrial {
+ public:
+  explicit CoverageTrial(TrapezoidalGraph graph)
+      : holes_(count_holes(graph)), adaptable_(std::move(graph)) {}
+
+  void run() {
+    for (const double epsilon : tolerances()) {
+      SCOPED_TRACE("tolerance " + std::to_string(epsilon));
+      adaptable_.adapt_to(epsilon);
+      judge(epsilon);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+
+ private:
+  void judge(double epsilon) {
+    const TrapezoidalGraph& graph = adaptable_.graph();
+    ASSERT_EQ(check_graph(graph), "");
+    EXPECT_LE(count_holes(graph), holes_) << "there are holes that the source has not";
+    const std::vector<Polygons> faces = polygons_of_faces(graph);
+    std::vector<Step> steps;
+    Int128 sum = 0;
+    std::size_t parts = 0;
+    for (const Polygons& polygons : faces) {
+      EXPECT_FALSE(polygons.is_noded);
+      parts += polygons.size();
+      judge_validity(polygons);
+      for (std::size_t r = 0; r < polygons.rings.size(); ++r) {
+        const auto ring = polygons.rings[r];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+          const Point a = ring[i];
+          const Point b = ring[(i + 1) % ring.size()];
+          steps.push_back(step(a, b));
+          sum += Int128{a.x} * b.y - Int128{b.x} * a.y;
+        }
+      }
+    }
+    EXPECT_TRUE((sum < 0 ? -sum : sum) == graph.doubled_area()) << "the areas do not add up";
+    std::sort(steps.begin(), steps.end());
+    EXPECT_EQ(std::adjacent_find(steps.begin(), steps.end()), steps.end())
+        << "an edge is used twice in one direction";
+    expect_inner_edges_both_ways(graph, steps);
+    std::printf("  %10.1f cells: %7zu vertices, %5zu polygons, %5zu holes\n", epsilon,
+                count_vertices(graph), parts, count_holes(graph));
+  }
+
+  void judge_validity(const Polygons& polygons) const {
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const std::size_t begin = polygons.first_ring(i);
+      if (polygons.ends[i] - begin > kMaxHolesForGeos) continue;
+      EXPECT_TRUE(geos_.is_valid(polygons.rings, begin, polygons.ends[i]));
+    }
+  }
+
+  static void expect_inner_edges_both_ways(const TrapezoidalGraph& graph,
+                                           const std::vector<Step>& steps) {
+    std::size_t inner = 0;
+    std::size_t outer = 0;
+    for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+      const Edge& edge = graph.edge(EdgeId(i));
+      if (!edge.is_alive() || graph.is_frame(EdgeId(i))) continue;
+      const Point a = graph.point(edge.end[kUp]);
+      const Point b = graph.point(edge.end[kDown]);
+      const int uses = std::binary_search(steps.begin(), steps.end(), step(a, b)) +
+                       std::binary_search(steps.begin(), steps.end(), step(b, a));
+      const bool is_inner = edge.face[kLeft] != kOutside && edge.face[kRight] != kOutside;
+      ASSERT_EQ(uses, is_inner ? 2 : 1);
+      (is_inner ? inner : outer) += 1;
+    }
+    EXPECT_EQ(steps.size(), 2 * inner + outer);
+  }
+
+  static std::size_t count_vertices(const TrapezoidalGraph& graph) {
+    std::vector<VertexId> vertices;
+    for (const Corner& corner : graph.corners()) {
+      if (corner.is_alive()) vertices.push_back(corner.vertex);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    return static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) -
+                                    vertices.begin());
+  }
+
+  const Geos geos_;
+  const std::size_t holes_;
+  AdaptableGraph adaptable_;
+};
+
+class CoverageDataTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CoverageDataTest, StaysACoverageAtEveryTolerance) {
+  const char* folder = std::getenv("TRAPEZE_DATA");
+  if (folder == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of real data";
+  const std::filesystem::path path = std::filesystem::path(folder) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const std::vector<Rings> features = rings_of_source(path.string());
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  std::size_t grouped = 0;
+  for (const auto& group : group_features(pointers, Coverage::automatic)) {
+    std::vector<const Rings*> members;
+    for (const std::uint32_t i : group) members.push_back(pointers[i]);
+    TrapezoidalGraph graph;
+    const CoverageOutcome outcome = CoverageBuilder().build(members, graph);
+    ASSERT_EQ(outcome.failure, "");
+    ASSERT_TRUE(outcome.built);
+    grouped += group.size();
+    std::printf(
+        "%zu features, %zu vertices, %zu shared edges, %zu junctions, %zu overlaps, %zu gaps\n",
+        group.size(), outcome.vertices, outcome.shared_edges, outcome.junctions,
+        outcome.overlaps.size(), outcome.gaps);
+    CoverageTrial(std::move(graph)).run();
+  }
+  EXPECT_GT(grouped, features.size() / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, CoverageDataTest,
+                         ::testing::Values("us_counties.fgb", "europe_countries.fgb"),
+                         [](const auto& test) {
+                           return std::filesystem::path(test.param).stem().string();
+                         });
+
+}  // namespace
+}  // namespace trapeze
