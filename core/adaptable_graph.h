@@ -33,7 +33,7 @@ namespace trapeze {
 struct GeneralizationOptions {
   WeightRule weights = WeightRule::douglas_peucker;
   Topology topology = Topology::strict;
-  Coverage coverage = Coverage::off;  // of layers; a graph is what it was built from
+  CoverageMode coverage = CoverageMode::off;  // of layers; a graph is what it was built from
 };
 
 /// The corners of a graph in the order in which they are to go, with what blocks them.

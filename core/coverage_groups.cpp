@@ -12,10 +12,10 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Coverage>, 3> kNames{{
-    {"off", Coverage::off},
-    {"auto", Coverage::automatic},
-    {"on", Coverage::on},
+constexpr std::array<std::pair<std::string_view, CoverageMode>, 3> kNames{{
+    {"off", CoverageMode::off},
+    {"auto", CoverageMode::automatic},
+    {"on", CoverageMode::on},
 }};
 
 /// Sets of features that are tied together; the smallest number of each stands for it.
@@ -103,25 +103,25 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
 
 }  // namespace
 
-std::optional<Coverage> coverage_from_name(std::string_view name) {
+std::optional<CoverageMode> coverage_from_name(std::string_view name) {
   for (const auto& [known, coverage] : kNames) {
     if (known == name) return coverage;
   }
   return std::nullopt;
 }
 
-std::string_view name_of(Coverage coverage) {
+std::string_view name_of(CoverageMode coverage) {
   return kNames[static_cast<std::size_t>(coverage)].first;
 }
 
-double most_overlap(Coverage coverage) {
-  return coverage == Coverage::on ? std::numeric_limits<double>::infinity() : 0.01;
+double most_overlap(CoverageMode coverage) {
+  return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
 }
 
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       Coverage coverage) {
+                                                       CoverageMode coverage) {
   Ties ties(features.size());
-  if (coverage == Coverage::on) {
+  if (coverage == CoverageMode::on) {
     tie_by_boxes(features, ties);
   } else {
     tie_by_edges(features, ties);

@@ -2,12 +2,17 @@
 // std::exception for what main reports: a file, a port, a renderer that does not work.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/coverage_groups.h"
 #include "server/config.h"
 
 namespace trapeze {
+
+/// None if the name is empty. Throws std::runtime_error that says what --coverage takes.
+std::optional<CoverageMode> coverage_or_throw(const std::string& name);
 
 struct ServeArguments {
   std::string config;                    // may be empty
@@ -27,6 +32,7 @@ int run_config_schema();
 
 struct CheckArguments {
   std::vector<std::string> files;
+  std::string coverage;  // empty: as a file was prepared, else the usual
 };
 int run_check(const CheckArguments& arguments);
 
@@ -34,6 +40,7 @@ struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
   std::string weights = "douglas-peucker";
+  std::string coverage;  // empty: the usual
 };
 int run_prepare(const PrepareArguments& arguments);
 
@@ -43,6 +50,7 @@ struct ExportArguments {
   double simplify = 0.25;  // pixels, as tiles are drawn
   std::string topology = "strict";
   std::string weights = "douglas-peucker";
+  std::string coverage;  // empty: the usual
   std::string crs = "EPSG:4326";
   bool overwrite = false;
   std::string output;

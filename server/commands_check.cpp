@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 
 #include "core/io/open_layer.h"
 #include "server/commands.h"
@@ -28,6 +29,19 @@ void print_memory(const Layer& layer, const LoadReport& report) {
   fmt::print("  memory of attributes  {} bytes\n", layer.features().memory());
 }
 
+/// Polygons that share borders, if that was asked for.
+void print_coverage(const CoverageCounts& counts) {
+  if (counts.groups == 0 && counts.apart == 0) return;
+  fmt::print("  coverages             {} groups with {} features\n", counts.groups,
+             counts.features);
+  fmt::print("    shared edges        {}\n", counts.shared_edges);
+  fmt::print("    junctions           {}\n", counts.junctions);
+  fmt::print("    noded               {} groups\n", counts.noded);
+  fmt::print("    overlaps            {} pairs of features\n", counts.overlaps);
+  fmt::print("    gaps                {}\n", counts.gaps);
+  fmt::print("    apart               {} features that overlap by too much\n", counts.apart);
+}
+
 void print_notes(const LoadReport& report) {
   for (const FeatureNote& note : report.notes) {
     fmt::print("  feature {}: {}\n", note.id, note.reason);
@@ -46,6 +60,7 @@ void print_report(const LoadReport& report, const Layer& layer) {
   fmt::print("  rings                 {} ({} collapsed)\n", report.rings, report.collapsed_rings);
   fmt::print("  vertices              {} ({} in the source)\n", report.vertices,
              report.source_vertices);
+  print_coverage(report.coverage);
   print_history(layer, report);
   print_memory(layer, report);
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
@@ -54,11 +69,12 @@ void print_report(const LoadReport& report, const Layer& layer) {
 }
 
 /// False if the file cannot be read.
-bool check_file(const std::string& file) {
+bool check_file(const std::string& file, std::optional<CoverageMode> coverage) {
   LoadedLayer loaded;
   try {
     LoadProgress progress(file);
     OpenOptions options;
+    options.coverage = coverage;
     options.progress = [&progress](double share) { progress.show(share); };
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {
@@ -72,9 +88,17 @@ bool check_file(const std::string& file) {
 
 }  // namespace
 
+std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const auto coverage = coverage_from_name(name);
+  if (!coverage) throw std::runtime_error("--coverage takes auto, on or off");
+  return coverage;
+}
+
 int run_check(const CheckArguments& arguments) {
+  const auto coverage = coverage_or_throw(arguments.coverage);
   bool is_all_read = true;
-  for (const std::string& file : arguments.files) is_all_read &= check_file(file);
+  for (const std::string& file : arguments.files) is_all_read &= check_file(file, coverage);
   return is_all_read ? 0 : 1;
 }
 

@@ -36,21 +36,22 @@ void make_folder(const std::string& folder) {
   }
 }
 
-LoadedLayer load(const std::string& file, WeightRule weights) {
+LoadedLayer load(const std::string& file, const GeneralizationOptions& generalization) {
   LoadProgress progress(file);
   LoadOptions options;
-  options.generalization.weights = weights;
+  options.generalization = generalization;
   options.progress = [&progress](double share) { progress.show(share); };
   return load_layer(file, options);
 }
 
-void prepare(const std::string& file, WeightRule weights, const std::string& output) {
+void prepare(const std::string& file, const GeneralizationOptions& generalization,
+             const std::string& output) {
   if (is_prepared_file(file)) {
     throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
   }
   // Before the file is read, so that a change from here on is noticed now or later.
   const SourceStamp source = stamp_source(file);
-  const LoadedLayer loaded = load(file, weights);
+  const LoadedLayer loaded = load(file, generalization);
   const std::string change = change_since(source, file);
   if (!change.empty()) {
     throw std::runtime_error(file + ": has changed while it was read: " + change);
@@ -72,14 +73,16 @@ void prepare(const std::string& file, WeightRule weights, const std::string& out
 }  // namespace
 
 int run_prepare(const PrepareArguments& arguments) {
-  const WeightRule weights = weights_or_throw(arguments.weights);
+  GeneralizationOptions generalization;
+  generalization.weights = weights_or_throw(arguments.weights);
+  generalization.coverage = coverage_or_throw(arguments.coverage).value_or(kUsualCoverage);
   const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
     try {
-      prepare(layer.file, weights, output.string());
+      prepare(layer.file, generalization, output.string());
     } catch (const std::exception& error) {
       // Reported here and not by main, so that the files after this one are prepared too.
       fmt::print(stderr, "trapeze: {}\n", error.what());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/coverage_groups.h"
 #include "core/vertex_weight.h"
 #include "core/web_mercator.h"
 #include "render/colour.h"
@@ -26,9 +27,10 @@ struct LayerConfig {
   std::string attribution;
   std::string description;
   StyleQuery style;  // where a request says nothing; for all layers, so without their names
-  std::vector<ParameterId> locked;    // what requests cannot set for the layer
-  std::optional<WeightRule> weights;  // unset: as a file was prepared, else Douglas-Peucker
-  int min_zoom = 0;                   // the layer is drawn at zooms min_zoom to max_zoom
+  std::vector<ParameterId> locked;       // what requests cannot set for the layer
+  std::optional<WeightRule> weights;     // unset: as a file was prepared, else Douglas-Peucker
+  std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
+  int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
 
   const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }

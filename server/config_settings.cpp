@@ -218,6 +218,12 @@ const Words<std::optional<WeightRule>>& weight_words() {
   return words;
 }
 
+const Words<std::optional<CoverageMode>>& coverage_words() {
+  static const Words<std::optional<CoverageMode>> words = {
+      {"auto", CoverageMode::automatic}, {"on", CoverageMode::on}, {"off", CoverageMode::off}};
+  return words;
+}
+
 /// Not set is none of the words.
 Setting<LayerConfig> weights_setting() {
   auto setting = choice<std::optional<WeightRule>, LayerConfig>(
@@ -225,6 +231,21 @@ Setting<LayerConfig> weights_setting() {
       "what makes a vertex matter; not set: as a file was prepared, else \"douglas-peucker\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.weights ? words(layer) : SettingValue(std::string());
+  };
+  return setting;
+}
+
+/// Not set is none of the words.
+Setting<LayerConfig> coverage_setting() {
+  auto setting = choice<std::optional<CoverageMode>, LayerConfig>(
+      "coverage", [](auto& layer) -> auto& { return layer.coverage; }, coverage_words(),
+      "whether polygons that share borders keep them in common: \"auto\", where two have an edge "
+      "in common and do not overlap by more than 1 %; \"on\", all that lie near each other, the "
+      "last one drawn where they overlap; \"off\", each by itself; not set: as a file was "
+      "prepared, else \"" +
+          std::string(name_of(kUsualCoverage)) + "\"");
+  setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
+    return layer.coverage ? words(layer) : SettingValue(std::string());
   };
   return setting;
 }
@@ -430,6 +451,7 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "max_zoom", [](auto& layer) -> auto& { return layer.max_zoom; }, 0, kMaxZoom,
           "the last zoom at which it is drawn"),
       weights_setting(),
+      coverage_setting(),
       list<LayerConfig>(
           "locked", [](auto& layer) -> auto& { return layer.locked; },
           "a list of parameters that are set for one layer: " + layer_parameter_names(),

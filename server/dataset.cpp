@@ -112,6 +112,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       const LayerConfig& layer = layers[i];
       OpenOptions options;
       options.weights = layer.weights;
+      options.coverage = layer.coverage;
       options.prepared_from = layer.prepared.empty() ? "" : layer.file;
       options.progress = [&progress, i](double share) { progress.show(i, share); };
       LoadedLayer loaded = open_layer(layer.file_to_open(), options);

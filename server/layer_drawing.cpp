@@ -144,7 +144,7 @@ void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing&
 void LayerDrawing::collect_edges(const Layer::Selection& selection, const FeatureClasses* classes,
                                  DrawingTools& tools) {
   for (const ClassDrawing* drawing : by_number_) {
-    if (drawing != nullptr) add_edges(drawing->ranges, drawing->number, tools);
+    if (drawing != nullptr) add_edges(drawing->ranges, drawing->number);
   }
   layer_->select_level_edges(selection.box, selection.level, tools.ranges);
   std::vector<std::vector<TrapezoidRange>> by_class(style().paints.size());
@@ -153,9 +153,12 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const Featur
     if (number != kNotDrawn) append(i, by_class[number]);
   });
   for (std::size_t number = 0; number < by_class.size(); ++number) {
-    add_edges(by_class[number], static_cast<std::uint8_t>(number), tools);
+    add_edges(by_class[number], static_cast<std::uint8_t>(number));
   }
-  for (std::size_t i = 0; i < line_count_; ++i) take_sides(selection.box, lines_[i]);
+  for (std::size_t i = 0; i < line_count_; ++i) {
+    take_sides(selection.box, lines_[i]);
+    take_dashed_sides(lines_[i], tools);
+  }
 }
 
 // Most edges are sides of several trapezoids, and some of these reach far out of the box.
@@ -181,43 +184,46 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   Lines& lines = lines_[line_count_++];
   lines.colour = colour;
   lines.sides.clear();
+  lines.dashed_sides.clear();
   lines.edges.clear();
   return lines;
 }
 
-void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number,
-                             DrawingTools& tools) {
+void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number) {
   const Rgba colour = style().paints[number].stroke;
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
-  if (style().stroke.is_dashed()) {
-    add_dashed_edges(ranges, lines, tools);
-    return;
-  }
+  const bool is_dashed = style().stroke.is_dashed();
   const MeshView& mesh = layer_->mesh();
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    if (layer_->feature_of(i) == Layer::kNoFeature) return;  // dust has no outline
-    lines.sides.push_back(mesh.trapezoids[i].left);
-    lines.sides.push_back(mesh.trapezoids[i].right);
+    const std::uint32_t row = layer_->feature_of(i);
+    if (row == Layer::kNoFeature) return;  // dust has no outline
+    for (const std::uint32_t side : {mesh.trapezoids[i].left, mesh.trapezoids[i].right}) {
+      if (is_dashed) {
+        lines.dashed_sides.emplace_back(side, row);
+      } else {
+        lines.sides.push_back(side);
+      }
+    }
   });
 }
 
-void LayerDrawing::add_dashed_edges(std::span<const TrapezoidRange> ranges, Lines& lines,
-                                    DrawingTools& tools) {
-  const MeshView& mesh = layer_->mesh();
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // row, edge
-  for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const std::uint32_t row = layer_->feature_of(i);
-    if (row == Layer::kNoFeature) return;
-    sides.emplace_back(row, mesh.trapezoids[i].left);
-    sides.emplace_back(row, mesh.trapezoids[i].right);
-  });
+// A border that two features share has the dashes of the first one: those of both would fill each
+// other's gaps.
+void LayerDrawing::take_dashed_sides(Lines& lines, DrawingTools& tools) const {
+  auto& sides = lines.dashed_sides;
+  const auto has_row_before = [](const auto& a, const auto& b) {
+    return std::pair(a.second, a.first) < std::pair(b.second, b.first);
+  };
   std::ranges::sort(sides);
-  sides.erase(std::ranges::unique(sides).begin(), sides.end());
+  const auto repeated = std::ranges::unique(sides, {}, [](const auto& side) { return side.first; });
+  sides.erase(repeated.begin(), repeated.end());
+  std::ranges::sort(sides, has_row_before);
+  const MeshView& mesh = layer_->mesh();
   const std::vector<LoopEdge>* loops = nullptr;
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const auto [row, side] = sides[i];
-    if (i == 0 || sides[i - 1].first != row) {
+    const auto [side, row] = sides[i];
+    if (i == 0 || sides[i - 1].second != row) {
       loops = &tools.loop_lengths.find(*layer_, paint_->level, row);
     }
     const auto found = std::ranges::lower_bound(*loops, side, {}, &LoopEdge::edge);

@@ -78,6 +78,8 @@ class LayerDrawing {
   struct Lines {
     Rgba colour;
     std::vector<std::uint32_t> sides;  // edges of the mesh, before they are taken once each
+    // The same of dashed lines: edge, and row of the feature whose outline it is a part of.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> dashed_sides;
     std::vector<OutlineEdge> edges;
     Coverage coverage;
   };
@@ -93,9 +95,9 @@ class LayerDrawing {
   void collect_edges(const Layer::Selection& selection, const FeatureClasses* classes,
                      DrawingTools& tools);
   Lines& lines_of(Rgba colour);
-  void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number, DrawingTools& tools);
+  void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
   void take_sides(const Box& box, Lines& lines) const;
-  void add_dashed_edges(std::span<const TrapezoidRange> ranges, Lines& lines, DrawingTools& tools);
+  void take_dashed_sides(Lines& lines, DrawingTools& tools) const;
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;

@@ -171,10 +171,20 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   config->add_subcommand("schema", "Print the JSON Schema of configurations");
 }
 
+void add_coverage(CLI::App& command, std::string& coverage) {
+  command
+      .add_option(
+          "--coverage", coverage,
+          "Whether polygons that share borders keep them in common: auto, on or off; as the "
+          "setting of layers")
+      ->type_name("NAME");
+}
+
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
   check->footer(kCheckFooter);
   check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
+  add_coverage(*check, arguments.coverage);
 }
 
 void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
@@ -189,6 +199,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
           "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
           "effective-area")
       ->type_name("NAME");
+  add_coverage(*prepare, arguments.coverage);
   prepare
       ->add_option("--output", arguments.output,
                    "The folder to write into; each file is named after FILE, and ends in .trapeze")
@@ -219,6 +230,7 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
           "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
           "effective-area")
       ->type_name("NAME");
+  add_coverage(*command, arguments.coverage);
   command
       ->add_option("--crs", arguments.crs,
                    "EPSG:4326 (degrees, if not set) or EPSG:3857 (metres, the map as it is drawn)")

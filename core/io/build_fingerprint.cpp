@@ -63,7 +63,7 @@ void add_coverage(Random& random, FeatureTable& features, LayerBuilder& builder)
 }
 
 std::unique_ptr<Layer> build_probe(GeneralizationOptions options) {
-  options.coverage = Coverage::on;
+  options.coverage = CoverageMode::on;
   FeatureTable features(std::vector<Field>{});
   std::vector<LayerBuilder> builders;
   builders.emplace_back(options);

@@ -37,7 +37,7 @@ void FeatureBuilder::build(const FeatureJob& job) {
     tally_.skip(job.order, job.id, feature.failure);
   } else if (feature.rings.empty()) {
     ++tally_.empty;
-  } else if (generalization_.coverage != Coverage::off) {
+  } else if (generalization_.coverage != CoverageMode::off) {
     wait(job, feature.rings);
   } else {
     count({job.order, job.id}, builder_.add(job.row, feature.rings));
@@ -123,7 +123,7 @@ void FeatureBuilder::count(const Subject& subject, const BuildOutcome& outcome) 
   tally_.remark(subject.order, subject.id, "repaired: its rings cross or touch");
 }
 
-void build_waiting(std::vector<FeatureBuilder>& builders, Coverage coverage) {
+void build_waiting(std::vector<FeatureBuilder>& builders, CoverageMode coverage) {
   std::vector<WaitingFeature> waiting;
   for (FeatureBuilder& builder : builders) {
     for (WaitingFeature& feature : builder.take_waiting()) waiting.push_back(std::move(feature));

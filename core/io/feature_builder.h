@@ -102,6 +102,6 @@ class FeatureBuilder {
 
 /// Builds all features that wait in the builders, with those with which they share borders, on a
 /// thread for each builder. What comes of it does not depend on their number.
-void build_waiting(std::vector<FeatureBuilder>& builders, Coverage coverage);
+void build_waiting(std::vector<FeatureBuilder>& builders, CoverageMode coverage);
 
 }  // namespace trapeze

@@ -227,8 +227,8 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options,
   loader.read_all();
   loaded.report.read_seconds = seconds_since(start);
   std::vector<FeatureBuilder>& builders = pool.finish();
-  const Coverage coverage = options.generalization.coverage;
-  if (coverage != Coverage::off) build_waiting(builders, coverage);
+  const CoverageMode coverage = options.generalization.coverage;
+  if (coverage != CoverageMode::off) build_waiting(builders, coverage);
   fill_report(loader, builders, source, loaded.report);
   loaded.layer = join_layer(builders, loader.take_table());
   if (options.progress) options.progress(1);

@@ -14,7 +14,7 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   }
   LoadOptions load;
   load.generalization.weights = options.weights.value_or(WeightRule::douglas_peucker);
-  load.generalization.coverage = options.coverage.value_or(Coverage::off);
+  load.generalization.coverage = options.coverage.value_or(kUsualCoverage);
   load.progress = options.progress;
   return load_layer(path, load);
 }

@@ -10,8 +10,8 @@
 namespace trapeze {
 
 struct OpenOptions {
-  std::optional<WeightRule> weights;  // unset: those of a prepared layer, else Douglas-Peucker
-  std::optional<Coverage> coverage;   // unset: that of a prepared layer, else off
+  std::optional<WeightRule> weights;     // unset: those of a prepared layer, else Douglas-Peucker
+  std::optional<CoverageMode> coverage;  // unset: that of a prepared layer, else kUsualCoverage
   std::string prepared_from;  // the source of a prepared layer, where it is now; empty: as it says
   std::function<void(double)> progress = {};  // see LoadOptions
 };

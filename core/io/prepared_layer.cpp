@@ -132,7 +132,7 @@ LayerArrays read_numbers(ByteReader& in) {
   LayerArrays numbers;
   numbers.options.weights = take_enum(in, WeightRule::effective_area);
   numbers.options.topology = take_enum(in, Topology::fast);
-  numbers.options.coverage = take_enum(in, Coverage::on);
+  numbers.options.coverage = take_enum(in, CoverageMode::on);
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();

@@ -22,7 +22,7 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
 struct PreparedDemands {
   std::optional<WeightRule> weights;  // unset: any
   std::string source;  // what it must have been prepared from; empty: what it names itself
-  std::optional<Coverage> coverage = {};  // unset: any
+  std::optional<CoverageMode> coverage = {};  // unset: any
 };
 
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large

@@ -205,7 +205,7 @@ TEST_P(CoverageDataTest, StaysACoverageAtEveryTolerance) {
   std::vector<const Rings*> pointers;
   for (const Rings& rings : features) pointers.push_back(&rings);
   std::size_t grouped = 0;
-  for (const auto& group : group_features(pointers, Coverage::automatic)) {
+  for (const auto& group : group_features(pointers, CoverageMode::automatic)) {
     std::vector<const Rings*> members;
     for (const std::uint32_t i : group) members.push_back(pointers[i]);
     TrapezoidalGraph graph;
