@@ -101,34 +101,13 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
   }
 }
 
-}  // namespace
-
-std::optional<CoverageMode> coverage_from_name(std::string_view name) {
-  for (const auto& [known, coverage] : kNames) {
-    if (known == name) return coverage;
-  }
-  return std::nullopt;
-}
-
-std::string_view name_of(CoverageMode coverage) {
-  return kNames[static_cast<std::size_t>(coverage)].first;
-}
-
+/// Of the smaller one of two polygons: what they may overlap by and still be neighbours.
 double most_overlap(CoverageMode coverage) {
   return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
 }
 
-std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       CoverageMode coverage) {
-  Ties ties(features.size());
-  if (coverage == CoverageMode::on) {
-    tie_by_boxes(features, ties);
-  } else {
-    tie_by_edges(features, ties);
-  }
-  return ties.groups();
-}
-
+/// Without these, in ascending order, none of those that are left overlaps another by more than
+/// `most` of the smaller one's area.
 std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most) {
   std::vector<Overlap> overlaps;
   for (const Overlap& overlap : outcome.overlaps) {
@@ -153,6 +132,57 @@ std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, 
   }
   std::sort(apart.begin(), apart.end());
   return apart;
+}
+
+}  // namespace
+
+std::optional<CoverageMode> coverage_from_name(std::string_view name) {
+  for (const auto& [known, coverage] : kNames) {
+    if (known == name) return coverage;
+  }
+  return std::nullopt;
+}
+
+std::string_view name_of(CoverageMode coverage) {
+  return kNames[static_cast<std::size_t>(coverage)].first;
+}
+
+std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
+                                                       CoverageMode coverage) {
+  Ties ties(features.size());
+  if (coverage == CoverageMode::on) {
+    tie_by_boxes(features, ties);
+  } else {
+    tie_by_edges(features, ties);
+  }
+  return ties.groups();
+}
+
+Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
+                  CoverageBuilder& builder, TrapezoidalGraph& graph) {
+  Assembly assembly;
+  assembly.together.resize(features.size());
+  std::iota(assembly.together.begin(), assembly.together.end(), 0u);
+  while (assembly.together.size() > 1) {
+    std::vector<const Rings*> rings;
+    for (const std::uint32_t i : assembly.together) rings.push_back(features[i]);
+    assembly.outcome = builder.build(rings, graph);
+    if (!assembly.outcome.built) break;
+    const auto apart = overlapping_features(assembly.outcome, most_overlap(coverage));
+    if (apart.empty()) {
+      std::sort(assembly.apart.begin(), assembly.apart.end());
+      return assembly;
+    }
+    for (std::size_t i = apart.size(); i > 0; --i) {
+      const auto at = assembly.together.begin() + static_cast<std::ptrdiff_t>(apart[i - 1]);
+      assembly.apart.push_back(*at);
+      assembly.together.erase(at);
+    }
+  }
+  assembly.apart.insert(assembly.apart.end(), assembly.together.begin(), assembly.together.end());
+  assembly.together.clear();
+  std::sort(assembly.apart.begin(), assembly.apart.end());
+  return assembly;
 }
 
 }  // namespace trapeze

@@ -26,18 +26,23 @@ constexpr CoverageMode kUsualCoverage = CoverageMode::off;
 std::optional<CoverageMode> coverage_from_name(std::string_view name);
 std::string_view name_of(CoverageMode coverage);
 
-/// Of the smaller one of two polygons: what they may overlap by and still be neighbours.
-double most_overlap(CoverageMode coverage);
-
 /// Groups of two or more features, each by its position, in ascending order; groups by their first
 /// one. Not `off`. Automatically, features are tied by each edge that two of them have; otherwise,
 /// by boxes that meet. Rings are clean (see clean_rings.h).
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
                                                        CoverageMode coverage);
 
-/// Features, by their positions in ascending order, without which none of those that are left
-/// overlaps another by more than `most` of the smaller one: those first that have the most such
-/// overlaps, of equals the last one.
-std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most);
+/// Features of a group, by their positions in ascending order.
+struct Assembly {
+  std::vector<std::uint32_t> together;  // in one graph, whose face i + 1 is that of together[i]
+  std::vector<std::uint32_t> apart;     // to be built each by itself
+  CoverageOutcome outcome;              // of those together; built if there are any
+};
+
+/// Makes `graph` that of the features of a group that can live in one: those that overlap by too
+/// much stay apart, one after the other, of those with the most such overlaps the last one first;
+/// and so do all if fewer than two are left, or if they cannot be noded.
+Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
+                  CoverageBuilder& builder, TrapezoidalGraph& graph);
 
 }  // namespace trapeze

@@ -315,18 +315,20 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   return outcome;
 }
 
-LayerBuilder::Together LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
-                                                  std::span<const Rings* const> features) {
-  Together together;
-  together.outcome = state_->coverage_builder.build(features, state_->graph);
-  if (!together.outcome.built) return together;
-  together.apart = overlapping_features(together.outcome, most_overlap(state_->options.coverage));
-  if (!together.apart.empty()) return together;
-  state_->begin_part(rows.front());
+Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
+                                    std::span<const Rings* const> features) {
+  Assembly assembly =
+      assemble(features, state_->options.coverage, state_->coverage_builder, state_->graph);
+  if (assembly.together.empty()) return assembly;
+  std::vector<std::uint32_t> rows_together;
+  for (const std::uint32_t i : assembly.together) rows_together.push_back(rows[i]);
+  state_->begin_part(rows_together.front());
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);
-  for (std::size_t i = 0; i < rows.size(); ++i) state_->add_outline(rows[i], outlines[i]);
-  state_->recorder.record(state_->graph, rows, state_->options, state_->stock.history);
-  return together;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    state_->add_outline(rows_together[i], outlines[i]);
+  }
+  state_->recorder.record(state_->graph, rows_together, state_->options, state_->stock.history);
+  return assembly;
 }
 
 std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,

@@ -33,17 +33,10 @@ class LayerBuilder {
   /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
   BuildOutcome add(std::uint32_t row, Rings& rings);
 
-  /// What became of features that were to be in one graph.
-  struct Together {
-    CoverageOutcome outcome;
-    /// Positions of those that overlap others by too much: without them, the rest can be together.
-    /// If there are any, nothing has been added; nor if the outcome does not say built.
-    std::vector<std::uint32_t> apart;
-  };
-  /// Builds one graph of several features that share borders, see CoverageBuilder. `rows` are in
-  /// ascending order, and none of them is added otherwise. What overlap is too much is a matter of
-  /// the options (see coverage_groups.h).
-  Together add_coverage(std::span<const std::uint32_t> rows,
+  /// Builds one graph of those features of a group that can live in one, see assemble(): the
+  /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
+  /// rings are clean.
+  Assembly add_coverage(std::span<const std::uint32_t> rows,
                         std::span<const Rings* const> features);
 
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made

@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/clean_rings.h"
+#include "core/coverage_groups.h"
 #include "core/graph_builder.h"
 #include "core/io/feature_source.h"
 #include "core/io/open_source.h"
@@ -32,13 +34,14 @@ struct Job {
   OGRFeatureUniquePtr feature;  // without its geometry
   std::size_t layer_index = 0;
   std::unique_ptr<OGRGeometry> geometry;
+  Rings rings;  // of one that waits for its neighbours; clean
 
   enum class Outcome { written, too_small, empty, skipped };
   Outcome outcome = Outcome::empty;
   std::string reason;  // for skipping it
   PolygonGeometry result;
   std::size_t polygons = 0;
-  std::size_t rings = 0;
+  std::size_t rings_written = 0;
   std::size_t vertices = 0;
   std::size_t all_vertices = 0;
   std::size_t held = 0;
@@ -55,9 +58,23 @@ class Exporter {
     FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
     job.geometry.reset();
     if (!feature.failure.empty()) return skip(job, feature.failure);
-    const BuildOutcome built = builder_.build(feature.rings, graph_);
-    if (!built.failure.empty()) return skip(job, built.failure);
-    if (built.built) adapt(job);
+    if (options_.generalization.coverage != CoverageMode::off) {
+      clean_rings(feature.rings);
+      job.rings = feature.rings;
+    } else {
+      run_apart(job, feature.rings);
+    }
+  }
+
+  /// Those that have waited for each other.
+  void run_together(std::span<Job* const> jobs) {
+    if (jobs.size() == 1) return run_apart(*jobs.front(), jobs.front()->rings);
+    std::vector<const Rings*> rings;
+    for (const Job* job : jobs) rings.push_back(&job->rings);
+    const Assembly assembly =
+        assemble(rings, options_.generalization.coverage, coverage_builder_, graph_);
+    if (!assembly.together.empty()) adapt_together(jobs, assembly);
+    for (const std::uint32_t i : assembly.apart) run_apart(*jobs[i], jobs[i]->rings);
   }
 
  private:
@@ -66,20 +83,40 @@ class Exporter {
     job.reason = reason;
   }
 
-  void adapt(Job& job) {
+  void run_apart(Job& job, Rings& rings) {
+    const BuildOutcome built = builder_.build(rings, graph_);
+    if (!built.failure.empty()) return skip(job, built.failure);
+    if (!built.built) return;
     job.all_vertices = graph_.corners().size();
-    AdaptableGraph adaptable(std::move(graph_), options_.generalization);
-    graph_ = TrapezoidalGraph();
+    AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
-    const Polygons polygons = polygons_of(adaptable.graph());
+    finish(job, polygons_of(adaptable.graph()));
+    job.held = job.polygons > 0 ? count_held(adaptable) : 0;
+  }
+
+  /// What the features of one graph have in common is counted with the first one that is written.
+  void adapt_together(std::span<Job* const> jobs, const Assembly& assembly) {
+    const std::vector<Rings> outlines = rings_of_faces(graph_);
+    AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
+    adaptable.adapt_to(options_.epsilon);
+    const std::vector<Polygons> polygons = polygons_of_faces(adaptable.graph());
+    std::size_t held = count_held(adaptable);
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      Job& job = *jobs[assembly.together[i]];
+      job.all_vertices = outlines[i].points.size();
+      finish(job, polygons[i]);
+      if (job.polygons > 0) job.held = std::exchange(held, 0);
+    }
+  }
+
+  void finish(Job& job, const Polygons& polygons) const {
     if (!polygons.failure.empty()) return skip(job, polygons.failure);
     job.outcome = Job::Outcome::too_small;
     if (polygons.empty()) return;
     job.outcome = Job::Outcome::written;
-    job.held = count_held(adaptable);
     job.crosses = polygons.is_noded;
     job.polygons = polygons.size();
-    job.rings = polygons.rings.size();
+    job.rings_written = polygons.rings.size();
     job.vertices = polygons.rings.points.size();
     job.result = geometry_of(polygons, options_.crs);
   }
@@ -97,6 +134,7 @@ class Exporter {
   SourceRingReader reader_;
   const ExportOptions& options_;
   GraphBuilder builder_;
+  CoverageBuilder coverage_builder_;
   TrapezoidalGraph graph_;
 };
 
@@ -113,28 +151,39 @@ class ExporterPool {
 
   /// Rethrows what stopped a job.
   void run(std::vector<Job>& jobs) {
+    work_on(jobs.size(), [&](Exporter& exporter, std::size_t i) { exporter.run(jobs[i]); });
+  }
+
+  /// The same of groups of jobs that have been run, and waited for each other.
+  void run_together(const std::vector<std::vector<Job*>>& groups) {
+    work_on(groups.size(),
+            [&](Exporter& exporter, std::size_t i) { exporter.run_together(groups[i]); });
+  }
+
+ private:
+  template <typename Work>
+  void work_on(std::size_t count, const Work& work) {
     std::atomic<std::size_t> next{0};
     std::mutex mutex;
     std::exception_ptr failure;
-    const auto work = [&](Exporter& exporter) {
+    const auto work_all = [&](Exporter& exporter) {
       try {
-        for (std::size_t i = next++; i < jobs.size(); i = next++) exporter.run(jobs[i]);
+        for (std::size_t i = next++; i < count; i = next++) work(exporter, i);
       } catch (...) {
-        next = jobs.size();
+        next = count;
         const std::lock_guard lock(mutex);
         failure = std::current_exception();
       }
     };
     std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < exporters_.size() && i < jobs.size(); ++i) {
-      threads.emplace_back(work, std::ref(exporters_[i]));
+    for (std::size_t i = 1; i < exporters_.size() && i < count; ++i) {
+      threads.emplace_back(work_all, std::ref(exporters_[i]));
     }
-    work(exporters_.front());
+    work_all(exporters_.front());
     for (std::thread& thread : threads) thread.join();
     if (failure != nullptr) std::rethrow_exception(failure);
   }
 
- private:
   std::vector<Exporter> exporters_;
 };
 
@@ -150,7 +199,9 @@ class Export {
     SourceFeature next;
     while (source_.next(next)) {
       take(next);
-      if (bytes_ >= kRoundBytes || jobs_.size() >= kRoundFeatures) finish_round();
+      // Any feature may be a neighbour of any other one.
+      const bool is_full = bytes_ >= kRoundBytes || jobs_.size() >= kRoundFeatures;
+      if (is_full && !is_coverage()) finish_round();
     }
     finish_round();
     file_.finish();
@@ -182,10 +233,33 @@ class Export {
 
   void finish_round() {
     pool_.run(jobs_);
+    if (is_coverage()) pool_.run_together(neighbours());
     for (Job& job : jobs_) count(job);
     jobs_.clear();
     bytes_ = 0;
     if (options_.progress) options_.progress(source_.progress());
+  }
+
+  bool is_coverage() const { return options_.generalization.coverage != CoverageMode::off; }
+
+  /// The jobs that have waited, those that share borders together.
+  std::vector<std::vector<Job*>> neighbours() {
+    std::vector<Job*> waiting;
+    std::vector<const Rings*> rings;
+    for (Job& job : jobs_) {
+      if (job.rings.empty()) continue;
+      waiting.push_back(&job);
+      rings.push_back(&job.rings);
+    }
+    std::vector<std::vector<Job*>> groups;
+    for (const auto& group : group_features(rings, options_.generalization.coverage)) {
+      auto& jobs = groups.emplace_back();
+      for (const std::uint32_t i : group) jobs.push_back(std::exchange(waiting[i], nullptr));
+    }
+    for (Job* job : waiting) {
+      if (job != nullptr) groups.push_back({job});
+    }
+    return groups;
   }
 
   void count(Job& job) {
@@ -210,7 +284,7 @@ class Export {
   void write(Job& job) {
     ++report_.written;
     report_.polygons += job.polygons;
-    report_.rings += job.rings;
+    report_.rings += job.rings_written;
     report_.vertices += job.vertices;
     report_.held += job.held;
     report_.crossed += job.crosses ? 1 : 0;

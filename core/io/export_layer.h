@@ -59,6 +59,9 @@ struct ExportReport {
 /// formats whose layers have one type of geometry all are multipolygons; in GeoJSON, those of
 /// several parts.
 ///
+/// With a coverage among the options, neighbours are adapted together, and have every edge of their
+/// common border in common; the whole source is held in memory.
+///
 /// Attributes keep their names and types; what the format cannot hold (lists, times of day) becomes
 /// text as in AttributeReader, and names that would clash get a number. The field `trapeze_id`
 /// holds the source's id of each feature; of a source with several layers, `trapeze_layer` tells

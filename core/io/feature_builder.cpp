@@ -59,35 +59,24 @@ void FeatureBuilder::build_apart(WaitingFeature& feature) {
 }
 
 void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
-  std::vector<WaitingFeature*> together(features.begin(), features.end());
-  while (together.size() > 1) {
-    std::vector<std::uint32_t> rows;
-    std::vector<const Rings*> rings;
-    for (const WaitingFeature* feature : together) {
-      rows.push_back(feature->row);
-      rings.push_back(&feature->rings);
-    }
-    const LayerBuilder::Together result = builder_.add_coverage(rows, rings);
-    if (!result.outcome.failure.empty()) break;
-    if (result.apart.empty()) {
-      count(together, result.outcome);
-      return;
-    }
-    for (std::size_t i = result.apart.size(); i > 0; --i) {
-      const auto apart = together.begin() + static_cast<std::ptrdiff_t>(result.apart[i - 1]);
-      ++tally_.coverage.apart;
-      build_apart(**apart);
-      together.erase(apart);
-    }
+  std::vector<std::uint32_t> rows;
+  std::vector<const Rings*> rings;
+  for (const WaitingFeature* feature : features) {
+    rows.push_back(feature->row);
+    rings.push_back(&feature->rings);
   }
-  for (WaitingFeature* feature : together) build_apart(*feature);
+  const Assembly assembly = builder_.add_coverage(rows, rings);
+  tally_.coverage.apart += assembly.apart.size();
+  for (const std::uint32_t i : assembly.apart) build_apart(*features[i]);
+  std::vector<WaitingFeature*> together;
+  for (const std::uint32_t i : assembly.together) together.push_back(features[i]);
+  if (!together.empty()) count(together, assembly.outcome);
 }
 
 void FeatureBuilder::count(std::span<WaitingFeature* const> features,
                            const CoverageOutcome& outcome) {
   for (WaitingFeature* feature : features) feature->rings = Rings();
-  (outcome.built ? tally_.loaded : tally_.empty) += features.size();
-  if (!outcome.built) return;
+  tally_.loaded += features.size();
   tally_.vertices += outcome.vertices;
   CoverageCounts& counts = tally_.coverage;
   ++counts.groups;

@@ -77,8 +77,8 @@ class FeatureBuilder {
   std::vector<WaitingFeature> take_waiting() { return std::exchange(waiting_, {}); }
   /// Builds the graph of a feature that waited. Its rings are used up.
   void build_apart(WaitingFeature& feature);
-  /// Builds one graph of several, in ascending order of rows; those that overlap others by too much
-  /// are built apart, each by itself, and so are all if it cannot be done. Their rings are used up.
+  /// Builds one graph of several, in ascending order of rows, but for those that have to be built
+  /// apart (see assemble()). Their rings are used up.
   void build_together(std::span<WaitingFeature* const> features);
 
   const BuildTally& tally() const { return tally_; }

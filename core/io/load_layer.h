@@ -29,7 +29,7 @@ struct CoverageCounts {
   std::size_t junctions = 0;     // vertices where three or more borders meet
   std::size_t overlaps = 0;      // pairs of features of which one is drawn over a part of the other
   std::size_t gaps = 0;          // places between features that none of them covers
-  std::size_t apart = 0;         // features that overlap their neighbours by too much to be in one
+  std::size_t apart = 0;  // features built by themselves: they overlap their neighbours by too much
 };
 
 /// What was found in a source. Every feature is counted once in exactly one of `loaded`,
