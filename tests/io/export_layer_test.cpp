@@ -274,6 +274,46 @@ TEST_P(ExportFormatTest, WhatIsTooSmallIsLeftOutAndCounted) {
   EXPECT_THAT(Written(output()).texts("number"), ElementsAre("1", "3"));
 }
 
+/// Two neighbours with a jagged border, one of which has vertices on it that the other lacks.
+std::vector<TestFeature> jagged_neighbours() {
+  std::string down;
+  std::string up;
+  for (int i = 1; i < 60; ++i) {
+    const auto at = [](int k) {
+      return std::to_string(500 + (k * 37) % 23) + " " + std::to_string(10 * k);
+    };
+    down += at(i) + ",";
+    up += at(60 - i) + ",";
+  }
+  return {{.wkt = "POLYGON((0 0,500 0," + down + "500 600,0 600,0 0))", .number = 1},
+          {.wkt = "POLYGON((1000 0,1000 600,500 600," + up + "500 0,1000 0))", .number = 2}};
+}
+
+TEST_P(ExportFormatTest, NeighboursKeepTheirBorderInCommon) {
+  const std::string source = metres_source(folder_, jagged_neighbours());
+  ExportOptions options;
+  options.crs = ExportCrs::web_mercator;
+  for (const double epsilon : {30.0, 300.0, 700.0}) {
+    SCOPED_TRACE("tolerance " + std::to_string(epsilon));
+    options.epsilon = epsilon;
+    options.overwrite = true;
+    options.generalization.coverage = CoverageMode::automatic;
+    const ExportReport report = export_layer(source, output(), options);
+    EXPECT_EQ(report.written, 2u);
+    EXPECT_LT(report.vertices, report.all_vertices);
+    const Written written(output());
+    ASSERT_EQ(written.size(), 2u);
+    EXPECT_TRUE(written.are_all_valid());
+    const OGRGeometry& left = *written[0].GetGeometryRef();
+    const OGRGeometry& right = *written[1].GetGeometryRef();
+    const std::unique_ptr<OGRGeometry> both(left.Union(&right));
+    EXPECT_TRUE(left.Touches(&right));
+    EXPECT_NEAR(both->toSurface()->get_Area(), 1000 * 600, 60);
+    EXPECT_EQ(wkbFlatten(both->getGeometryType()), wkbPolygon);
+    EXPECT_EQ(both->toPolygon()->getNumInteriorRings(), 0) << "there is a gap";
+  }
+}
+
 TEST_P(ExportFormatTest, AFileOfWhichNothingIsLeftHasFieldsAndNoFeatures) {
   const std::string source = metres_source(folder_, {{.wkt = kSquare}});
   ExportOptions options;

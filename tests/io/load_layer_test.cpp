@@ -472,6 +472,55 @@ TEST_F(LoadLayerTest, GivesTheSameLayerWhateverTheNumberOfThreads) {
   EXPECT_TRUE(std::ranges::equal(a.trapezoids, b.trapezoids));
 }
 
+/// Squares in columns of ten, which have halves of their sides in common, columns apart; of each
+/// column, the fourth reaches over the fifth a little, and a small one lies on the eighth.
+TestLayer columns_of_squares(int columns) {
+  TestLayer layer;
+  const auto square = [&](double x, double y, double height, double right_height, int number) {
+    const auto at = [](double px, double py) {
+      return std::to_string(px) + " " + std::to_string(py);
+    };
+    layer.features.push_back({"POLYGON((" + at(x, y) + "," + at(x + .005, y) + "," +
+                                  at(x + .01, y) + "," + at(x + .01, y + right_height) + "," +
+                                  at(x + .005, y + height) + "," + at(x, y + height) + "," +
+                                  at(x, y) + "))",
+                              number, std::to_string(number)});
+  };
+  for (int x = 0; x < columns; ++x) {
+    for (int y = 0; y < 10; ++y) {
+      square(x * .02, y * .01, .01, y == 3 ? .01005 : .01, 100 * x + y);
+    }
+    square(x * .02, .07, .005, .005, 100 * x + 50);
+  }
+  return layer;
+}
+
+TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {
+  const std::string path = folder_.file("columns.gpkg");
+  write_source(path, "GPKG", {columns_of_squares(40)});
+  LoadOptions options{.threads = 1, .progress = {}};
+  options.generalization.coverage = CoverageMode::automatic;
+  const LoadedLayer one = load_layer(path, options);
+  options.threads = 4;
+  const LoadedLayer four = load_layer(path, options);
+  for (const LoadReport* report : {&one.report, &four.report}) {
+    EXPECT_EQ(report->loaded, 440u);
+    EXPECT_EQ(report->coverage.groups, 40u);
+    EXPECT_EQ(report->coverage.features, 400u);
+    EXPECT_EQ(report->coverage.apart, 40u);
+    EXPECT_EQ(report->coverage.overlaps, 40u);
+    ASSERT_EQ(report->notes.size(), 40u);
+    EXPECT_THAT(report->notes[0].reason, HasSubstr("% of it lies under feature"));
+  }
+  const MeshView& a = one.layer->mesh();
+  const MeshView& b = four.layer->mesh();
+  EXPECT_TRUE(std::ranges::equal(a.vertices, b.vertices));
+  EXPECT_TRUE(std::ranges::equal(a.edges, b.edges));
+  EXPECT_TRUE(std::ranges::equal(a.trapezoids, b.trapezoids));
+  // What is not looked for is not found.
+  EXPECT_EQ(load_layer(path).report.coverage.groups, 0u);
+}
+
 TEST_F(LoadLayerTest, ReportsProgressThatRisesToOne) {
   const std::string path = folder_.file("a.fgb");
   TestLayer layer;

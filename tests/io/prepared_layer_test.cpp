@@ -346,6 +346,26 @@ TEST_F(PreparedLayerTest, WithOtherWeightsThanDemandedIsRefused) {
   EXPECT_NO_THROW(open_prepared_layer(prepared_));
 }
 
+TEST_F(PreparedLayerTest, WithAnotherCoverageThanDemandedIsRefused) {
+  LoadOptions options;
+  options.generalization.coverage = CoverageMode::on;
+  const std::string neighbours = folder_.write("neighbours.geojson", R"({
+      "type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+       "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}},
+      {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+       "coordinates": [[[1, 0], [2, 0], [2, 1], [1, 1], [1, 0]]]}}]})");
+  prepare(neighbours, prepared_, options);
+  EXPECT_THAT(failure_of(prepared_, {{}, {}, CoverageMode::automatic}),
+              AllOf(HasSubstr("coverage on"), HasSubstr("auto is configured")));
+  const LoadedLayer opened = open_prepared_layer(prepared_, {{}, {}, CoverageMode::on});
+  const CoverageCounts built = load_layer(neighbours, options).report.coverage;
+  EXPECT_EQ(built.groups, 1u);
+  EXPECT_EQ(opened.report.coverage.groups, 1u);
+  EXPECT_EQ(opened.report.coverage.features, 2u);
+  EXPECT_EQ(opened.report.coverage.shared_edges, 1u);
+}
+
 TEST_F(PreparedLayerTest, IsServedWithoutItsSource) {
   const std::string file = source("source.geojson", "a");
   prepare(file, prepared_);

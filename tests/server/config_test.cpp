@@ -51,6 +51,7 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
     file = "b.fgb"
     prepared = "out/b.trapeze"
     weights = "raised-parents"
+    coverage = "on"
     [[layer]]
     name = "c"
     prepared = "c.trapeze")");
@@ -60,11 +61,15 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
   EXPECT_THAT(config.layers[1].file_to_open(), ::testing::EndsWith("/out/b.trapeze"));
   EXPECT_THAT(config.layers[1].file, ::testing::EndsWith("/b.fgb"));
   EXPECT_EQ(config.layers[1].weights, WeightRule::raised_parents);
+  EXPECT_EQ(config.layers[0].coverage, std::nullopt);
+  EXPECT_EQ(config.layers[1].coverage, CoverageMode::on);
   EXPECT_EQ(config.layers[2].file, "");
   EXPECT_THAT(config.layers[2].file_to_open(), ::testing::EndsWith("/c.trapeze"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\""), HasSubstr("needs a file"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nweights = \"none\""),
               HasSubstr("effective-area"));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\ncoverage = \"yes\""),
+              HasSubstr("\"auto\", \"on\" or \"off\""));
 }
 
 TEST_F(ConfigTest, ReadsEveryKey) {
