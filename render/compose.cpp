@@ -61,7 +61,7 @@ Paint within(const Paint& above, const Paint& below) {
 // Where classes overlap, each has its share. And where they join, each level was rounded; the pixel
 // is wholly covered all the same.
 Paint settled(const Paint& sum) {
-  constexpr float kHalfLevel = 0.5f / 255;
+  constexpr float kHalfLevel = 0.501f / 255;  // and what the sum lost in rounding
   const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfLevel * sum.classes;
   if (!is_whole && sum.covered <= 1) return sum;
   const float share = 1 / sum.covered;
