@@ -104,6 +104,45 @@ Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
   return borders;
 }
 
+/// The map of which features cover what: its faces are numbers of sets.
+struct SetMap {
+  std::vector<OwnedSegment> pieces;
+  FeatureSets sets = {};
+  Borders borders = {};
+
+  /// False if nothing is left, or if it failed.
+  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
+             CoverageOutcome& outcome) {
+    // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
+    constexpr int kQuickPasses = 3;
+    constexpr int kMaxPasses = 6;
+    const FaceBeyond toggle = [this](EdgeId e, FaceId left) {
+      return sets.toggled(left, borders.owners[e.value]);
+    };
+    for (int pass = 0; pass <= kMaxPasses; ++pass) {
+      if (pass > 0) {
+        outcome.noded = true;
+        pieces = node(
+            pieces, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+      }
+      borders = unite(pieces, sets);
+      if (borders.segments.empty()) return false;
+      boundary.assign(borders.segments);
+      if (trapezoidation.build(boundary, toggle, graph)) return true;
+    }
+    outcome.failure =
+        "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+    return false;
+  }
+
+  /// What has been noded stays so.
+  void leave_out(const std::vector<std::uint32_t>& features) {
+    std::erase_if(pieces, [&features](const OwnedSegment& piece) {
+      return std::binary_search(features.begin(), features.end(), piece.owner);
+    });
+  }
+};
+
 double area_of(const TrapezoidalGraph& g, const Node& node) {
   const double top = g.point(node.end[kUp]).y;
   const double bottom = g.point(node.end[kDown]).y;
@@ -140,6 +179,34 @@ void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
   for (const auto& [pair, area] : overlaps) {
     outcome.overlaps.push_back({pair.first, pair.second, area});
   }
+}
+
+/// Without these, in ascending order, none of those that are left overlaps another by more than
+/// `most` of the smaller one's area.
+std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most) {
+  std::vector<Overlap> overlaps;
+  for (const Overlap& overlap : outcome.overlaps) {
+    const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
+    if (overlap.area > most * smaller) overlaps.push_back(overlap);
+  }
+  std::vector<std::uint32_t> apart;
+  std::vector<std::uint32_t> count(outcome.areas.size());
+  while (!overlaps.empty()) {
+    std::fill(count.begin(), count.end(), 0u);
+    for (const Overlap& overlap : overlaps) {
+      ++count[overlap.lower];
+      ++count[overlap.upper];
+    }
+    // The last one of the greatest.
+    const auto most_often = std::max_element(count.rbegin(), count.rend());
+    const auto worst = static_cast<std::uint32_t>(count.rend() - most_often - 1);
+    apart.push_back(worst);
+    std::erase_if(overlaps, [worst](const Overlap& overlap) {
+      return overlap.lower == worst || overlap.upper == worst;
+    });
+  }
+  std::sort(apart.begin(), apart.end());
+  return apart;
 }
 
 /// What is drawn of a set: its last feature.
@@ -201,37 +268,24 @@ void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
 
 }  // namespace
 
-CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
+CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features, double most_overlap,
                                        TrapezoidalGraph& graph) {
-  // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
-  constexpr int kQuickPasses = 3;
-  constexpr int kMaxPasses = 7;
   CoverageOutcome outcome;
-  outcome.areas.assign(features.size(), 0);
-  std::vector<OwnedSegment> pieces = segments_of(features);
-  FeatureSets sets;
-  Borders borders;
-  for (int pass = 0;; ++pass) {
-    if (pass == kMaxPasses) {
-      outcome.failure =
-          "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
-      return outcome;
-    }
-    if (pass > 0) {
-      pieces = node(pieces,
-                    pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
-    }
-    outcome.noded = pass > 0;
-    borders = unite(pieces, sets);
-    if (borders.segments.empty()) return outcome;
-    boundary_.assign(borders.segments);
-    const FaceBeyond toggle = [&](EdgeId e, FaceId left) {
-      return sets.toggled(left, borders.owners[e.value]);
-    };
-    if (trapezoidation_.build(boundary_, toggle, graph)) break;
+  SetMap map{segments_of(features)};
+  for (;;) {
+    if (!map.sweep(boundary_, trapezoidation_, graph, outcome)) return outcome;
+    outcome.areas.assign(features.size(), 0);
+    outcome.overlaps.clear();
+    note_areas(graph, map.sets, outcome);
+    const std::vector<std::uint32_t> apart = overlapping_features(outcome, most_overlap);
+    if (apart.empty()) break;
+    outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
+    std::sort(outcome.apart.begin(), outcome.apart.end());
+    if (features.size() - outcome.apart.size() < 2) return outcome;
+    map.leave_out(apart);
   }
-  note_areas(graph, sets, outcome);
-  Sides sides = sides_of(graph, sets, borders.segments.size());
+  Borders& borders = map.borders;
+  Sides sides = sides_of(graph, map.sets, borders.segments.size());
   keep_borders(borders.segments, sides);
   if (borders.segments.empty()) return outcome;
   boundary_.assign(borders.segments);

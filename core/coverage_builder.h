@@ -37,7 +37,8 @@ struct CoverageOutcome {
   std::size_t gaps = 0;           // regions that no feature covers, with at least two around them
   std::vector<Overlap> overlaps;  // in order of their features
   std::vector<double> areas;      // of each feature by itself, cells squared
-  std::string failure;            // why it could not be built, empty otherwise
+  std::vector<std::uint32_t> apart;  // those that were left out, in ascending order
+  std::string failure;               // why it could not be built, empty otherwise
 };
 
 /// Reusable memory; one a thread.
@@ -45,9 +46,12 @@ class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
   /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
-  /// has the place. Never throws for bad geometry: `graph` is meaningful only if the outcome says
-  /// built.
-  CoverageOutcome build(std::span<const Rings* const> features, TrapezoidalGraph& graph);
+  /// has the place. Those that overlap others by more than the share `most_overlap` of the smaller
+  /// one's area are left out: of those with the most such overlaps, the last one first. If fewer
+  /// than two are left, nothing is built. Never throws for bad geometry: `graph` is meaningful only
+  /// if the outcome says built.
+  CoverageOutcome build(std::span<const Rings* const> features, double most_overlap,
+                        TrapezoidalGraph& graph);
 
  private:
   Boundary boundary_;

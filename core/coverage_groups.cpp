@@ -106,34 +106,6 @@ double most_overlap(CoverageMode coverage) {
   return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
 }
 
-/// Without these, in ascending order, none of those that are left overlaps another by more than
-/// `most` of the smaller one's area.
-std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most) {
-  std::vector<Overlap> overlaps;
-  for (const Overlap& overlap : outcome.overlaps) {
-    const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
-    if (overlap.area > most * smaller) overlaps.push_back(overlap);
-  }
-  std::vector<std::uint32_t> apart;
-  std::vector<std::uint32_t> count(outcome.areas.size());
-  while (!overlaps.empty()) {
-    std::fill(count.begin(), count.end(), 0u);
-    for (const Overlap& overlap : overlaps) {
-      ++count[overlap.lower];
-      ++count[overlap.upper];
-    }
-    // The last one of the greatest.
-    const auto most_often = std::max_element(count.rbegin(), count.rend());
-    const auto worst = static_cast<std::uint32_t>(count.rend() - most_often - 1);
-    apart.push_back(worst);
-    std::erase_if(overlaps, [worst](const Overlap& overlap) {
-      return overlap.lower == worst || overlap.upper == worst;
-    });
-  }
-  std::sort(apart.begin(), apart.end());
-  return apart;
-}
-
 }  // namespace
 
 std::optional<CoverageMode> coverage_from_name(std::string_view name) {
@@ -161,27 +133,13 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
                   CoverageBuilder& builder, TrapezoidalGraph& graph) {
   Assembly assembly;
-  assembly.together.resize(features.size());
-  std::iota(assembly.together.begin(), assembly.together.end(), 0u);
-  while (assembly.together.size() > 1) {
-    std::vector<const Rings*> rings;
-    for (const std::uint32_t i : assembly.together) rings.push_back(features[i]);
-    assembly.outcome = builder.build(rings, graph);
-    if (!assembly.outcome.built) break;
-    const auto apart = overlapping_features(assembly.outcome, most_overlap(coverage));
-    if (apart.empty()) {
-      std::sort(assembly.apart.begin(), assembly.apart.end());
-      return assembly;
-    }
-    for (std::size_t i = apart.size(); i > 0; --i) {
-      const auto at = assembly.together.begin() + static_cast<std::ptrdiff_t>(apart[i - 1]);
-      assembly.apart.push_back(*at);
-      assembly.together.erase(at);
-    }
+  assembly.outcome = builder.build(features, most_overlap(coverage), graph);
+  const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    const bool is_apart =
+        !assembly.outcome.built || std::binary_search(apart.begin(), apart.end(), i);
+    (is_apart ? assembly.apart : assembly.together).push_back(i);
   }
-  assembly.apart.insert(assembly.apart.end(), assembly.together.begin(), assembly.together.end());
-  assembly.together.clear();
-  std::sort(assembly.apart.begin(), assembly.apart.end());
   return assembly;
 }
 

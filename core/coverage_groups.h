@@ -34,14 +34,13 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
 
 /// Features of a group, by their positions in ascending order.
 struct Assembly {
-  std::vector<std::uint32_t> together;  // in one graph, whose face i + 1 is that of together[i]
+  std::vector<std::uint32_t> together;  // in one graph, in which that of position i is face i + 1
   std::vector<std::uint32_t> apart;     // to be built each by itself
   CoverageOutcome outcome;              // of those together; built if there are any
 };
 
-/// Makes `graph` that of the features of a group that can live in one: those that overlap by too
-/// much stay apart, one after the other, of those with the most such overlaps the last one first;
-/// and so do all if fewer than two are left, or if they cannot be noded.
+/// Makes `graph` that of the features of a group that can live in one, see CoverageBuilder: apart
+/// stay those that overlap by too much, and all if fewer than two are left or they cannot be noded.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
                   CoverageBuilder& builder, TrapezoidalGraph& graph);
 

@@ -320,14 +320,10 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
   Assembly assembly =
       assemble(features, state_->options.coverage, state_->coverage_builder, state_->graph);
   if (assembly.together.empty()) return assembly;
-  std::vector<std::uint32_t> rows_together;
-  for (const std::uint32_t i : assembly.together) rows_together.push_back(rows[i]);
-  state_->begin_part(rows_together.front());
+  state_->begin_part(rows[assembly.together.front()]);
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);
-  for (std::size_t i = 0; i < outlines.size(); ++i) {
-    state_->add_outline(rows_together[i], outlines[i]);
-  }
-  state_->recorder.record(state_->graph, rows_together, state_->options, state_->stock.history);
+  for (const std::uint32_t i : assembly.together) state_->add_outline(rows[i], outlines[i]);
+  state_->recorder.record(state_->graph, rows, state_->options, state_->stock.history);
   return assembly;
 }
 

@@ -101,8 +101,8 @@ class Exporter {
     adaptable.adapt_to(options_.epsilon);
     const std::vector<Polygons> polygons = polygons_of_faces(adaptable.graph());
     std::size_t held = count_held(adaptable);
-    for (std::size_t i = 0; i < polygons.size(); ++i) {
-      Job& job = *jobs[assembly.together[i]];
+    for (const std::uint32_t i : assembly.together) {
+      Job& job = *jobs[i];
       job.all_vertices = outlines[i].points.size();
       finish(job, polygons[i]);
       if (job.polygons > 0) job.held = std::exchange(held, 0);

@@ -68,19 +68,17 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
   const Assembly assembly = builder_.add_coverage(rows, rings);
   tally_.coverage.apart += assembly.apart.size();
   for (const std::uint32_t i : assembly.apart) build_apart(*features[i]);
-  std::vector<WaitingFeature*> together;
-  for (const std::uint32_t i : assembly.together) together.push_back(features[i]);
-  if (!together.empty()) count(together, assembly.outcome);
+  if (!assembly.together.empty()) count(features, assembly);
 }
 
-void FeatureBuilder::count(std::span<WaitingFeature* const> features,
-                           const CoverageOutcome& outcome) {
-  for (WaitingFeature* feature : features) feature->rings = Rings();
-  tally_.loaded += features.size();
+void FeatureBuilder::count(std::span<WaitingFeature* const> features, const Assembly& assembly) {
+  for (const std::uint32_t i : assembly.together) features[i]->rings = Rings();
+  const CoverageOutcome& outcome = assembly.outcome;
+  tally_.loaded += assembly.together.size();
   tally_.vertices += outcome.vertices;
   CoverageCounts& counts = tally_.coverage;
   ++counts.groups;
-  counts.features += features.size();
+  counts.features += assembly.together.size();
   counts.noded += outcome.noded;
   counts.shared_edges += outcome.shared_edges;
   counts.junctions += outcome.junctions;

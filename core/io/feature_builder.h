@@ -91,7 +91,7 @@ class FeatureBuilder {
   };
   void wait(const FeatureJob& job, Rings& rings);
   void count(const Subject& subject, const BuildOutcome& outcome);
-  void count(std::span<WaitingFeature* const> features, const CoverageOutcome& outcome);
+  void count(std::span<WaitingFeature* const> features, const Assembly& assembly);
 
   SourceRingReader reader_;
   GeneralizationOptions generalization_;

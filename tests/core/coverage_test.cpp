@@ -40,7 +40,7 @@ struct BuiltCoverage {
   TrapezoidalGraph graph;
 
   explicit BuiltCoverage(const std::vector<Rings>& features) {
-    outcome = CoverageBuilder().build(pointers_to(features), graph);
+    outcome = CoverageBuilder().build(pointers_to(features), kAll, graph);
     EXPECT_EQ(outcome.failure, "");
     if (!outcome.built) return;
     EXPECT_EQ(check_graph(graph), "");
@@ -133,7 +133,7 @@ TEST(Coverage, RingsOfFacesAreThoseThatItWasBuiltFrom) {
 void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   TrapezoidalGraph fresh;
-  const CoverageOutcome outcome = CoverageBuilder().build(pointers_to(rings), fresh);
+  const CoverageOutcome outcome = CoverageBuilder().build(pointers_to(rings), kAll, fresh);
   EXPECT_FALSE(outcome.noded) << "the borders that are left cross or touch";
   if (!outcome.built) {
     EXPECT_EQ(graph.inside_nodes().size(), 0u);
