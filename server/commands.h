@@ -34,6 +34,7 @@ struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
   std::string weights = "douglas-peucker";
+  SourceSelection selection;  // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
 

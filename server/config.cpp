@@ -217,6 +217,12 @@ class ConfigReader {
     if (is_readable && layer.file_to_open().empty()) {
       fail(table, fmt::format("layer \"{}\" needs a file", layer.name));
     }
+    if (!layer.prepared.empty() && !layer.selection.is_all()) {
+      fail(table,
+           fmt::format("layer \"{}\" is prepared: select from its source with the options of "
+                       "`trapeze prepare`, and not by source_layer, where or attributes",
+                       layer.name));
+    }
     if (layer.min_zoom > layer.max_zoom) {
       fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
     }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/source_selection.h"
 #include "core/vertex_weight.h"
 #include "core/web_mercator.h"
 #include "render/colour.h"
@@ -19,10 +20,11 @@
 namespace trapeze {
 
 struct LayerConfig {
-  std::string name;      // is_url_name() holds
-  std::string file;      // empty only if `prepared` is set
-  std::string prepared;  // a prepared file of it, which is served in its place; may be empty
-  std::string title;     // the name if not set
+  std::string name;           // is_url_name() holds
+  std::string file;           // empty only if `prepared` is set
+  SourceSelection selection;  // of the file
+  std::string prepared;       // a prepared file of it, which is served in its place; may be empty
+  std::string title;          // the name if not set
   std::string attribution;
   std::string description;
   StyleQuery style;  // where a request says nothing; for all layers, so without their names

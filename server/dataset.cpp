@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/io/open_layer.h"
+#include "core/io/source_name.h"
 #include "server/content_hash.h"
 #include "server/load_progress.h"
 
@@ -66,7 +67,7 @@ class SharedProgress {
  public:
   explicit SharedProgress(const std::vector<LayerConfig>& layers)
       : shares_(layers.size(), 0),
-        progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
+        progress_(std::in_place, layers.size() == 1 ? name_of_source(layers.front().file_to_open())
                                                     : fmt::format("{} layers", layers.size())) {}
 
   void show(std::size_t layer, double share) {
@@ -112,6 +113,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       const LayerConfig& layer = layers[i];
       OpenOptions options;
       options.weights = layer.weights;
+      options.selection = layer.selection;
       options.prepared_from = layer.prepared.empty() ? "" : layer.file;
       options.progress = [&progress, i](double share) { progress.show(i, share); };
       LoadedLayer loaded = open_layer(layer.file_to_open(), options);

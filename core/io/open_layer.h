@@ -11,6 +11,7 @@ namespace trapeze {
 
 struct OpenOptions {
   std::optional<WeightRule> weights;  // unset: those of a prepared layer, else Douglas-Peucker
+  SourceSelection selection;          // of a source; a prepared layer has been selected from
   std::string prepared_from;  // the source of a prepared layer, where it is now; empty: as it says
   std::function<void(double)> progress = {};  // see LoadOptions
 };

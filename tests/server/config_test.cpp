@@ -67,6 +67,33 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
               HasSubstr("effective-area"));
 }
 
+TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
+  const Config config = read(R"(
+    [[layer]]
+    name = "a"
+    file = "PG:dbname=maps password=secret"
+    source_layer = "city.houses"
+    where = "floors > 2"
+    attributes = ["floors"]
+    [[layer]]
+    name = "b"
+    file = "b.fgb"
+    attributes = [])");
+  const SourceSelection& selection = config.layers[0].selection;
+  EXPECT_EQ(selection.layer, "city.houses");
+  EXPECT_EQ(selection.where, "floors > 2");
+  EXPECT_THAT(selection.attributes, ::testing::Optional(::testing::ElementsAre("floors")));
+  EXPECT_THAT(config.layers[1].selection.attributes, ::testing::Optional(::testing::IsEmpty()));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nprepared = \"d.trapeze\"\nwhere = \"a = 1\""),
+              HasSubstr("is prepared: select from its source"));
+}
+
+TEST_F(ConfigTest, PrintsNoPassword) {
+  std::ofstream(path_) << "[[layer]]\nname = \"a\"\nfile = \"PG:dbname=maps password=secret\"\n";
+  const std::string printed = print_config(load_config(path_, {}));
+  EXPECT_THAT(printed, HasSubstr("file = \"PG:dbname=maps password=***\""));
+}
+
 TEST_F(ConfigTest, ReadsEveryKey) {
   const Config config = read(R"(
     [server]
@@ -319,6 +346,16 @@ TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
   }
 }
 
+std::string example_text() {
+  std::ifstream file(TRAPEZE_CONFIG_FOLDER "/example.toml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What not to say is another thing than any value.
+bool is_comment_in_example(const std::string& key) {
+  return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes";
+}
+
 TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {
   const LoadedConfig example = load_config(TRAPEZE_CONFIG_FOLDER "/example.toml", {});
   ASSERT_EQ(problems_text(example.problems), "");
@@ -328,7 +365,8 @@ TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {
   }
   ASSERT_EQ(example.config.layers.size(), 2u);
   for (const auto& setting : layer_settings()) {
-    if (setting.key == "prepared") continue;  // is there as a comment
+    EXPECT_THAT(example_text(), HasSubstr(setting.key + " = "));
+    if (is_comment_in_example(setting.key)) continue;
     EXPECT_TRUE(example.origins.contains("layer.buildings." + setting.key)) << setting.key;
   }
   EXPECT_EQ(example.config.layers[0].file, "/maps/buildings.gpkg");
