@@ -87,6 +87,12 @@ class SharedProgress {
 
 }  // namespace
 
+Problem damaged_layer(const ServedLayer& layer) {
+  return {503,
+          fmt::format("The file of the layer \"{}\" has been cut off. It has to be prepared again.",
+                      layer.config.name)};
+}
+
 std::uint64_t revision_of(const Layer& layer) {
   ContentHash hash;
   const MeshView& mesh = layer.mesh();
@@ -119,7 +125,8 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       LoadedLayer loaded = open_layer(layer.file_to_open(), options);
       const std::uint64_t revision =
           loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
-      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision};
+      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision,
+                         std::move(loaded.file)};
     }));
   }
   std::vector<ServedLayer> served;

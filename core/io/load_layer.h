@@ -15,6 +15,8 @@
 
 namespace trapeze {
 
+class MappedFile;
+
 /// A feature that was repaired or left out, with the words to tell a user.
 struct FeatureNote {
   std::int64_t id = 0;
@@ -63,7 +65,8 @@ struct LoadOptions {
 struct LoadedLayer {
   std::unique_ptr<Layer> layer;
   LoadReport report;
-  std::optional<std::uint64_t> revision = {};  // of a prepared layer: under which it was saved
+  std::shared_ptr<const MappedFile> file = {};  // that a prepared layer looks at
+  std::optional<std::uint64_t> revision = {};   // of a prepared layer: under which it was saved
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its
