@@ -387,7 +387,8 @@ class Parser {
     } while (take(TokenKind::symbol, ","));
     expect(TokenKind::symbol, ")");
     std::ranges::sort(node.literals);
-    node.literals.erase(std::ranges::unique(node.literals).begin(), node.literals.end());
+    node.literals.erase(std::unique(node.literals.begin(), node.literals.end()),
+                        node.literals.end());
   }
 
   std::string property() {

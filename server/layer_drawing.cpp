@@ -162,8 +162,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const Featur
 void LayerDrawing::take_sides(const Box& box, Lines& lines) const {
   const MeshView& mesh = layer_->mesh();
   std::ranges::sort(lines.sides);
-  const auto repeated = std::ranges::unique(lines.sides);
-  lines.sides.erase(repeated.begin(), repeated.end());
+  lines.sides.erase(std::unique(lines.sides.begin(), lines.sides.end()), lines.sides.end());
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
     Box around;
@@ -213,7 +212,7 @@ void LayerDrawing::add_dashed_edges(std::span<const TrapezoidRange> ranges, Line
     sides.emplace_back(row, mesh.trapezoids[i].right);
   });
   std::ranges::sort(sides);
-  sides.erase(std::ranges::unique(sides).begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
   const std::vector<LoopEdge>* loops = nullptr;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const auto [row, side] = sides[i];

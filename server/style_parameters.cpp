@@ -264,7 +264,7 @@ std::optional<ParameterValue> parse_ids(const StyleParameter& parameter, std::st
     ids.push_back(id);
   }
   std::ranges::sort(ids);
-  ids.erase(std::ranges::unique(ids).begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
 }
 
