@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/io/source_selection.h"
@@ -125,6 +126,10 @@ struct LoadedConfig {
 /// the file, ${NAME} is replaced by that variable of the environment, ${NAME:-words} by the words
 /// if it is not set, and $$ by $.
 LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides);
+
+/// The same of a text, as if it stood in a file of that path, and without overrides. Never throws
+/// for what is wrong with it.
+LoadedConfig load_config_text(std::string_view text, const std::string& path);
 
 /// The overrides of an environment of "NAME=value" strings that ends with a null: for each setting
 /// TABLE.KEY, the variable TRAPEZE_TABLE_KEY.

@@ -169,6 +169,7 @@ std::optional<std::string> header_value(const std::string& text) {
 
 std::optional<std::string> public_url(std::string url) {
   while (url.ends_with('/')) url.pop_back();
+  if (!std::ranges::all_of(url, [](char c) { return c > ' ' && c <= '~'; })) return std::nullopt;
   if (url.empty() || url.starts_with("http://") || url.starts_with("https://")) return url;
   return std::nullopt;
 }

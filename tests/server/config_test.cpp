@@ -187,6 +187,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\ndevice = \"${NOSUCH_VARIABLE}\"", ":2:10: ", "NOSUCH_VARIABLE is not set"},
       {"[server]\nrenderer = \"vulkan\"", ":2:12: ", "\"osmesa\" or \"software\""},
       {"[server]\npublic_url = \"maps\"", ":2:14: ", "http://"},
+      {"[server]\npublic_url = \"http://a\\r\\nb\"", ":2:14: ", "http://"},
       {"[server]\nallowed_hosts = \"a\"", ":2:17: ", "takes a list of names of hosts"},
       {"[server]\nallowed_hosts = [1]", ":2:17: ", "takes a list of names of hosts"},
       {"[server]\nallowed_hosts = [\"a\", \"a/b\"]", ":2:23: ", "names of hosts"},
@@ -210,6 +211,8 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
        ":4:11: ", "takes a list of parameters that are set for one layer: breaks, classes"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"background\"]",
        ":4:11: ", "takes a list of parameters"},
+      {"[styles.a]\n\"b c\" = { fill = \"red\" }", ":2:1: ", "\"b c\" cannot name a layer"},
+      {"[styles.a]\n\"\" = { fill = \"red\" }", ":2:1: ", "\"\" cannot name a layer"},
       {"[server\n", ":1:", ""},
   };
   for (const BadConfig& config : bad) {
@@ -335,6 +338,21 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
             loaded.config.styles.at("night").canonical_text());
   again.origins = loaded.origins;
   EXPECT_EQ(print_config(again), printed);
+}
+
+TEST_F(ConfigTest, AnEmptyTitleIsNone) {
+  EXPECT_EQ(read("[[layer]]\nname = \"a\"\nfile = \"a.fgb\"\ntitle = \"\"").layers[0].title, "a");
+}
+
+TEST_F(ConfigTest, ATextIsReadAsTheFileOfThatTextWouldBe) {
+  const std::string text =
+      "[server]\nport = 81\nqueue = 0\n[[layer]]\nname = \"a\"\nfile = \"a.fgb\"";
+  std::ofstream(path_) << text;
+  const LoadedConfig file = load_config(path_, {});
+  const LoadedConfig loaded = load_config_text(text, path_);
+  EXPECT_THAT(problems_text(loaded.problems), HasSubstr(path_ + ":3:9: server.queue"));
+  EXPECT_EQ(problems_text(loaded.problems), problems_text(file.problems));
+  EXPECT_EQ(print_config(loaded), print_config(file));
 }
 
 TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
