@@ -183,7 +183,9 @@ std::uint32_t FeatureTable::intern(std::string_view text_to_find) {
 
 std::string_view FeatureTable::text(std::uint32_t number) const {
   const std::uint64_t begin = number == 0 ? 0 : string_ends_[number - 1];
-  return {string_bytes_.data() + begin, string_ends_[number] - begin};
+  // Of a file that is cut off while it is mapped, ends may read as zero.
+  const std::uint64_t end = std::max(begin, string_ends_[number]);
+  return {string_bytes_.data() + begin, end - begin};
 }
 
 void FeatureTable::grow_slots() {

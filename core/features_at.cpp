@@ -36,7 +36,7 @@ std::vector<std::uint32_t> features_at(const Layer& layer, Point point, Level le
     if (row != Layer::kNoFeature) rows.push_back(row);
   });
   std::ranges::sort(rows);
-  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   return rows;
 }
 

@@ -98,7 +98,9 @@ void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   if (row >= c.outline_ends.size()) return;
   for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
     const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
-    rings.add(std::span(c.outline_points).subspan(begin, c.ring_ends[i] - begin));
+    // Of a file that is cut off while it is mapped, ends may read as zero.
+    const std::uint32_t end = std::max(begin, c.ring_ends[i]);
+    rings.add(std::span(c.outline_points).subspan(begin, end - begin));
   }
 }
 

@@ -177,7 +177,7 @@ void mark_vertices(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
     }
   });
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const std::uint32_t v : ends) {
     const Position p = position_of(mesh.vertices[v], view);
     if (!(p.x > -2 && p.y > -2 && p.x < picture.width + 2 && p.y < picture.height + 2)) continue;

@@ -40,7 +40,8 @@ struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
   std::string weights = "douglas-peucker";
-  std::string coverage;  // empty: the usual
+  std::string coverage;       // empty: the usual
+  SourceSelection selection;  // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
 

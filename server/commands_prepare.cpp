@@ -8,6 +8,7 @@
 
 #include "core/io/prepared_file.h"
 #include "core/io/prepared_layer.h"
+#include "core/io/source_name.h"
 #include "core/io/source_stamp.h"
 #include "server/commands.h"
 #include "server/config.h"
@@ -36,22 +37,20 @@ void make_folder(const std::string& folder) {
   }
 }
 
-LoadedLayer load(const std::string& file, const GeneralizationOptions& generalization) {
-  LoadProgress progress(file);
-  LoadOptions options;
-  options.generalization = generalization;
+LoadedLayer load(const std::string& file, const LoadOptions& how) {
+  LoadProgress progress(name_of_source(file));
+  LoadOptions options = how;
   options.progress = [&progress](double share) { progress.show(share); };
   return load_layer(file, options);
 }
 
-void prepare(const std::string& file, const GeneralizationOptions& generalization,
-             const std::string& output) {
+void prepare(const std::string& file, const LoadOptions& how, const std::string& output) {
   if (is_prepared_file(file)) {
     throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
   }
   // Before the file is read, so that a change from here on is noticed now or later.
   const SourceStamp source = stamp_source(file);
-  const LoadedLayer loaded = load(file, generalization);
+  const LoadedLayer loaded = load(file, how);
   const std::string change = change_since(source, file);
   if (!change.empty()) {
     throw std::runtime_error(file + ": has changed while it was read: " + change);
@@ -60,7 +59,7 @@ void prepare(const std::string& file, const GeneralizationOptions& generalizatio
   const LoadReport& report = loaded.report;
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
-             static_cast<double>(std::filesystem::file_size(output)) / 1e6, file);
+             static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
   if (report.repaired > 0 || report.skipped > 0) {
     fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",
                report.repaired, report.skipped, output);
@@ -73,16 +72,17 @@ void prepare(const std::string& file, const GeneralizationOptions& generalizatio
 }  // namespace
 
 int run_prepare(const PrepareArguments& arguments) {
-  GeneralizationOptions generalization;
-  generalization.weights = weights_or_throw(arguments.weights);
-  generalization.coverage = coverage_or_throw(arguments.coverage).value_or(kUsualCoverage);
+  LoadOptions how;
+  how.generalization.weights = weights_or_throw(arguments.weights);
+  how.generalization.coverage = coverage_or_throw(arguments.coverage).value_or(kUsualCoverage);
+  how.selection = arguments.selection;
   const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
     try {
-      prepare(layer.file, generalization, output.string());
+      prepare(layer.file, how, output.string());
     } catch (const std::exception& error) {
       // Reported here and not by main, so that the files after this one are prepared too.
       fmt::print(stderr, "trapeze: {}\n", error.what());

@@ -217,10 +217,16 @@ class ConfigReader {
     if (is_readable && layer.file_to_open().empty()) {
       fail(table, fmt::format("layer \"{}\" needs a file", layer.name));
     }
+    if (!layer.prepared.empty() && !layer.selection.is_all()) {
+      fail(table,
+           fmt::format("layer \"{}\" is prepared: select from its source with the options of "
+                       "`trapeze prepare`, and not by source_layer, where or attributes",
+                       layer.name));
+    }
     if (layer.min_zoom > layer.max_zoom) {
       fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
     }
-    if (layer.title.empty() && table.get("title") == nullptr) layer.title = layer.name;
+    if (layer.title.empty()) layer.title = layer.name;
     keep(std::move(layer), table.source().begin);
   }
 
@@ -256,6 +262,10 @@ class ConfigReader {
                         std::vector<QueryPair>& pairs) {
     for (const auto& [key, node] : table) {
       if (has_layers && node.is_table()) {
+        if (!is_url_name(key.str())) {
+          fail(key.source().begin, fmt::format("\"{}\" cannot name a layer", key.str()));
+          continue;
+        }
         read_style_pairs(*node.as_table(), std::string(key.str()), false, pairs);
       } else if (auto pair = read_style_pair(key, node, layer, has_layers)) {
         pairs.push_back(std::move(*pair));
@@ -338,9 +348,11 @@ class ConfigReader {
   std::unordered_map<std::string, toml::source_index> lines_;  // of layers, by name
 };
 
-void read_file(const std::string& path, LoadedConfig& loaded) {
+/// `parse` gives the table of what is called `path`.
+template <typename Parse>
+void read_toml(const std::string& path, Parse parse, LoadedConfig& loaded) {
   try {
-    const toml::table root = toml::parse_file(path);
+    const toml::table root = parse();
     ConfigReader(path, loaded).read(root);
   } catch (const toml::parse_error& error) {
     // Position 0:0 means that the file could not be opened, not that its text is wrong.
@@ -432,8 +444,18 @@ bool is_file_path(const std::string& source) {
 
 LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides) {
   LoadedConfig loaded;
-  if (!path.empty()) read_file(path, loaded);
+  if (!path.empty()) {
+    read_toml(
+        path, [&path] { return toml::parse_file(path); }, loaded);
+  }
   for (const ConfigOverride& change : overrides) apply(change, loaded);
+  return loaded;
+}
+
+LoadedConfig load_config_text(std::string_view text, const std::string& path) {
+  LoadedConfig loaded;
+  read_toml(
+      path, [text] { return toml::parse(text); }, loaded);
   return loaded;
 }
 

@@ -6,9 +6,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/coverage_groups.h"
+#include "core/io/source_selection.h"
 #include "core/vertex_weight.h"
 #include "core/web_mercator.h"
 #include "render/colour.h"
@@ -20,10 +22,11 @@
 namespace trapeze {
 
 struct LayerConfig {
-  std::string name;      // is_url_name() holds
-  std::string file;      // empty only if `prepared` is set
-  std::string prepared;  // a prepared file of it, which is served in its place; may be empty
-  std::string title;     // the name if not set
+  std::string name;           // is_url_name() holds
+  std::string file;           // empty only if `prepared` is set
+  SourceSelection selection;  // of the file
+  std::string prepared;       // a prepared file of it, which is served in its place; may be empty
+  std::string title;          // the name if not set
   std::string attribution;
   std::string description;
   StyleQuery style;  // where a request says nothing; for all layers, so without their names
@@ -125,6 +128,10 @@ struct LoadedConfig {
 /// the file, ${NAME} is replaced by that variable of the environment, ${NAME:-words} by the words
 /// if it is not set, and $$ by $.
 LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides);
+
+/// The same of a text, as if it stood in a file of that path, and without overrides. Never throws
+/// for what is wrong with it.
+LoadedConfig load_config_text(std::string_view text, const std::string& path);
 
 /// The overrides of an environment of "NAME=value" strings that ends with a null: for each setting
 /// TABLE.KEY, the variable TRAPEZE_TABLE_KEY.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/io/source_name.h"
 #include "server/config_settings.h"
 #include "server/json_text.h"
 #include "server/style_parameters.h"
@@ -67,13 +68,19 @@ std::string print_named_style(const std::string& name, const StyleQuery& style) 
   return fmt::format("\n[styles.{}]\n{}\n", name, fmt::join(style_assignments(style), "\n"));
 }
 
+/// Connection strings may hold one.
+SettingValue without_password(const Setting<LayerConfig>& setting, const SettingValue& value) {
+  if (setting.type != SettingType::path) return value;
+  return name_of_source(std::get<std::string>(value));
+}
+
 std::string print_layer(const LayerConfig& layer, const LoadedConfig& loaded) {
   std::string text = "\n[[layer]]\n";
   for (const auto& setting : layer_settings()) {
     const SettingValue value = setting.get(layer);
     const bool is_unset = value == SettingValue(std::string());
     if (is_unset) continue;
-    text += line(setting.key, toml_text(value), loaded,
+    text += line(setting.key, toml_text(without_password(setting, value)), loaded,
                  fmt::format("layer.{}.{}", layer.name, setting.key));
   }
   return text + print_style(layer.style);

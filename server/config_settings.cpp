@@ -169,6 +169,7 @@ std::optional<std::string> header_value(const std::string& text) {
 
 std::optional<std::string> public_url(std::string url) {
   while (url.ends_with('/')) url.pop_back();
+  if (!std::ranges::all_of(url, [](char c) { return c > ' ' && c <= '~'; })) return std::nullopt;
   if (url.empty() || url.starts_with("http://") || url.starts_with("https://")) return url;
   return std::nullopt;
 }
@@ -246,6 +247,22 @@ Setting<LayerConfig> coverage_setting() {
           std::string(name_of(kUsualCoverage)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.coverage ? words(layer) : SettingValue(std::string());
+  };
+  return setting;
+}
+
+/// Not set is no list.
+Setting<LayerConfig> attributes_setting() {
+  auto setting = begin<LayerConfig>(
+      "attributes", SettingType::list, "a list of names of attributes",
+      "attributes that are kept, to filter and to colour by and to be told; not set: all");
+  setting.get = [](const LayerConfig& layer) -> SettingValue {
+    if (!layer.selection.attributes) return std::string();
+    return *layer.selection.attributes;
+  };
+  setting.set = [](LayerConfig& layer, const SettingValue& value) {
+    layer.selection.attributes = std::get<std::vector<std::string>>(value);
+    return true;
   };
   return setting;
 }
@@ -433,6 +450,13 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
       path<LayerConfig>(
           "file", [](auto& layer) -> auto& { return layer.file; },
           "polygons in any format that GDAL reads, or a prepared file"),
+      text<LayerConfig>(
+          "source_layer", [](auto& layer) -> auto& { return layer.selection.layer; },
+          "the layer or table of the file or database; not set: all that hold polygons"),
+      text<LayerConfig>(
+          "where", [](auto& layer) -> auto& { return layer.selection.where; },
+          "a condition on features in SQL; not set: all of them"),
+      attributes_setting(),
       path<LayerConfig>(
           "prepared", [](auto& layer) -> auto& { return layer.prepared; },
           "made of the file by `trapeze prepare`, and served in its place"),

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/io/open_layer.h"
+#include "core/io/source_name.h"
 #include "server/content_hash.h"
 #include "server/load_progress.h"
 
@@ -66,7 +67,7 @@ class SharedProgress {
  public:
   explicit SharedProgress(const std::vector<LayerConfig>& layers)
       : shares_(layers.size(), 0),
-        progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
+        progress_(std::in_place, layers.size() == 1 ? name_of_source(layers.front().file_to_open())
                                                     : fmt::format("{} layers", layers.size())) {}
 
   void show(std::size_t layer, double share) {
@@ -85,6 +86,12 @@ class SharedProgress {
 };
 
 }  // namespace
+
+Problem damaged_layer(const ServedLayer& layer) {
+  return {503,
+          fmt::format("The file of the layer \"{}\" has been cut off. It has to be prepared again.",
+                      layer.config.name)};
+}
 
 std::uint64_t revision_of(const Layer& layer) {
   ContentHash hash;
@@ -113,12 +120,14 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       OpenOptions options;
       options.weights = layer.weights;
       options.coverage = layer.coverage;
+      options.selection = layer.selection;
       options.prepared_from = layer.prepared.empty() ? "" : layer.file;
       options.progress = [&progress, i](double share) { progress.show(i, share); };
       LoadedLayer loaded = open_layer(layer.file_to_open(), options);
       const std::uint64_t revision =
           loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
-      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision};
+      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision,
+                         std::move(loaded.file)};
     }));
   }
   std::vector<ServedLayer> served;

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "core/io/load_layer.h"
+#include "core/io/mapped_file.h"
 #include "core/layer.h"
 #include "server/config.h"
+#include "server/problem.h"
 
 namespace trapeze {
 
@@ -19,8 +21,15 @@ struct ServedLayer {
   LayerConfig config;
   std::unique_ptr<const Layer> layer;
   LoadReport report;
-  std::uint64_t revision = 0;  // revision_of(*layer)
+  std::uint64_t revision = 0;                   // revision_of(*layer)
+  std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
+
+  /// False if its prepared file has been cut off.
+  bool is_whole() const { return file == nullptr || file->is_whole(); }
 };
+
+/// 503: what is to be said of a layer that is not whole.
+Problem damaged_layer(const ServedLayer& layer);
 
 /// A hash of geometry and attributes: equal on every machine that loaded the same layer.
 std::uint64_t revision_of(const Layer& layer);

@@ -9,6 +9,8 @@
 #include <compare>
 #include <optional>
 
+#include "server/url.h"
+
 namespace trapeze {
 namespace {
 
@@ -80,6 +82,9 @@ class Lexer {
     std::string content;
     while (at_ < text_.size()) {
       const char c = text_[at_++];
+      if (has_control_character({&c, 1})) {
+        throw ParseError{fmt::format("at byte {} there is a control character", at_)};
+      }
       if (c != quote) {
         content += c;
       } else if (at_ < text_.size() && text_[at_] == quote) {
@@ -387,7 +392,8 @@ class Parser {
     } while (take(TokenKind::symbol, ","));
     expect(TokenKind::symbol, ")");
     std::ranges::sort(node.literals);
-    node.literals.erase(std::ranges::unique(node.literals).begin(), node.literals.end());
+    node.literals.erase(std::unique(node.literals.begin(), node.literals.end()),
+                        node.literals.end());
   }
 
   std::string property() {

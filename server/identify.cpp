@@ -147,6 +147,7 @@ OrProblem<Document> identify_document(const DocumentRequest& request) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
     const ServedLayer& served = request.dataset.layers()[*position];
+    if (!served.is_whole()) return damaged_layer(served);
     const auto rows = find_rows(identify, served, *position);
     if (const auto* problem = std::get_if<Problem>(&rows)) return *problem;
     for (const std::uint32_t row : std::get<0>(rows)) {

@@ -165,8 +165,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const Featur
 void LayerDrawing::take_sides(const Box& box, Lines& lines) const {
   const MeshView& mesh = layer_->mesh();
   std::ranges::sort(lines.sides);
-  const auto repeated = std::ranges::unique(lines.sides);
-  lines.sides.erase(repeated.begin(), repeated.end());
+  lines.sides.erase(std::unique(lines.sides.begin(), lines.sides.end()), lines.sides.end());
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
     Box around;
@@ -216,8 +215,8 @@ void LayerDrawing::take_dashed_sides(Lines& lines, DrawingTools& tools) const {
     return std::pair(a.second, a.first) < std::pair(b.second, b.first);
   };
   std::ranges::sort(sides);
-  const auto repeated = std::ranges::unique(sides, {}, [](const auto& side) { return side.first; });
-  sides.erase(repeated.begin(), repeated.end());
+  const auto is_same_edge = [](const auto& a, const auto& b) { return a.first == b.first; };
+  sides.erase(std::unique(sides.begin(), sides.end(), is_same_edge), sides.end());
   std::ranges::sort(sides, has_row_before);
   const MeshView& mesh = layer_->mesh();
   const std::vector<LoopEdge>* loops = nullptr;

@@ -101,7 +101,6 @@ class LayerDrawing {
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;
-  Level level_ = 0;
   std::deque<ClassDrawing> classes_;  // parts point into them
   std::size_t class_count_ = 0;
   std::vector<ClassDrawing*> by_number_;  // null: not met yet

@@ -112,6 +112,7 @@ constexpr int kSwatchWidth = 20;
 constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
 constexpr int kMaxLabelWidth = 320;
+constexpr int kMaxHeight = 8192;  // many layers of many classes are a short request
 constexpr Rgba kPaper{255, 255, 255, 255};
 constexpr Rgba kInk{0x22, 0x22, 0x22, 255};
 constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
@@ -164,8 +165,12 @@ void draw_swatch(const LegendRow& row, int top, int scale, Picture& picture) {
            over_paper(with_opacity(paint.fill, opacity)));
 }
 
-Picture draw_legend(const std::vector<LayerLegend>& legend, int scale) {
-  const std::vector<LegendRow> rows = rows_of(legend);
+/// In pixels at scale 1.
+int height_of(const std::vector<LegendRow>& rows) {
+  return static_cast<int>(rows.size()) * kRowHeight + 2 * kMargin;
+}
+
+Picture draw_legend(const std::vector<LegendRow>& rows, int scale) {
   int width = 0;
   for (const LegendRow& row : rows) {
     const int label = std::min(text_width(row.label), kMaxLabelWidth);
@@ -173,7 +178,7 @@ Picture draw_legend(const std::vector<LayerLegend>& legend, int scale) {
   }
   Picture picture;
   picture.width = width * scale;
-  picture.height = (static_cast<int>(rows.size()) * kRowHeight + 2 * kMargin) * scale;
+  picture.height = height_of(rows) * scale;
   picture.pixels.assign(
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kPaper);
   int top = kMargin * scale;
@@ -207,8 +212,15 @@ OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& 
   if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
   const auto legend = legend_of(std::get<0>(layers), request);
   if (const auto* problem = std::get_if<Problem>(&legend)) return *problem;
-  return Document{"image/png", PngEncoder().encode(draw_legend(std::get<0>(legend),
-                                                               std::get<PictureName>(name).scale))};
+  const std::vector<LegendRow> rows = rows_of(std::get<0>(legend));
+  const int scale = std::get<PictureName>(name).scale;
+  if (height_of(rows) * scale > kMaxHeight) {
+    return Problem{400,
+                   fmt::format("A legend is at most {} pixels high: name fewer layers or classes, "
+                               "or ask for .json.",
+                               kMaxHeight)};
+  }
+  return Document{"image/png", PngEncoder().encode(draw_legend(rows, scale))};
 }
 
 }  // namespace

@@ -201,6 +201,19 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->type_name("NAME");
   add_coverage(*prepare, arguments.coverage);
   prepare
+      ->add_option("--source-layer", arguments.selection.layer,
+                   "The layer or table of FILE; all that hold polygons if not set")
+      ->type_name("NAME");
+  prepare
+      ->add_option("--where", arguments.selection.where,
+                   "A condition on features in SQL, such as \"height > 20\"")
+      ->type_name("SQL");
+  prepare
+      ->add_option("--attributes", arguments.selection.attributes,
+                   "The attributes that are kept, with commas between them; all if not set")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  prepare
       ->add_option("--output", arguments.output,
                    "The folder to write into; each file is named after FILE, and ends in .trapeze")
       ->required()

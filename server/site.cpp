@@ -370,6 +370,9 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (const auto kept = cache_.find(key); kept.bytes != nullptr) {
     return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
   }
+  if (const ServedLayer* damaged = plan.damaged_layer()) {
+    return respond(problem_response(damaged_layer(*damaged)));
+  }
   if (const auto pause =
           draw_limit_->take(limited_address(request.client), RateLimit::Clock::now())) {
     return respond(problem_response(

@@ -28,6 +28,7 @@ std::string class_value_text(std::string_view text) {
 /// As the value is written in a query; nothing for what has no place there.
 std::optional<std::string> scalar_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_unsigned()) return fmt::format("{}", value.get<std::uint64_t>());
   if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
   if (value.is_number()) return fmt::format("{}", value.get<double>());
   return std::nullopt;

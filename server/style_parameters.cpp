@@ -264,7 +264,7 @@ std::optional<ParameterValue> parse_ids(const StyleParameter& parameter, std::st
     ids.push_back(id);
   }
   std::ranges::sort(ids);
-  ids.erase(std::ranges::unique(ids).begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
 }
 
@@ -322,7 +322,7 @@ std::optional<ColourClass> take_class_value(std::string_view& text) {
     if (parsed.value == "null") parsed.kind = ColourClass::Kind::null;
     if (parsed.kind != ColourClass::Kind::value) parsed.value.clear();
   }
-  if (!text.starts_with(':')) return std::nullopt;
+  if (!text.starts_with(':') || has_control_character(parsed.value)) return std::nullopt;
   text.remove_prefix(1);
   return parsed;
 }
@@ -365,6 +365,7 @@ std::optional<ParameterValue> parse_classes(const StyleParameter& parameter,
 
 std::optional<ParameterValue> parse_name(std::string_view text) {
   if (text.empty() || text.size() > kMaxNameLength) return std::nullopt;
+  if (has_control_character(text)) return std::nullopt;
   return std::string(text);
 }
 

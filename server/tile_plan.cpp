@@ -51,6 +51,14 @@ const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
   return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
 }
 
+const ServedLayer* TilePlan::damaged_layer() const {
+  for (const LayerPaint& paint : layers) {
+    const ServedLayer& served = dataset->layers()[paint.layer];
+    if (!served.is_whole()) return &served;
+  }
+  return nullptr;
+}
+
 Level TilePlan::pixel_level() const {
   return nearest_level(cells_per_pixel(tile, scale) / 4);
 }

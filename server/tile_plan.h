@@ -52,6 +52,9 @@ struct TilePlan {
   /// What the paint is for, made with or without the topological consistency test as it says; the
   /// first to ask for one without it waits until it is made.
   const Layer& layer_of(const LayerPaint& paint) const;
+  /// The first of the layers whose prepared file was cut off under the server; null if all are
+  /// whole. To be asked before drawing and after.
+  const ServedLayer* damaged_layer() const;
   /// The level of a quarter of a pixel of the picture.
   Level pixel_level() const;
   /// Equal for plans that give the same picture with the same program, however the requests were

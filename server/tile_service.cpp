@@ -111,6 +111,7 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
       answers.push_back(tile ? TileAnswer{TileOutcome::drawn, std::move(*tile)}
                              : TileAnswer{TileOutcome::late, {}});
     }
+    refuse_damaged(flights, answers);
   } catch (const std::exception& error) {
     spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->key,
                   flights.size() > 1 ? " or one drawn with it" : "", error.what());
@@ -121,6 +122,17 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
     answers[i].tile.times.queue_ms = std::chrono::duration<double, std::milli>(waited).count();
   }
   return answers;
+}
+
+/// What was drawn while a file was cut off may be drawn from zeros.
+void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers) {
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    const ServedLayer* damaged = flights[i]->plan.damaged_layer();
+    if (damaged == nullptr) continue;
+    spdlog::error("{} was cut off while it was served; run `trapeze prepare` again",
+                  damaged->report.path);
+    answers[i] = TileAnswer{};
+  }
 }
 
 void TileService::land(Flight& flight, const TileAnswer& answer) {

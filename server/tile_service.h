@@ -89,6 +89,7 @@ class TileService {
   std::size_t share_of_queue() const;
   void draw(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
+  static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
   void land(Flight& flight, const TileAnswer& answer);
   void tell(const TileAnswer& answer) const;
 

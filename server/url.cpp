@@ -89,6 +89,10 @@ std::optional<std::string> percent_decode(std::string_view text, Plus plus) {
   return decoded;
 }
 
+bool has_control_character(std::string_view text) {
+  return std::ranges::any_of(text, is_control);
+}
+
 std::string percent_encode(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   std::string encoded;

@@ -24,6 +24,9 @@ enum class Plus { literal, space };
 /// Nothing if a '%' is not followed by two hex digits, or if the result holds a control character.
 std::optional<std::string> percent_decode(std::string_view text, Plus plus);
 
+/// Whether the text has a control character, which no URL can hold, not even encoded.
+bool has_control_character(std::string_view text);
+
 /// Everything but letters, digits and -._~ is encoded, so the result can stand anywhere in a URL.
 std::string percent_encode(std::string_view text);
 

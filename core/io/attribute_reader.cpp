@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <string_view>
 
@@ -95,6 +96,10 @@ void AttributeReader::add_layer(const OGRFeatureDefn& definition) {
     const OGRFieldDefn& field = *definition.GetFieldDefn(i);
     const char* raw_name = field.GetNameRef();
     const std::string name = is_utf8(raw_name) ? raw_name : utf8_from_latin1(raw_name);
+    if (!is_kept(name)) {
+      fields.push_back(kNotKept);
+      continue;
+    }
     const FieldType type = type_of(field.GetType());
     const auto known = std::find_if(fields_.begin(), fields_.end(),
                                     [&name](const Field& f) { return f.name == name; });
@@ -109,11 +114,27 @@ void AttributeReader::add_layer(const OGRFeatureDefn& definition) {
   texts_.resize(fields_.size());
 }
 
+bool AttributeReader::is_kept(const std::string& name) const {
+  return !kept_ || std::find(kept_->begin(), kept_->end(), name) != kept_->end();
+}
+
+std::vector<std::string> AttributeReader::missing() const {
+  std::vector<std::string> missing;
+  if (!kept_) return missing;
+  std::copy_if(kept_->begin(), kept_->end(), std::back_inserter(missing),
+               [this](const std::string& name) {
+                 return std::none_of(fields_.begin(), fields_.end(),
+                                     [&name](const Field& field) { return field.name == name; });
+               });
+  return missing;
+}
+
 const std::vector<Value>& AttributeReader::read(const OGRFeature& feature, std::size_t layer) {
   std::fill(values_.begin(), values_.end(), Value());
   const std::vector<std::size_t>& fields = field_of_[layer];
   const int count = std::min(static_cast<int>(fields.size()), feature.GetFieldCount());
   for (int i = 0; i < count; ++i) {
+    if (fields[i] == kNotKept) continue;
     if (feature.IsFieldSetAndNotNull(i)) values_[fields[i]] = read_value(feature, i, fields[i]);
   }
   return values_;

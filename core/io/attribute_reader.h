@@ -1,8 +1,10 @@
 // The attributes of all layers of a source, joined into one table.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ogr_feature.h>
@@ -17,11 +19,19 @@ namespace trapeze {
 /// ISO 8859-1.
 class AttributeReader {
  public:
+  /// `kept` are the names of the fields that are kept; unset: all.
+  explicit AttributeReader(std::optional<std::vector<std::string>> kept = {})
+      : kept_(std::move(kept)) {}
+
   /// Adds the fields of the next layer, before the first row is read; layers count from 0.
   void add_layer(const OGRFeatureDefn& definition);
 
   const std::vector<Field>& fields() const { return fields_; }
-  /// For each field of a layer, its number in fields().
+  /// Names to be kept that no layer has.
+  std::vector<std::string> missing() const;
+
+  static constexpr std::size_t kNotKept = static_cast<std::size_t>(-1);
+  /// For each field of a layer, its number in fields(), or kNotKept.
   const std::vector<std::size_t>& fields_of(std::size_t layer) const { return field_of_[layer]; }
 
   /// The values of one feature of a layer, one for each of fields(), null where the layer lacks
@@ -33,6 +43,9 @@ class AttributeReader {
   Value keep_text(std::size_t field, std::string text);
   Value utf8_text(std::size_t field, const char* text);
 
+  bool is_kept(const std::string& name) const;
+
+  std::optional<std::vector<std::string>> kept_;
   std::vector<Field> fields_;
   std::vector<std::vector<std::size_t>> field_of_;  // by layer, by index in the layer
   std::vector<Value> values_;

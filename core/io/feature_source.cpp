@@ -1,10 +1,12 @@
 #include "core/io/feature_source.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "core/io/ring_reader.h"
+#include "core/io/source_name.h"
 
 namespace trapeze {
 namespace {
@@ -21,28 +23,67 @@ int polygon_field(OGRFeatureDefn& definition) {
 
 }  // namespace
 
-FeatureSource::FeatureSource(const std::string& path)
+FeatureSource::FeatureSource(const std::string& path, const SourceSelection& selection)
     : dataset_(open_source(path)), is_interleaved_(driver() == "OSM") {
-  find_layers();
+  try {
+    find_layers(selection);
+  } catch (const SourceError& error) {
+    throw std::runtime_error(name_of_source(path) + ": " + error.what());
+  }
 }
 
 std::string FeatureSource::driver() const {
   return dataset_->GetDriverName();
 }
 
-void FeatureSource::find_layers() {
-  for (OGRLayer* layer : dataset_->GetLayers()) {
-    const int field = polygon_field(*layer->GetLayerDefn());
-    if (is_interleaved_ ? layer->GetName() == kOsmAreas : field >= 0) {
-      const OGRSpatialReference* reference =
-          layer->GetLayerDefn()->GetGeomFieldDefn(field)->GetSpatialRef();
-      layers_.push_back({layer, field, SourceCrs::describe(reference)});
-      expect(*layer);
-    } else if (!is_interleaved_) {
-      passed_over_ += static_cast<std::size_t>(std::max<GIntBig>(layer->GetFeatureCount(), 0));
+void FeatureSource::find_layers(const SourceSelection& selection) {
+  if (!selection.layer.empty()) {
+    find_only_layer(selection.layer);
+  } else {
+    for (OGRLayer* layer : dataset_->GetLayers()) {
+      const int field = polygon_field(*layer->GetLayerDefn());
+      if (is_interleaved_ ? layer->GetName() == kOsmAreas : field >= 0) {
+        add_layer(*layer, field);
+      } else if (!is_interleaved_) {
+        passed_over_ += static_cast<std::size_t>(std::max<GIntBig>(layer->GetFeatureCount(), 0));
+      }
     }
   }
+  if (!selection.where.empty()) apply_condition(selection.where);
+  for (const SourceLayer& layer : layers_) expect(*layer.layer);
   messages_.clear();
+}
+
+void FeatureSource::find_only_layer(const std::string& name) {
+  OGRLayer* layer = dataset_->GetLayerByName(name.c_str());
+  if (layer == nullptr) {
+    std::string names;
+    for (OGRLayer* other : dataset_->GetLayers()) {
+      names += (names.empty() ? "" : ", ") + std::string(other->GetName());
+    }
+    throw SourceError("has no layer \"" + name + "\"; it has " + names);
+  }
+  const int field = polygon_field(*layer->GetLayerDefn());
+  if (field < 0 || (is_interleaved_ && layer->GetName() != kOsmAreas)) {
+    throw SourceError("its layer \"" + name + "\" holds no polygons");
+  }
+  add_layer(*layer, field);
+}
+
+void FeatureSource::add_layer(OGRLayer& layer, int geometry_field) {
+  const OGRSpatialReference* reference =
+      layer.GetLayerDefn()->GetGeomFieldDefn(geometry_field)->GetSpatialRef();
+  layers_.push_back({&layer, geometry_field, SourceCrs::describe(reference)});
+}
+
+void FeatureSource::apply_condition(const std::string& where) {
+  for (const SourceLayer& layer : layers_) {
+    messages_.clear();
+    if (layer.layer->SetAttributeFilter(where.c_str()) != OGRERR_NONE) {
+      throw SourceError("its layer \"" + std::string(layer.layer->GetName()) +
+                        "\" cannot be asked where " + where + ": " + messages_.text());
+    }
+  }
 }
 
 void FeatureSource::expect(OGRLayer& layer) {

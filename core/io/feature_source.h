@@ -12,6 +12,7 @@
 #include "core/io/gdal_messages.h"
 #include "core/io/open_source.h"
 #include "core/io/source_crs.h"
+#include "core/io/source_selection.h"
 
 namespace trapeze {
 
@@ -31,8 +32,9 @@ struct SourceFeature {
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming `path`, if it cannot be opened.
-  explicit FeatureSource(const std::string& path);
+  /// Throws std::runtime_error, naming the source, if it cannot be opened or has not what is
+  /// selected.
+  explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
   const std::vector<SourceLayer>& layers() const { return layers_; }
@@ -46,7 +48,10 @@ class FeatureSource {
   double progress() const;
 
  private:
-  void find_layers();
+  void find_layers(const SourceSelection& selection);
+  void find_only_layer(const std::string& name);
+  void add_layer(OGRLayer& layer, int geometry_field);
+  void apply_condition(const std::string& where);
   OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
   OGRFeatureUniquePtr next_interleaved(SourceFeature& next);
   void expect(OGRLayer& layer);

@@ -12,6 +12,7 @@
 #include "core/io/bounded_queue.h"
 #include "core/io/feature_builder.h"
 #include "core/io/feature_source.h"
+#include "core/io/source_name.h"
 
 namespace trapeze {
 namespace {
@@ -90,9 +91,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 class Loader {
  public:
   Loader(FeatureSource& source, const LoadOptions& options, BuilderPool& pool)
-      : source_(source), options_(options), pool_(pool) {
+      : source_(source), options_(options), pool_(pool), attributes_(options.selection.attributes) {
     for (const SourceLayer& layer : source.layers()) {
       attributes_.add_layer(*layer.layer->GetLayerDefn());
+    }
+    if (const std::vector<std::string> missing = attributes_.missing(); !missing.empty()) {
+      throw SourceError("has no attribute \"" + missing.front() + "\"");
     }
     table_ = FeatureTable(attributes_.fields());
   }
@@ -240,13 +244,13 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options,
 
 LoadedLayer load_layer(const std::string& path, const LoadOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  FeatureSource source(path);
+  FeatureSource source(path, options.selection);
   try {
     LoadedLayer loaded = load(source, options, start);
-    loaded.report.path = path;
+    loaded.report.path = name_of_source(path);
     return loaded;
   } catch (const SourceError& error) {
-    throw std::runtime_error(path + ": " + error.what());
+    throw std::runtime_error(name_of_source(path) + ": " + error.what());
   }
 }
 

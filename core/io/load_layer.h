@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "core/adaptable_graph.h"
+#include "core/io/source_selection.h"
 #include "core/layer.h"
 
 namespace trapeze {
+
+class MappedFile;
 
 /// A feature that was repaired or left out, with the words to tell a user.
 struct FeatureNote {
@@ -35,7 +38,7 @@ struct CoverageCounts {
 /// What was found in a source. Every feature is counted once in exactly one of `loaded`,
 /// `other_geometry`, `empty`, `skipped`.
 struct LoadReport {
-  std::string path;
+  std::string path;  // as messages call it, see name_of_source()
   std::string driver;
   std::string prepared_from;       // the source of a prepared layer; empty if it was read itself
   std::size_t features = 0;        // in the source
@@ -66,6 +69,7 @@ struct LoadReport {
 struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
   GeneralizationOptions generalization = {};
+  SourceSelection selection = {};
   /// Called from the thread that called load_layer now and then, with the share of features read,
   /// in [0, 1], or < 0 if unknown; at the end with 1. What it throws ends the loading.
   std::function<void(double)> progress = {};
@@ -74,7 +78,8 @@ struct LoadOptions {
 struct LoadedLayer {
   std::unique_ptr<Layer> layer;
   LoadReport report;
-  std::optional<std::uint64_t> revision = {};  // of a prepared layer: under which it was saved
+  std::shared_ptr<const MappedFile> file = {};  // that a prepared layer looks at
+  std::optional<std::uint64_t> revision = {};   // of a prepared layer: under which it was saved
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its
@@ -84,8 +89,9 @@ struct LoadedLayer {
 ///
 /// Features are in the order of the source whatever the number of threads, one row of the table for
 /// each feature that has polygons, drawn or not. The result does not depend on the threads. Throws
-/// std::runtime_error, naming the path, if the source cannot be opened, has no layer, breaks off,
-/// or cannot be brought to Web Mercator; bad features never throw, they are reported.
+/// std::runtime_error, naming the source, if it cannot be opened, has no layer, has not what is
+/// selected, breaks off, or cannot be brought to Web Mercator; bad features never throw, they are
+/// reported.
 ///
 /// Thread-safety: may be called from several threads at once.
 LoadedLayer load_layer(const std::string& path, const LoadOptions& options = {});

@@ -7,8 +7,9 @@
 
 namespace trapeze {
 
-/// Must not be cut off or written to while it is mapped; replacing it (by rename) or removing it
-/// does no harm. Thread-safety: any number of threads may read.
+/// Must not be written to while it is mapped; replacing it (by rename) or removing it does no harm.
+/// If it is cut off all the same, what is missing reads as zeros, and is_whole() is false.
+/// Thread-safety: any number of threads may read.
 class MappedFile {
  public:
   /// Throws std::runtime_error that names the path if it is no regular file or cannot be read.
@@ -19,8 +20,15 @@ class MappedFile {
 
   /// Begins at the border of a page.
   std::span<const std::byte> bytes() const { return bytes_; }
+  /// Whether the file is still as long as it was.
+  bool is_whole() const;
 
  private:
+  friend class MappingGuard;
+
+  void map(const std::string& path);
+
+  int file_;
   std::span<const std::byte> bytes_;
 };
 

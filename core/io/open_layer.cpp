@@ -1,5 +1,7 @@
 #include "core/io/open_layer.h"
 
+#include <stdexcept>
+
 #include "core/io/prepared_file.h"
 #include "core/io/prepared_layer.h"
 
@@ -7,6 +9,11 @@ namespace trapeze {
 
 LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   if (is_prepared_file(path)) {
+    if (!options.selection.is_all()) {
+      throw std::runtime_error(path +
+                               ": is prepared already; select from its source with the options of "
+                               "`trapeze prepare`");
+    }
     LoadedLayer layer =
         open_prepared_layer(path, {options.weights, options.prepared_from, options.coverage});
     if (options.progress) options.progress(1);
@@ -15,6 +22,7 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   LoadOptions load;
   load.generalization.weights = options.weights.value_or(WeightRule::douglas_peucker);
   load.generalization.coverage = options.coverage.value_or(kUsualCoverage);
+  load.selection = options.selection;
   load.progress = options.progress;
   return load_layer(path, load);
 }

@@ -10,10 +10,12 @@
 namespace trapeze {
 
 struct OpenOptions {
-  std::optional<WeightRule> weights;     // unset: those of a prepared layer, else Douglas-Peucker
-  std::optional<CoverageMode> coverage;  // unset: that of a prepared layer, else kUsualCoverage
+  std::optional<WeightRule> weights;  // unset: those of a prepared layer, else Douglas-Peucker
+  SourceSelection selection;          // of a source; a prepared layer has been selected from
   std::string prepared_from;  // the source of a prepared layer, where it is now; empty: as it says
   std::function<void(double)> progress = {};  // see LoadOptions
+  std::optional<CoverageMode> coverage =
+      {};  // unset: that of a prepared layer, else kUsualCoverage
 };
 
 /// Maps a prepared file, which is known by its first bytes, or loads a source. Throws as

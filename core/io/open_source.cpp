@@ -13,6 +13,7 @@
 
 #include "core/io/gdal_messages.h"
 #include "core/io/prepared_file.h"
+#include "core/io/source_name.h"
 
 namespace trapeze {
 namespace {
@@ -45,7 +46,7 @@ void register_drivers() {
 }
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw std::runtime_error(path + ": " + what);
+  throw std::runtime_error(name_of_source(path) + ": " + what);
 }
 
 bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> prefixes) {

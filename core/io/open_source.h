@@ -17,7 +17,7 @@ class SourceError : public std::runtime_error {
 };
 
 /// Opens `path` (a file, a File Geodatabase folder, a GDAL /vsi path or a PostgreSQL connection
-/// string) read-only. Throws std::runtime_error that names the path and says what is wrong: not
+/// string) read-only. Throws std::runtime_error that names the source and says what is wrong: not
 /// there, a folder, unreadable, empty, no vector data, a format that is not allowed, or broken.
 GDALDatasetUniquePtr open_source(const std::string& path);
 

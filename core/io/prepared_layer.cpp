@@ -271,6 +271,7 @@ LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
   check_options(description.numbers.options, demands);
   check_source(description.source, demands);
   LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
+  loaded.file = file;
   loaded.report.path = path;
   loaded.report.read_seconds = read_seconds;
   loaded.report.total_seconds = seconds_since(start);

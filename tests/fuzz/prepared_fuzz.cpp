@@ -1,9 +1,11 @@
 // Prepared files that were changed by somebody who also mends the checksums: each is refused, or
-// gives a layer that can be drawn and asked for everything.
+// gives a layer that can be drawn and asked for everything. Where nobody mends them, each change is
+// refused, and each file that is cut short.
 //
 // Input: changes of seven bytes each to a file prepared from a few shapes: where (four bytes, taken
 // modulo its size), how (one byte: set one byte, or a word of four bytes to a small number, to one
-// from the end of the range, or to what stands there plus a little), and what (two bytes).
+// from the end of the range, or to what stands there plus a little), and what (two bytes). What is
+// left at the end: a byte, odd if nothing is to be mended; then two bytes, where the file is cut.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -17,6 +19,8 @@
 #include <iterator>
 #include <memory>
 #include <new>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,6 +31,7 @@
 #include "core/io/prepared_layer.h"
 #include "core/layer_builder.h"
 #include "render/software_renderer.h"
+#include "tests/fuzz/require.h"
 
 namespace trapeze {
 namespace {
@@ -110,6 +115,7 @@ void mend_sections(std::span<std::byte> directory, std::span<std::byte> sections
 
 void mend(std::span<std::byte> file) {
   PreparedHeader header;
+  if (file.size() < sizeof header) return;
   std::memcpy(&header, file.data(), sizeof header);
   header.magic = kPreparedMagic;
   header.byte_order = kByteOrderMark;
@@ -118,8 +124,8 @@ void mend(std::span<std::byte> file) {
   const std::span<std::byte> rest = file.subspan(sizeof header);
   if (header.section_count <= rest.size() / sizeof(DirectoryEntry)) {
     const std::size_t size = header.section_count * sizeof(DirectoryEntry);
-    const std::size_t padded =
-        (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+    const std::size_t padded = std::min(
+        rest.size(), (size + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment);
     std::ranges::fill(rest.subspan(size, padded - size), std::byte{});
     mend_sections(rest.first(size), rest.subspan(padded));
     header.directory_checksum = checksum(rest.first(size));
@@ -163,29 +169,52 @@ void use(const Layer& layer) {
       bytes + rings.points.size() + layer.without_topology_test().memory();
 }
 
-void check(const std::uint8_t* data, std::size_t size) {
+/// What is done to the file when all changes are made.
+struct Ending {
+  bool is_mended = true;
+  std::size_t size = 0;
+};
+
+Ending ending_from(std::span<const std::uint8_t> input, std::size_t file_size) {
+  const auto rest = input.subspan(input.size() - input.size() % kBytesOfChange);
+  Ending ending{true, file_size};
+  if (!rest.empty()) ending.is_mended = rest[0] % 2 == 0;
+  if (rest.size() >= 3) ending.size = (rest[1] | rest[2] << 8) % (file_size + 1);
+  return ending;
+}
+
+/// Null if the file is refused.
+std::unique_ptr<Layer> layer_of(std::span<const std::byte> file) {
+  try {
+    return std::move(layer_of_prepared_bytes(file, nullptr).layer);
+  } catch (const PreparedFileError&) {
+    return nullptr;
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+}
+
+void check(std::span<const std::uint8_t> input) {
   static const std::vector<Block> original = make_file();
   std::vector<Block> blocks = original;
-  const auto file = std::as_writable_bytes(std::span(blocks));
-  for (std::size_t i = 0; i < kMaxChanges && (i + 1) * kBytesOfChange <= size; ++i) {
-    apply_change(data + i * kBytesOfChange, file);
+  auto file = std::as_writable_bytes(std::span(blocks));
+  for (std::size_t i = 0; i < kMaxChanges && (i + 1) * kBytesOfChange <= input.size(); ++i) {
+    apply_change(input.data() + i * kBytesOfChange, file);
   }
-  mend(file);
-  LoadedLayer loaded;
-  try {
-    loaded = layer_of_prepared_bytes(file, nullptr);
-  } catch (const PreparedFileError&) {
-    return;
-  } catch (const std::invalid_argument&) {
-    return;
-  }
-  use(*loaded.layer);
+  const Ending ending = ending_from(input, file.size());
+  file = file.first(ending.size);
+  if (ending.is_mended) mend(file);
+  const auto layer = layer_of(file);
+  if (layer == nullptr) return;
+  const bool is_whole = std::ranges::equal(file, std::as_bytes(std::span(original)));
+  fuzzing::require(ending.is_mended || is_whole, "a damaged file is taken for a whole one");
+  use(*layer);
 }
 
 }  // namespace
 }  // namespace trapeze
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  trapeze::check(data, size);
+  trapeze::check({data, size});
   return 0;
 }

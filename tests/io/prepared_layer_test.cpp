@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/io/checksum.h"
+#include "core/io/mapped_file.h"
 #include "core/io/open_layer.h"
 #include "core/io/open_source.h"
 #include "core/io/prepared_file.h"
@@ -456,6 +457,36 @@ TEST_F(PreparedLayerTest, ThatCannotBeWrittenLeavesNothingBehind) {
   EXPECT_THAT([&] { save_prepared_layer(path("nosuch/a"), loaded, 0, stamp); },
               ::testing::ThrowsMessage<std::runtime_error>("cannot write " + path("nosuch/a") +
                                                            ": No such file or directory"));
+}
+
+TEST_F(PreparedLayerTest, CutOffWhileItIsMappedReadsAsZerosAndIsNotWhole) {
+  prepare(kMixed, prepared_);
+  const std::uintmax_t size = std::filesystem::file_size(prepared_);
+  for (const std::uintmax_t left : {std::uintmax_t{0}, size / 3, size - 1}) {
+    std::filesystem::remove(prepared_);
+    prepare(kMixed, prepared_);
+    const LoadedLayer opened = open_prepared_layer(prepared_);
+    ASSERT_TRUE(opened.file->is_whole());
+    std::filesystem::permissions(prepared_, std::filesystem::perms::owner_all);
+    std::filesystem::resize_file(prepared_, left);
+    EXPECT_FALSE(opened.file->is_whole());
+
+    // Whatever is read, nothing is read from beyond.
+    const Layer& layer = *opened.layer;
+    std::vector<TrapezoidRange> ranges;
+    layer.select({.box = {kGridMin, kGridMin, kGridMax, kGridMax}}, ranges);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      box_of(layer.mesh(), layer.mesh().trapezoids[i]);
+      EXPECT_LT(layer.feature_of(i), layer.features().size());
+    });
+    Rings outline;
+    for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
+      layer.append_outline(row, outline);
+      for (std::size_t field = 0; field < layer.features().fields().size(); ++field) {
+        layer.features().value(row, static_cast<int>(field));
+      }
+    }
+  }
 }
 
 TEST_F(PreparedLayerTest, LeavesNothingButItself) {

@@ -79,6 +79,15 @@ judge() {
       if (NR != count) { ++wrongs; printf "wrong: %d answers to %d requests\n", NR, count }
       exit wrongs > 0
     }' "$work/$1" || fail "$1: wrong answers"
+  [[ -z ${KNOWN-} ]] || remember "$1"
+}
+
+# remember NAME: adds "URL ETag bytes" of all pictures to the file KNOWN; fails if a URL now has two.
+remember() {
+  awk -F '\t' '$1 == 200 { print $7, $5, $3 }' "$work/$1" | sort -u - "$KNOWN" >"$work/known"
+  cut -d ' ' -f 1 "$work/known" | uniq -d >"$work/changed"
+  [[ ! -s $work/changed ]] || fail "another picture than before: $(head -3 "$work/changed")"
+  cp "$work/known" "$KNOWN"
 }
 
 # metric NAME: the value of a metric without labels.

@@ -72,6 +72,33 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
               HasSubstr("\"auto\", \"on\" or \"off\""));
 }
 
+TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
+  const Config config = read(R"(
+    [[layer]]
+    name = "a"
+    file = "PG:dbname=maps password=secret"
+    source_layer = "city.houses"
+    where = "floors > 2"
+    attributes = ["floors"]
+    [[layer]]
+    name = "b"
+    file = "b.fgb"
+    attributes = [])");
+  const SourceSelection& selection = config.layers[0].selection;
+  EXPECT_EQ(selection.layer, "city.houses");
+  EXPECT_EQ(selection.where, "floors > 2");
+  EXPECT_THAT(selection.attributes, ::testing::Optional(::testing::ElementsAre("floors")));
+  EXPECT_THAT(config.layers[1].selection.attributes, ::testing::Optional(::testing::IsEmpty()));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nprepared = \"d.trapeze\"\nwhere = \"a = 1\""),
+              HasSubstr("is prepared: select from its source"));
+}
+
+TEST_F(ConfigTest, PrintsNoPassword) {
+  std::ofstream(path_) << "[[layer]]\nname = \"a\"\nfile = \"PG:dbname=maps password=secret\"\n";
+  const std::string printed = print_config(load_config(path_, {}));
+  EXPECT_THAT(printed, HasSubstr("file = \"PG:dbname=maps password=***\""));
+}
+
 TEST_F(ConfigTest, ReadsEveryKey) {
   const Config config = read(R"(
     [server]
@@ -165,6 +192,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\ndevice = \"${NOSUCH_VARIABLE}\"", ":2:10: ", "NOSUCH_VARIABLE is not set"},
       {"[server]\nrenderer = \"vulkan\"", ":2:12: ", "\"osmesa\" or \"software\""},
       {"[server]\npublic_url = \"maps\"", ":2:14: ", "http://"},
+      {"[server]\npublic_url = \"http://a\\r\\nb\"", ":2:14: ", "http://"},
       {"[server]\nallowed_hosts = \"a\"", ":2:17: ", "takes a list of names of hosts"},
       {"[server]\nallowed_hosts = [1]", ":2:17: ", "takes a list of names of hosts"},
       {"[server]\nallowed_hosts = [\"a\", \"a/b\"]", ":2:23: ", "names of hosts"},
@@ -188,6 +216,8 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
        ":4:11: ", "takes a list of parameters that are set for one layer: breaks, classes"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"background\"]",
        ":4:11: ", "takes a list of parameters"},
+      {"[styles.a]\n\"b c\" = { fill = \"red\" }", ":2:1: ", "\"b c\" cannot name a layer"},
+      {"[styles.a]\n\"\" = { fill = \"red\" }", ":2:1: ", "\"\" cannot name a layer"},
       {"[server\n", ":1:", ""},
   };
   for (const BadConfig& config : bad) {
@@ -315,6 +345,21 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
   EXPECT_EQ(print_config(again), printed);
 }
 
+TEST_F(ConfigTest, AnEmptyTitleIsNone) {
+  EXPECT_EQ(read("[[layer]]\nname = \"a\"\nfile = \"a.fgb\"\ntitle = \"\"").layers[0].title, "a");
+}
+
+TEST_F(ConfigTest, ATextIsReadAsTheFileOfThatTextWouldBe) {
+  const std::string text =
+      "[server]\nport = 81\nqueue = 0\n[[layer]]\nname = \"a\"\nfile = \"a.fgb\"";
+  std::ofstream(path_) << text;
+  const LoadedConfig file = load_config(path_, {});
+  const LoadedConfig loaded = load_config_text(text, path_);
+  EXPECT_THAT(problems_text(loaded.problems), HasSubstr(path_ + ":3:9: server.queue"));
+  EXPECT_EQ(problems_text(loaded.problems), problems_text(file.problems));
+  EXPECT_EQ(print_config(loaded), print_config(file));
+}
+
 TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
   try {
     read_config("/nosuch/trapeze.toml");
@@ -322,6 +367,16 @@ TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/nosuch/trapeze.toml"));
   }
+}
+
+std::string example_text() {
+  std::ifstream file(TRAPEZE_CONFIG_FOLDER "/example.toml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What not to say is another thing than any value.
+bool is_comment_in_example(const std::string& key) {
+  return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes";
 }
 
 TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {
@@ -333,7 +388,8 @@ TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {
   }
   ASSERT_EQ(example.config.layers.size(), 2u);
   for (const auto& setting : layer_settings()) {
-    if (setting.key == "prepared") continue;  // is there as a comment
+    EXPECT_THAT(example_text(), HasSubstr(setting.key + " = "));
+    if (is_comment_in_example(setting.key)) continue;
     EXPECT_TRUE(example.origins.contains("layer.buildings." + setting.key)) << setting.key;
   }
   EXPECT_EQ(example.config.layers[0].file, "/maps/buildings.gpkg");

@@ -145,6 +145,8 @@ TEST(FilterTest, MistakesAreTold) {
       {"a = b", "at byte 5"},
       {"a = 1 b", "at byte 7 there should be AND, OR or the end"},
       {"a = 'x", "the quote at byte 5 is never closed"},
+      {"a\n=\n'x\n'", "at byte 7 there is a control character"},
+      {"\"a\x7f\" = 1", "at byte 3 there is a control character"},
       {"\"a = 1", "the quote at byte 1"},
       {"(a = 1", ")"},
       {"a IN ()", "a literal"},

@@ -56,6 +56,14 @@ TEST_F(LegendTest, WhatIsWrongIsSaid) {
   EXPECT_EQ(sample_.get("/legend/%zz.json").status, 400);
 }
 
+TEST_F(LegendTest, APictureBeyondAllMeasureIsRefused) {
+  std::string classes = "?color-by=name&classes=0:red";
+  for (int i = 1; i < 64; ++i) classes += "," + std::to_string(i) + ":red";
+  EXPECT_LT(picture("/legend/rings,west@3x.png" + classes).height, 8192);
+  EXPECT_EQ(sample_.get("/legend/rings,west@4x.png" + classes).status, 400);
+  EXPECT_EQ(sample_.get("/legend/rings,west.json" + classes).status, 200);
+}
+
 TEST_F(LegendTest, IsNotSentAgainToWhoHasIt) {
   const std::string tag(sample_.get("/legend/rings.png").header("ETag"));
   EXPECT_EQ(sample_.get("/legend/rings.png", tag).status, 304);

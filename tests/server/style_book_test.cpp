@@ -121,6 +121,10 @@ TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {
            {R"({"style": "night"})", "does not know \"style\""},
            {R"({"layers": {"a b": {"fill": "red"}}})", "cannot name a layer"},
            {R"({"layers": {"a": 1}})", "needs an object"},
+           {R"({"ids": 18446744073709551615})", "ids takes 1 to"},
+           {R"({"color-by": "a\u0001"})", "color-by takes the name of a property"},
+           {R"({"classes": {"a\nb": "red"}})", "classes takes 1 to"},
+           {R"({"filter": "a = 'b\t'"})", "at byte 7 there is a control character"},
            {R"({"water.background": "red"})", "for one layer"},
            {R"({"fill": "red", "paint": {"fill-color": "blue"}})", "more than once"}}) {
     EXPECT_THAT(canonical(json), HasSubstr(says)) << json;

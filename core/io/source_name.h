@@ -1,0 +1,12 @@
+// What a source is called where people can read it.
+#pragma once
+
+#include <string>
+
+namespace trapeze {
+
+/// The path of a source without the password that a connection string or a URL may hold.
+/// Thread-safety: any thread.
+std::string name_of_source(const std::string& path);
+
+}  // namespace trapeze

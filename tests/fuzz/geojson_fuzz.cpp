@@ -1,0 +1,118 @@
+// From a GeoJSON text, through the reader of all sources, to the graph of each feature, through any
+// removals and back. What becomes of each feature is counted once.
+//
+// Input: a byte of flags, then the text.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
+#include "core/io/feature_source.h"
+#include "core/io/load_layer.h"
+#include "core/io/source_ring_reader.h"
+#include "tests/fuzz/check_operators.h"
+#include "tests/fuzz/require.h"
+
+namespace trapeze {
+namespace {
+
+using fuzzing::require;
+
+const std::string kPath = "/vsimem/fuzz.geojson";
+constexpr std::size_t kMaxPoints = 400;  // of a feature; the checks are slower than what they check
+
+/// A file in memory, which looks at the input.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view text) : text_(text) {
+    VSIFCloseL(VSIFileFromMemBuffer(kPath.c_str(), reinterpret_cast<GByte*>(text_.data()),
+                                    text_.size(), /*bTakeOwnership=*/FALSE));
+  }
+  ~MemoryFile() { VSIUnlink(kPath.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+ private:
+  std::string text_;
+};
+
+/// A reference system may be named by an URL: nothing must be fetched here.
+bool stay_offline() {
+  CPLSetConfigOption("GDAL_HTTP_PROXY", "127.0.0.1:9");
+  CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "1");
+  return true;
+}
+
+void check_rings(const Rings& rings) {
+  for (const Point p : rings.points) {
+    require(p.x >= kGridMin && p.x <= kGridMax && p.y >= kGridMin && p.y <= kGridMax,
+            "a point lies outside of the world");
+  }
+}
+
+void check_features(const fuzzing::Operations& operations) {
+  FeatureSource source(kPath);
+  SourceRingReader reader(source);
+  SourceFeature next;
+  while (source.next(next)) {
+    const OGRGeometry* geometry =
+        next.layer == nullptr ? nullptr : next.feature->GetGeomFieldRef(next.layer->geometry_field);
+    if (geometry == nullptr || !has_polygons(*geometry)) continue;
+    FeatureRings& feature = reader.read(*geometry, next.layer_index);
+    if (!feature.failure.empty()) continue;
+    check_rings(feature.rings);
+    if (feature.rings.points.size() <= kMaxPoints) {
+      fuzzing::check_operators(feature.rings, operations);
+    }
+  }
+}
+
+void check_loading() {
+  LoadOptions options;
+  options.threads = 1;
+  const LoadedLayer loaded = load_layer(kPath, options);
+  const LoadReport& report = loaded.report;
+  require(report.features == report.loaded + report.other_geometry + report.empty + report.skipped,
+          "a feature is not counted once");
+  require(loaded.layer->features().size() + report.other_geometry <= report.features,
+          "there are more rows than features");
+}
+
+/// Calls `read`, which may refuse the source as a whole, in words that name it.
+template <typename Read>
+void expect_words(Read read) {
+  try {
+    read();
+  } catch (const SourceError& error) {
+    require(error.what()[0] != '\0', "a source is refused without words");
+  } catch (const std::runtime_error& error) {
+    require(std::string_view(error.what()).find(kPath) != std::string_view::npos,
+            "the refusal of a source does not name it");
+  }
+}
+
+void check(std::uint8_t flags, std::string_view text) {
+  static const bool is_offline [[maybe_unused]] = stay_offline();
+  const MemoryFile file(text);
+  fuzzing::Operations operations;
+  operations.generalization.topology = (flags & 1) != 0 ? Topology::fast : Topology::strict;
+  operations.generalization.weights = static_cast<WeightRule>((flags >> 1) % 3);
+  operations.seed = flags;
+  operations.greatest_tolerance = static_cast<double>(1 << 30);
+  expect_words([&operations] { check_features(operations); });
+  expect_words([] { check_loading(); });
+}
+
+}  // namespace
+}  // namespace trapeze
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  trapeze::check(data[0], trapeze::fuzzing::text_of(data + 1, size - 1));
+  return 0;
+}

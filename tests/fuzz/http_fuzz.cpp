@@ -1,0 +1,156 @@
+// Bytes sent to a server that listens on the loopback address: whatever they are, what comes back
+// is the answers that the server believes to have sent, and it goes on.
+//
+// Input: the bytes of one connection.
+#include <spdlog/spdlog.h>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "server/http_server.h"
+#include "tests/fuzz/require.h"
+
+namespace trapeze {
+namespace {
+
+using fuzzing::require;
+
+constexpr std::size_t kMaxInput = 16384;  // what sockets hold without somebody who reads
+
+struct Sent {
+  std::string method;
+  int status;
+  std::size_t bytes;
+};
+
+/// A server that answers everything with a few words, and what it has sent.
+class FuzzedServer {
+ public:
+  FuzzedServer() {
+    spdlog::set_level(spdlog::level::off);
+    thread_ = std::thread([this] { server_->run(); });
+  }
+  ~FuzzedServer() {
+    server_->stop();
+    thread_.join();
+  }
+  FuzzedServer(const FuzzedServer&) = delete;
+  FuzzedServer& operator=(const FuzzedServer&) = delete;
+
+  std::uint16_t port() const { return server_->port(); }
+  std::vector<Sent> take_sent() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(sent_, {});
+  }
+
+ private:
+  static HttpServerOptions options() {
+    HttpServerOptions options;
+    options.address = "127.0.0.1";
+    options.port = 0;
+    options.threads = 1;
+    options.body_limit = 512;
+    options.header_limit = 2048;
+    options.target_limit = 1024;
+    options.trusted_proxies = {*parse_address_range("127.0.0.0/8")};
+    return options;
+  }
+
+  static void answer(const HttpRequest& request, const Respond& respond) {
+    const auto is_graphic = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != 0x7f; };
+    require(std::ranges::all_of(request.method, is_graphic), "a method that is none");
+    require(!request.target.empty() && std::ranges::all_of(request.target, is_graphic),
+            "a target that is none");
+    require(request.body.size() <= options().body_limit, "a body beyond the limit");
+    HttpResponse response;
+    response.headers = {{"Content-Type", "text/plain"}};
+    response.body = std::make_shared<const std::string>("HTTP/1.1 is spoken here.\r\n\r\n");
+    respond(std::move(response));
+  }
+
+  void observe(const Answered& answered) {
+    const std::size_t bytes = answered.response.body == nullptr || answered.request.method == "HEAD"
+                                  ? 0
+                                  : answered.response.body->size();
+    const std::lock_guard lock(mutex_);
+    sent_.push_back({answered.request.method, answered.response.status, bytes});
+  }
+
+  std::mutex mutex_;  // guards the one below
+  std::vector<Sent> sent_;
+  const std::unique_ptr<HttpServer> server_ = std::make_unique<HttpServer>(
+      options(), answer, [this](const Answered& answered) { observe(answered); });
+  std::thread thread_;
+};
+
+/// A connection that sends all and then only listens.
+std::string exchange_bytes(std::uint16_t port, std::string_view bytes) {
+  const int client = socket(AF_INET, SOCK_STREAM, 0);
+  require(client >= 0, "no socket");
+  // Closed with a reset, so that no port is kept waiting.
+  const linger reset{1, 0};
+  setsockopt(client, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  require(connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0,
+          "the server takes no connection");
+  while (!bytes.empty()) {
+    const ssize_t count = send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (count <= 0) break;  // the server has heard enough
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  shutdown(client, SHUT_WR);
+  std::string received;
+  std::array<char, 4096> block{};
+  for (ssize_t count = 0; (count = recv(client, block.data(), block.size(), 0)) > 0;) {
+    received.append(block.data(), static_cast<std::size_t>(count));
+  }
+  close(client);
+  return received;
+}
+
+/// Takes one answer off the beginning of what was received.
+void take_answer(const Sent& sent, std::string_view& received) {
+  require(received.starts_with("HTTP/1.1 ") || received.starts_with("HTTP/1.0 "),
+          "an answer does not begin as one");
+  int status = 0;
+  std::from_chars(received.data() + 9, received.data() + std::min<std::size_t>(12, received.size()),
+                  status);
+  require(status == sent.status, "an answer has another status");
+  const std::size_t end = received.find("\r\n\r\n");
+  require(end != std::string_view::npos, "an answer has no end of its header");
+  require(received.size() >= end + 4 + sent.bytes, "an answer is cut short");
+  received.remove_prefix(end + 4 + sent.bytes);
+}
+
+void check(std::string_view bytes) {
+  static FuzzedServer server;
+  const std::string all = exchange_bytes(server.port(), bytes.substr(0, kMaxInput));
+  std::string_view received = all;
+  for (const Sent& sent : server.take_sent()) take_answer(sent, received);
+  require(received.empty(), "there is more than the answers");
+}
+
+}  // namespace
+}  // namespace trapeze
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  trapeze::check(trapeze::fuzzing::text_of(data, size));
+  return 0;
+}

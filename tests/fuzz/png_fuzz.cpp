@@ -1,0 +1,104 @@
+// Pictures through the encoder of tiles, and back through libpng: no pixel changes, and nothing
+// becomes much larger than it was.
+//
+// Input: width, height, how pixels are made, number of colours, four bytes a colour, then what the
+// pixels are made from: runs of two bytes (length and index), or an index a byte.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "render/png.h"
+#include "tests/fuzz/require.h"
+
+namespace trapeze {
+namespace {
+
+using fuzzing::require;
+
+constexpr std::size_t kHead = 4;
+constexpr int kMaxSide = 40;
+constexpr int kLarger = 8;  // only some pictures are, for the sake of speed
+
+/// Hands out the bytes of an input, and zeros when there are no more.
+class Bytes {
+ public:
+  explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  std::uint8_t next() {
+    if (bytes_.empty()) return 0;
+    const std::uint8_t byte = bytes_.front();
+    bytes_ = bytes_.subspan(1);
+    return byte;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+Rgba next_colour(Bytes& bytes) {
+  Rgba colour;
+  for (std::uint8_t* part : {&colour.r, &colour.g, &colour.b, &colour.a}) *part = bytes.next();
+  return colour;
+}
+
+Picture picture_from(Bytes bytes) {
+  Picture picture;
+  picture.width = 1 + bytes.next() % kMaxSide;
+  picture.height = 1 + bytes.next() % kMaxSide;
+  const std::uint8_t way = bytes.next();
+  if ((way & 8) != 0) picture.width *= kLarger;
+  if ((way & 16) != 0) picture.height *= kLarger;
+  const std::size_t colours = 1u + bytes.next();
+  for (std::size_t i = 0; i < colours; ++i) {
+    picture.palette.push_back(next_colour(bytes));
+    if ((way & 4) != 0) picture.palette.back().a = 255;
+  }
+  const auto count =
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  while (picture.indices.size() < count) {
+    const std::size_t length = (way & 1) != 0 ? 1 : std::size_t{1} + bytes.next();
+    const auto index = static_cast<std::uint8_t>(bytes.next() % colours);
+    picture.indices.resize(std::min(count, picture.indices.size() + length), index);
+  }
+  if ((way & 2) == 0) return picture;
+  for (const std::uint8_t index : picture.indices) picture.pixels.push_back(picture.palette[index]);
+  picture.palette.clear();
+  picture.indices.clear();
+  return picture;
+}
+
+bool are_same(Rgba a, Rgba b) {
+  return a == b || (a.a == 0 && b.a == 0);  // nobody sees what is wholly transparent
+}
+
+void check(std::span<const std::uint8_t> input) {
+  if (input.size() < kHead) return;
+  static PngEncoder encoder;
+  const Picture picture = picture_from(Bytes(input));
+  const std::string bytes = encoder.encode(picture);
+  const Picture decoded = decode_png(bytes);
+  require(decoded.width == picture.width && decoded.height == picture.height,
+          "a picture comes back in another size");
+  for (int row = 0; row < picture.height; ++row) {
+    for (int column = 0; column < picture.width; ++column) {
+      require(are_same(picture.at(column, row), decoded.at(column, row)), "a pixel has changed");
+    }
+  }
+  // What cannot be compressed is stored, with a few bytes a block; 1,100 bytes hold a palette.
+  const auto pixels =
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  const std::size_t raw =
+      pixels * (picture.is_indexed() ? 1 : 4) + static_cast<std::size_t>(picture.height);
+  require(bytes.size() <= raw + raw / 64 + 1500, "a picture has become larger than its pixels");
+  require(encoder.encode(picture) == bytes, "the same picture gives other bytes");
+}
+
+}  // namespace
+}  // namespace trapeze
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  trapeze::check({data, size});
+  return 0;
+}

@@ -1,0 +1,15 @@
+// Layers to ask for, made in memory: as small as they can be and still have everything.
+#pragma once
+
+#include <memory>
+
+#include "server/dataset.h"
+
+namespace trapeze::fuzzing {
+
+/// "land": twelve polygons from a few cells to half of the world, some with a hole, with the
+/// properties "name" (text), "rank" (integer, sometimes null) and "size" (real). "water": two
+/// polygons without properties, drawn at the zooms 1 to 6, whose "stroke" is locked.
+std::shared_ptr<const Dataset> sample_layers();
+
+}  // namespace trapeze::fuzzing

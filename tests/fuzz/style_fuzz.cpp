@@ -1,0 +1,104 @@
+// Bodies of POST /styles: each is refused in words, or is a style whose document, whose query and
+// whose id lead back to itself.
+//
+// Input: the body.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/style_book.h"
+#include "server/style_document.h"
+#include "server/style_parameters.h"
+#include "server/url.h"
+#include "tests/fuzz/require.h"
+
+namespace trapeze {
+namespace {
+
+using fuzzing::require;
+
+std::vector<std::string> layers_of(const StyleQuery& style) {
+  std::vector<std::string> layers;
+  for (const StyleSetting& setting : style.settings()) {
+    if (!setting.layer.empty() && std::ranges::find(layers, setting.layer) == layers.end()) {
+      layers.push_back(setting.layer);
+    }
+  }
+  return layers;
+}
+
+void check_order(const StyleQuery& style) {
+  const auto settings = style.settings();
+  for (std::size_t i = 1; i < settings.size(); ++i) {
+    require(std::tie(settings[i - 1].layer, settings[i - 1].parameter) <
+                std::tie(settings[i].layer, settings[i].parameter),
+            "settings are not in order, each once");
+  }
+}
+
+void check_document(const StyleQuery& style) {
+  const auto again = parse_style_document(style_document(style));
+  require(std::holds_alternative<StyleQuery>(again), "the document of a style is refused");
+  require(std::get<StyleQuery>(again).canonical_text() == style.canonical_text(),
+          "the document of a style is another style");
+}
+
+void check_query(const StyleQuery& style) {
+  const auto pairs = decode_query(style.canonical_text());
+  // Control characters cannot stand in a URL, and so not in what is posted either.
+  require(pairs.has_value(), "the query of a style cannot be decoded");
+  const auto again = StyleQuery::parse(*pairs, layers_of(style));
+  require(std::holds_alternative<StyleQuery>(again), "the query of a style is refused");
+  require(std::get<StyleQuery>(again).canonical_text() == style.canonical_text(),
+          "the query of a style is another style");
+}
+
+void check_id(const StyleQuery& style) {
+  StyleBook book;
+  const auto id = book.post(style);
+  if (const auto* problem = std::get_if<Problem>(&id)) {
+    require(problem->status == 400, "a style is refused, but not with 400");
+    return;
+  }
+  const auto expanded = book.expand({{"style", std::get<std::string>(id)}});
+  require(std::holds_alternative<std::vector<QueryPair>>(expanded), "a posted style is unknown");
+  require(std::get<std::vector<QueryPair>>(expanded) == style.pairs(), "a posted style differs");
+}
+
+void check_defaults(const StyleQuery& style) {
+  for (const std::string& layer : layers_of(style)) {
+    const StyleQuery full = style.with_defaults(layer, style);
+    check_order(full);
+    for (const StyleSetting& setting : style.settings()) {
+      if (setting.layer != layer) continue;
+      require(format_value(*full.find(layer, setting.parameter)) == format_value(setting.value),
+              "a default goes before what is set");
+    }
+  }
+}
+
+void check(std::string_view text) {
+  const auto parsed = parse_style_document(text);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) {
+    require(problem->status == 400, "a document is refused, but not with 400");
+    require(!problem->detail.empty() && !problem_json(*problem).empty(), "a problem without words");
+    return;
+  }
+  const auto& style = std::get<StyleQuery>(parsed);
+  check_order(style);
+  check_document(style);
+  check_query(style);
+  check_id(style);
+  check_defaults(style);
+}
+
+}  // namespace
+}  // namespace trapeze
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  trapeze::check(trapeze::fuzzing::text_of(data, size));
+  return 0;
+}
