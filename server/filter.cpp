@@ -141,8 +141,9 @@ std::optional<FilterLiteral> parse_number(std::string_view text) {
   double real = 0;
   const auto [real_end, real_error] = std::from_chars(text.data(), end, real);
   if (real_error != std::errc() || real_end != end || !std::isfinite(real)) return std::nullopt;
-  constexpr double kExactIntegers = 9007199254740992;  // 2^53
-  if (std::abs(real) <= kExactIntegers && real == std::trunc(real)) {
+  // Whatever has the text of an integer is one.
+  constexpr double kTooLarge = 9223372036854775808.0;  // 2^63
+  if (real >= -kTooLarge && real < kTooLarge && real == std::trunc(real)) {
     return static_cast<std::int64_t>(real);
   }
   return real;

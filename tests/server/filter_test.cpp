@@ -136,6 +136,15 @@ TEST(FilterTest, TheTextReadsBackAsItself) {
   }
 }
 
+TEST(FilterTest, NumbersBeyondExactDoublesKeepTheirText) {
+  // Between 2^53 and 10^16 a whole double is written as an integer is, which comes before any
+  // double.
+  const std::string text =
+      canonical("n IN (.4,9223372039223372.37,1e17,-9223372036854775808.0,1e30)");
+  EXPECT_EQ(canonical(text), text);
+  EXPECT_EQ(text, "n IN (-9223372036854775808,9223372039223372,100000000000000000,0.4,1e+30)");
+}
+
 TEST(FilterTest, MistakesAreTold) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"", "at its end"},
