@@ -68,14 +68,29 @@ void check_id(const StyleQuery& style) {
   require(std::get<std::vector<QueryPair>>(expanded) == style.pairs(), "a posted style differs");
 }
 
+/// The settings of one layer as a configuration has them: for all layers, without its name.
+StyleQuery settings_of(const StyleQuery& style, const std::string& layer) {
+  std::vector<QueryPair> pairs;
+  for (const StyleSetting& setting : style.settings()) {
+    if (setting.layer != layer) continue;
+    pairs.emplace_back(style_parameter(setting.parameter).name, format_value(setting.value));
+  }
+  const auto settings = StyleQuery::parse(pairs, {});
+  require(std::holds_alternative<StyleQuery>(settings), "settings of a layer are none for all");
+  return std::get<StyleQuery>(settings);
+}
+
 void check_defaults(const StyleQuery& style) {
-  for (const std::string& layer : layers_of(style)) {
-    const StyleQuery full = style.with_defaults(layer, style);
-    check_order(full);
-    for (const StyleSetting& setting : style.settings()) {
-      if (setting.layer != layer) continue;
-      require(format_value(*full.find(layer, setting.parameter)) == format_value(setting.value),
-              "a default goes before what is set");
+  const std::vector<std::string> layers = layers_of(style);
+  for (const std::string& layer : layers) {
+    for (const std::string& source : layers) {
+      const StyleQuery full = style.with_defaults(layer, settings_of(style, source));
+      check_order(full);
+      for (const StyleSetting& setting : style.settings()) {
+        if (setting.layer != layer) continue;
+        require(format_value(*full.find(layer, setting.parameter)) == format_value(setting.value),
+                "a default goes before what is set");
+      }
     }
   }
 }
