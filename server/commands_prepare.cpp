@@ -8,7 +8,6 @@
 
 #include "core/io/prepared_file.h"
 #include "core/io/prepared_layer.h"
-#include "core/io/source_name.h"
 #include "core/io/source_stamp.h"
 #include "server/commands.h"
 #include "server/config.h"
@@ -38,7 +37,7 @@ void make_folder(const std::string& folder) {
 }
 
 LoadedLayer load(const std::string& file, const LoadOptions& how) {
-  LoadProgress progress(name_of_source(file));
+  LoadProgress progress(file);
   LoadOptions options = how;
   options.progress = [&progress](double share) { progress.show(share); };
   return load_layer(file, options);

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "core/io/open_layer.h"
-#include "core/io/source_name.h"
 #include "server/content_hash.h"
 #include "server/load_progress.h"
 
@@ -67,7 +66,7 @@ class SharedProgress {
  public:
   explicit SharedProgress(const std::vector<LayerConfig>& layers)
       : shares_(layers.size(), 0),
-        progress_(std::in_place, layers.size() == 1 ? name_of_source(layers.front().file_to_open())
+        progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
                                                     : fmt::format("{} layers", layers.size())) {}
 
   void show(std::size_t layer, double share) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/io/source_name.h"
+
 namespace trapeze {
 namespace {
 
@@ -15,8 +17,8 @@ constexpr int kBarWidth = 40;
 
 }  // namespace
 
-LoadProgress::LoadProgress(std::string name)
-    : name_(std::move(name)),
+LoadProgress::LoadProgress(const std::string& name)
+    : name_(name_of_source(name)),
       is_terminal_(isatty(STDERR_FILENO) != 0),
       begin_(Clock::now()),
       next_(begin_ + (is_terminal_ ? Clock::duration(kBarInterval) : kLineInterval)) {}

@@ -11,7 +11,8 @@ namespace trapeze {
 
 class LoadProgress {
  public:
-  explicit LoadProgress(std::string name);
+  /// `name` is that of a source, whose password nobody gets to see, or any words.
+  explicit LoadProgress(const std::string& name);
   /// Takes the bar away again.
   ~LoadProgress();
   LoadProgress(const LoadProgress&) = delete;

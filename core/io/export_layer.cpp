@@ -17,6 +17,7 @@
 #include "core/io/open_source.h"
 #include "core/io/polygon_file.h"
 #include "core/io/polygon_geometry.h"
+#include "core/io/source_name.h"
 #include "core/io/source_ring_reader.h"
 #include "core/polygons.h"
 
@@ -322,7 +323,7 @@ ExportReport export_layer(const std::string& source, const std::string& output,
   try {
     return Export(features, file, options).run();
   } catch (const SourceError& error) {
-    throw std::runtime_error(source + ": " + error.what());
+    throw std::runtime_error(name_of_source(source) + ": " + error.what());
   }
 }
 
