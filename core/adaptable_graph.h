@@ -33,7 +33,9 @@ namespace trapeze {
 struct GeneralizationOptions {
   WeightRule weights = WeightRule::douglas_peucker;
   Topology topology = Topology::strict;
-  CoverageMode coverage = CoverageMode::off;  // of layers; a graph is what it was built from
+  // Of layers; a graph is what it was built from.
+  CoverageMode coverage = CoverageMode::off;
+  double close_gaps = 0;  // metres on the ground, up to kWidestGap; where there are coverages
 };
 
 /// The corners of a graph in the order in which they are to go, with what blocks them.

@@ -65,6 +65,15 @@ void BorderArcs::trace(const Boundary& boundary, FaceId faces, TrapezoidalGraph&
   }
 }
 
+void BorderArcs::name_faces(std::span<const std::pair<FaceId, FaceId>> sides,
+                            TrapezoidalGraph& graph) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    Edge& edge = graph.edges_[EdgeId(i)];
+    edge.face[kLeft] = sides[i].first;
+    edge.face[kRight] = sides[i].second;
+  }
+}
+
 EdgeId& BorderArcs::partner(VertexId v, EdgeId e) {
   return partner_[2 * e.value + (boundary_->edges[e].lower == v)];
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,9 @@ class BorderArcs {
   /// Fills the corners of `graph` from its edges and faces; edge i leaves corner i. Its faces are
   /// those of `faces` polygons.
   void trace(const Boundary& boundary, FaceId faces, TrapezoidalGraph& graph);
+
+  /// The faces beside edge i are sides[i] from then on, left and right.
+  static void name_faces(std::span<const std::pair<FaceId, FaceId>> sides, TrapezoidalGraph& graph);
 
  private:
   EdgeId& partner(VertexId v, EdgeId e);

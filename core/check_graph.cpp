@@ -213,9 +213,7 @@ class Checker {
       require(std::max(e.face[kLeft], e.face[kRight]) <= g_.face_count(), "I7: edge ", i,
               " has a face that there is not");
       if (!ok()) return;
-      const Point u = g_.point(e.end[kUp]);
-      const Point l = g_.point(e.end[kDown]);
-      const Int128 strip = (Int128{u.x} + l.x) * (std::int64_t{l.y} - u.y);
+      const Int128 strip = doubled_strip(g_, e);
       areas[e.face[kLeft]] += strip;
       areas[e.face[kRight]] -= strip;
     }

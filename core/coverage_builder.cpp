@@ -1,33 +1,16 @@
 #include "core/coverage_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
+#include "core/owned_segments.h"
+#include "core/web_mercator.h"
+
 namespace trapeze {
 namespace {
-
-/// A segment and the feature, by its position, whose boundary it is a part of.
-struct OwnedSegment {
-  Segment segment;
-  std::uint32_t owner = 0;
-};
-
-auto sweep_order(const Segment& s) {
-  return std::tuple(s.first.y, s.first.x, s.second.y, s.second.x);
-}
-
-std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features) {
-  std::vector<OwnedSegment> segments;
-  for (std::uint32_t owner = 0; owner < features.size(); ++owner) {
-    for (const auto& [a, b] : segments_of(*features[owner])) {
-      segments.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, owner});
-    }
-  }
-  return segments;
-}
 
 std::vector<OwnedSegment> node(const std::vector<OwnedSegment>& segments, HotCells cells) {
   std::vector<Segment> alone;
@@ -81,10 +64,7 @@ struct Borders {
 
 /// What a feature has twice is inside of it on both sides, or outside.
 Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
-  std::sort(pieces.begin(), pieces.end(), [](const OwnedSegment& a, const OwnedSegment& b) {
-    return std::tuple(sweep_order(a.segment), a.owner) <
-           std::tuple(sweep_order(b.segment), b.owner);
-  });
+  sort_by_place(pieces);
   Borders borders;
   std::vector<std::uint32_t> owners;
   for (std::size_t i = 0; i < pieces.size();) {
@@ -143,23 +123,18 @@ struct SetMap {
   }
 };
 
-double area_of(const TrapezoidalGraph& g, const Node& node) {
-  const double top = g.point(node.end[kUp]).y;
-  const double bottom = g.point(node.end[kDown]).y;
-  if (top == bottom) return 0;
-  const auto x_at = [&g](EdgeId e, double y) {
-    const Point u = g.point(g.edge(e).end[kUp]);
-    const Point l = g.point(g.edge(e).end[kDown]);
-    return u.x + (static_cast<double>(l.x) - u.x) * ((y - u.y) / (static_cast<double>(l.y) - u.y));
-  };
-  const double middle = (top + bottom) / 2;
-  return (bottom - top) * (x_at(node.edge[kRight], middle) - x_at(node.edge[kLeft], middle));
-}
-
 /// The faces of the graph are sets: how much of the map each covers.
 std::vector<double> areas_of_sets(const TrapezoidalGraph& g, std::size_t count) {
-  std::vector<double> areas(count, 0);
-  for (const NodeId n : g.inside_nodes()) areas[g.face(g.node(n))] += area_of(g, g.node(n));
+  std::vector<Int128> doubled(count, 0);
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    if (g.is_frame(EdgeId(i))) continue;
+    const Edge& edge = g.edge(EdgeId(i));
+    const Int128 strip = doubled_strip(g, edge);
+    doubled[edge.face[kLeft]] += strip;
+    doubled[edge.face[kRight]] -= strip;
+  }
+  std::vector<double> areas;
+  for (const Int128 area : doubled) areas.push_back(static_cast<double>(area) / 2);
   return areas;
 }
 
@@ -167,7 +142,7 @@ void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> overlaps;
   const std::vector<double> areas = areas_of_sets(g, sets.size());
   for (std::uint32_t number = 0; number < areas.size(); ++number) {
-    if (areas[number] == 0) continue;
+    if (areas[number] == 0) continue;  // nowhere on the map
     const std::vector<std::uint32_t>& set = sets[number];
     for (std::size_t i = 0; i < set.size(); ++i) {
       outcome.areas[set[i]] += areas[number];
@@ -227,8 +202,73 @@ Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t e
   return sides;
 }
 
-/// Drops the segments with one feature on both sides.
-void keep_borders(std::vector<Segment>& segments, Sides& sides) {
+/// What surrounds a region that no feature covers.
+struct Gap {
+  double border = 0;                                       // its length in cells
+  double reach = 0;                                        // the widest gap at this place, in cells
+  std::vector<std::pair<FaceId, double>> neighbours = {};  // with the lengths of their borders
+
+  void add(FaceId face, double length) {
+    border += length;
+    const auto known = std::find_if(neighbours.begin(), neighbours.end(),
+                                    [face](const auto& n) { return n.first == face; });
+    if (known == neighbours.end()) {
+      neighbours.emplace_back(face, length);
+    } else {
+      known->second += length;
+    }
+  }
+
+  /// Of several with as long a border, the one of the smallest number.
+  FaceId closest() const {
+    return std::max_element(neighbours.begin(), neighbours.end(),
+                            [](const auto& a, const auto& b) {
+                              return a.second != b.second ? a.second < b.second : a.first > b.first;
+                            })
+        ->first;
+  }
+};
+
+/// Narrow gaps between features get the face of a neighbour; returns how many.
+std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides) {
+  const Regions regions(g);
+  std::vector<Gap> gaps(regions.face.size());
+  const auto hole_beside = [&](std::size_t e, Side s) {
+    const RegionId region = regions.beside[EdgeId(e)][s];
+    return regions.face[region] == kOutside && region != regions.unbounded ? region : RegionId();
+  };
+  for (std::size_t e = 0; e < sides.size(); ++e) {
+    for (const Side s : {kLeft, kRight}) {
+      const RegionId hole = hole_beside(e, s);
+      if (hole.is_none()) continue;
+      const Edge& edge = g.edge(EdgeId(e));
+      const Point a = g.point(edge.end[kUp]);
+      const Point b = g.point(edge.end[kDown]);
+      gaps[hole.value].reach = cells_from_ground(widest_gap, a.y);
+      gaps[hole.value].add(
+          s == kLeft ? sides[e].second : sides[e].first,
+          std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y));
+    }
+  }
+  const auto is_narrow = [&](RegionId hole) {
+    const Gap& gap = gaps[hole.value];
+    return gap.neighbours.size() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
+  };
+  for (std::size_t e = 0; e < sides.size(); ++e) {
+    for (const Side s : {kLeft, kRight}) {
+      const RegionId hole = hole_beside(e, s);
+      if (hole.is_none() || !is_narrow(hole)) continue;
+      (s == kLeft ? sides[e].first : sides[e].second) = gaps[hole.value].closest();
+    }
+  }
+  std::size_t filled = 0;
+  for (std::size_t r = 0; r < gaps.size(); ++r) filled += is_narrow(RegionId(r));
+  return filled;
+}
+
+/// Drops the segments with one feature on both sides; returns whether there are any.
+bool keep_borders(std::vector<Segment>& segments, Sides& sides) {
+  const std::size_t count = segments.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (sides[i].first == sides[i].second) continue;
@@ -237,6 +277,7 @@ void keep_borders(std::vector<Segment>& segments, Sides& sides) {
   }
   segments.resize(kept);
   sides.resize(kept);
+  return kept < count;
 }
 
 void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
@@ -268,7 +309,8 @@ void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
 
 }  // namespace
 
-CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features, double most_overlap,
+CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
+                                       const CoverageTolerance& tolerance,
                                        TrapezoidalGraph& graph) {
   CoverageOutcome outcome;
   SetMap map{segments_of(features)};
@@ -277,7 +319,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features, d
     outcome.areas.assign(features.size(), 0);
     outcome.overlaps.clear();
     note_areas(graph, map.sets, outcome);
-    const std::vector<std::uint32_t> apart = overlapping_features(outcome, most_overlap);
+    const std::vector<std::uint32_t> apart = overlapping_features(outcome, tolerance.most_overlap);
     if (apart.empty()) break;
     outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
     std::sort(outcome.apart.begin(), outcome.apart.end());
@@ -286,12 +328,16 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features, d
   }
   Borders& borders = map.borders;
   Sides sides = sides_of(graph, map.sets, borders.segments.size());
-  keep_borders(borders.segments, sides);
-  if (borders.segments.empty()) return outcome;
-  boundary_.assign(borders.segments);
-  const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
-  outcome.built = trapezoidation_.build(boundary_, given, graph);
-  if (!outcome.built) return outcome;
+  if (tolerance.widest_gap > 0) outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
+  if (keep_borders(borders.segments, sides)) {
+    if (borders.segments.empty()) return outcome;
+    boundary_.assign(borders.segments);
+    const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
+    if (!trapezoidation_.build(boundary_, given, graph)) return outcome;
+  } else {
+    BorderArcs::name_faces(sides, graph);
+  }
+  outcome.built = true;
   arcs_.trace(boundary_, static_cast<FaceId>(features.size()), graph);
   count_borders(graph, outcome);
   return outcome;

@@ -35,10 +35,17 @@ struct CoverageOutcome {
   std::size_t shared_edges = 0;   // between two features
   std::size_t junctions = 0;      // vertices where three or more borders meet
   std::size_t gaps = 0;           // regions that no feature covers, with at least two around them
+  std::size_t filled = 0;         // such ones that were narrow enough to go to a neighbour
   std::vector<Overlap> overlaps;  // in order of their features
   std::vector<double> areas;      // of each feature by itself, cells squared
   std::vector<std::uint32_t> apart;  // those that were left out, in ascending order
   std::string failure;               // why it could not be built, empty otherwise
+};
+
+/// How far features may be from a coverage.
+struct CoverageTolerance {
+  double most_overlap = 0;  // of the area of the smaller one of two
+  double widest_gap = 0;    // metres on the ground
 };
 
 /// Reusable memory; one a thread.
@@ -46,11 +53,12 @@ class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
   /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
-  /// has the place. Those that overlap others by more than the share `most_overlap` of the smaller
-  /// one's area are left out: of those with the most such overlaps, the last one first. If fewer
-  /// than two are left, nothing is built. Never throws for bad geometry: `graph` is meaningful only
-  /// if the outcome says built.
-  CoverageOutcome build(std::span<const Rings* const> features, double most_overlap,
+  /// has the place. Gaps whose mean width, area over half of the border, is at most the widest go
+  /// to the feature with the longest border. Features that overlap others by more than is tolerated
+  /// are left out: of those with the most such overlaps, the last one first. If fewer than two are
+  /// left, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
+  /// outcome says built.
+  CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
                         TrapezoidalGraph& graph);
 
  private:

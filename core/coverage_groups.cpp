@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/noding.h"
+#include "core/owned_segments.h"
 
 namespace trapeze {
 namespace {
@@ -50,25 +50,9 @@ class Ties {
   std::vector<std::uint32_t> parent_;
 };
 
-struct OwnedSegment {
-  Segment segment;
-  std::uint32_t owner = 0;
-};
-
-auto sort_key(const OwnedSegment& s) {
-  return std::tuple(s.segment.first.y, s.segment.first.x, s.segment.second.y, s.segment.second.x,
-                    s.owner);
-}
-
 void tie_by_edges(std::span<const Rings* const> features, Ties& ties) {
-  std::vector<OwnedSegment> segments;
-  for (std::uint32_t owner = 0; owner < features.size(); ++owner) {
-    for (const auto& [a, b] : segments_of(*features[owner])) {
-      segments.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, owner});
-    }
-  }
-  std::sort(segments.begin(), segments.end(),
-            [](const OwnedSegment& a, const OwnedSegment& b) { return sort_key(a) < sort_key(b); });
+  std::vector<OwnedSegment> segments = segments_of(features);
+  sort_by_place(segments);
   for (std::size_t i = 1; i < segments.size(); ++i) {
     if (segments[i - 1].segment == segments[i].segment) {
       ties.tie(segments[i - 1].owner, segments[i].owner);
@@ -130,10 +114,10 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
   return ties.groups();
 }
 
-Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
+Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph) {
   Assembly assembly;
-  assembly.outcome = builder.build(features, most_overlap(coverage), graph);
+  assembly.outcome = builder.build(features, {most_overlap(coverage), widest_gap}, graph);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

@@ -41,7 +41,8 @@ struct Assembly {
 
 /// Makes `graph` that of the features of a group that can live in one, see CoverageBuilder: apart
 /// stay those that overlap by too much, and all if fewer than two are left or they cannot be noded.
-Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
+/// Gaps of up to `widest_gap` metres are filled.
+Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph);
 
 }  // namespace trapeze

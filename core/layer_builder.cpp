@@ -317,8 +317,8 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
 
 Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
                                     std::span<const Rings* const> features) {
-  Assembly assembly =
-      assemble(features, state_->options.coverage, state_->coverage_builder, state_->graph);
+  Assembly assembly = assemble(features, state_->options.coverage, state_->options.close_gaps,
+                               state_->coverage_builder, state_->graph);
   if (assembly.together.empty()) return assembly;
   state_->begin_part(rows[assembly.together.front()]);
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);

@@ -172,10 +172,12 @@ Side RegionBorders::side_of(EdgeId edge, RegionId region) {
   return find(beside_[edge][kLeft]) == region ? kLeft : kRight;
 }
 
-/// The face with the longest border; of several, the one of the smallest number.
+/// The face with the longest border, of several the one of the smallest number; the outside only if
+/// there is no other, so that a coverage does not fray out along its coasts.
 FaceId RegionBorders::choose_taker() const {
   std::vector<std::pair<FaceId, double>> lengths;
   for (const Arc& arc : arcs_) {
+    if (arc.beyond == kOutside) continue;
     const auto same = std::find_if(lengths.begin(), lengths.end(),
                                    [&](const auto& item) { return item.first == arc.beyond; });
     if (same == lengths.end()) {
@@ -184,6 +186,7 @@ FaceId RegionBorders::choose_taker() const {
       same->second += arc.length;
     }
   }
+  if (lengths.empty()) return kOutside;
   return std::min_element(lengths.begin(), lengths.end(),
                           [](const auto& a, const auto& b) {
                             return a.second != b.second ? a.second > b.second : a.first < b.first;
@@ -233,20 +236,16 @@ std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
   return takers;
 }
 
-// Along the border that disappears, from which it is never farther than a fraction of a pixel.
+// Along all of its border, from which it is nowhere farther than a fraction of a pixel: that which
+// disappears can be short.
 void RegionBorders::note_taken(FaceId face, FaceId taker, double area) {
   taken_.clear();
   double length = 0;
-  for (const Arc& arc : arcs_) {
-    if (arc.beyond == taker) length += arc.length;
-  }
-  for (const Arc& arc : arcs_) {
-    if (arc.beyond != taker) continue;
-    for (std::size_t i = arc.begin; i < arc.end; ++i) {
-      const Edge& edge = graph_->edge(edges_[i]);
-      taken_.push_back({graph_->point(edge.end[kUp]), graph_->point(edge.end[kDown]),
-                        area * length_of(*graph_, edge) / length, face, taker});
-    }
+  for (const Arc& arc : arcs_) length += arc.length;
+  for (const EdgeId e : edges_) {
+    const Edge& edge = graph_->edge(e);
+    taken_.push_back({graph_->point(edge.end[kUp]), graph_->point(edge.end[kDown]),
+                      area * length_of(*graph_, edge) / length, face, taker});
   }
 }
 

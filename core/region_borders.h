@@ -1,10 +1,10 @@
 // What keeps a coverage from being crowded: a region too small to see is given to a neighbour.
 //
 // Removing vertices alone would leave every region at least a triangle and every junction where it
-// is. So a region whose mean width has shrunk below a tolerance goes to the face with which it has
-// the longest border: that border disappears, edge by edge, which no boundary can cross, and the
-// rest of its borders is the neighbour's from then on. Junctions where only two arcs are left
-// become corners of one.
+// is. So a region whose mean width has shrunk below a tolerance goes to the face, other than the
+// outside, with which it has the longest border: that border disappears, edge by edge, which no
+// boundary can cross, and the rest of its borders is the neighbour's from then on. Junctions where
+// only two arcs are left become corners of one.
 //
 // Follows a graph through the sequence of its removals, forward only. Thread-safety: none.
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace trapeze {
 
-/// An area that has changed hands, along a segment of the region that was there.
+/// A part of an area that has changed hands, along a segment of the border of the region it was.
 struct Taken {
   Point from;
   Point to;

@@ -52,9 +52,7 @@ Regions::Regions(const TrapezoidalGraph& graph) {
     const Edge& edge = graph.edge(e);
     if (!edge.is_alive() || graph.is_frame(e)) continue;
     for (const Side s : {kLeft, kRight}) beside[e][s] = flood[edge.extreme[s][kUp]];
-    const Point u = graph.point(edge.end[kUp]);
-    const Point l = graph.point(edge.end[kDown]);
-    const Int128 strip = (Int128{u.x} + l.x) * (std::int64_t{l.y} - u.y);
+    const Int128 strip = doubled_strip(graph, edge);
     doubled[beside[e][kLeft].value] += strip;
     doubled[beside[e][kRight].value] -= strip;
   }

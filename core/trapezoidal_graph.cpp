@@ -207,6 +207,12 @@ std::vector<Int128> TrapezoidalGraph::doubled_areas() const {
   return areas;
 }
 
+Int128 doubled_strip(const TrapezoidalGraph& graph, const Edge& edge) {
+  const Point u = graph.point(edge.end[kUp]);
+  const Point l = graph.point(edge.end[kDown]);
+  return (Int128{u.x} + l.x) * (std::int64_t{l.y} - u.y);
+}
+
 std::size_t TrapezoidalGraph::memory() const {
   return vertices_.capacity() * sizeof(Point) + edges_.capacity() * sizeof(Edge) +
          nodes_.capacity() * sizeof(Node) + corners_.capacity() * sizeof(Corner);

@@ -166,7 +166,7 @@ class TrapezoidalGraph {
   friend class Trapezoidation;  // builds it
   friend class EditLog;         // changes it, by edit records only
   friend class BoundaryLoops;   // pairs the corners
-  friend class BorderArcs;      // pairs those of several polygons
+  friend class BorderArcs;      // pairs those of several polygons, and names their faces
 
   Table<VertexId, Point> vertices_;
   Table<EdgeId, Edge> edges_;
@@ -181,6 +181,10 @@ struct StripPoint {
   double x = 0;
   double y = 0;
 };
+
+/// What an edge adds to twice the area of the face on its left, and takes from that on its right,
+/// in cells squared: exact once all edges of a face have been summed.
+Int128 doubled_strip(const TrapezoidalGraph& graph, const Edge& edge);
 
 /// The loops of the boundary that are left, read from the corners.
 Rings rings_of(const TrapezoidalGraph& graph);

@@ -23,6 +23,10 @@ GridPosition metres_from_grid(double x, double y) {
   return {x / kCellsPerMetre, -y / kCellsPerMetre};
 }
 
+double cells_from_ground(double metres, double y) {
+  return metres * kCellsPerMetre * std::cosh(y / kCellsPerRadian);
+}
+
 LonLat lonlat_from_grid(double x, double y) {
   return {x / kCellsPerRadian / kDegree, std::atan(std::sinh(-y / kCellsPerRadian)) / kDegree};
 }

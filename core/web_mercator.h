@@ -21,6 +21,10 @@ struct GridPosition {
 GridPosition grid_from_metres(double x, double y);
 GridPosition metres_from_grid(double x, double y);
 
+/// How many cells a length on the ground is, at the level of y (cells): the map grows towards the
+/// poles.
+double cells_from_ground(double metres, double y);
+
 struct LonLat {
   double lon = 0;  // degrees east
   double lat = 0;  // degrees north

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/adaptable_graph.h"
 #include "core/coverage_groups.h"
 #include "server/config.h"
 
@@ -13,6 +14,15 @@ namespace trapeze {
 
 /// None if the name is empty. Throws std::runtime_error that says what --coverage takes.
 std::optional<CoverageMode> coverage_or_throw(const std::string& name);
+
+/// What is done about polygons that share borders.
+struct CoverageArguments {
+  std::string
+      mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
+  std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
+};
+/// Sets what is to become of a source. Throws std::runtime_error that says what is wrong.
+void apply(const CoverageArguments& arguments, GeneralizationOptions& options);
 
 struct ServeArguments {
   std::string config;                    // may be empty
@@ -32,7 +42,7 @@ int run_config_schema();
 
 struct CheckArguments {
   std::vector<std::string> files;
-  std::string coverage;  // empty: as a file was prepared, else the usual
+  CoverageArguments coverage;
 };
 int run_check(const CheckArguments& arguments);
 
@@ -40,7 +50,7 @@ struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
   std::string weights = "douglas-peucker";
-  std::string coverage;       // empty: the usual
+  CoverageArguments coverage;
   SourceSelection selection;  // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
@@ -51,7 +61,7 @@ struct ExportArguments {
   double simplify = 0.25;  // pixels, as tiles are drawn
   std::string topology = "strict";
   std::string weights = "douglas-peucker";
-  std::string coverage;  // empty: the usual
+  CoverageArguments coverage;
   std::string crs = "EPSG:4326";
   bool overwrite = false;
   std::string output;

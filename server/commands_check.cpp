@@ -38,7 +38,8 @@ void print_coverage(const CoverageCounts& counts) {
   fmt::print("    junctions           {}\n", counts.junctions);
   fmt::print("    noded               {} groups\n", counts.noded);
   fmt::print("    overlaps            {} pairs of features\n", counts.overlaps);
-  fmt::print("    gaps                {}\n", counts.gaps);
+  fmt::print("    gaps                {}, {} others filled\n", counts.gaps, counts.filled);
+  fmt::print("    snapped             {} vertices\n", counts.snapped);
   fmt::print("    apart               {} features that overlap by too much\n", counts.apart);
 }
 
@@ -69,12 +70,13 @@ void print_report(const LoadReport& report, const Layer& layer) {
 }
 
 /// False if the file cannot be read.
-bool check_file(const std::string& file, std::optional<CoverageMode> coverage) {
+bool check_file(const std::string& file, const CoverageArguments& coverage) {
   LoadedLayer loaded;
   try {
     LoadProgress progress(file);
     OpenOptions options;
-    options.coverage = coverage;
+    options.coverage = coverage_or_throw(coverage.mode);
+    options.close_gaps = coverage.close_gaps;
     options.progress = [&progress](double share) { progress.show(share); };
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {
@@ -95,10 +97,19 @@ std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
   return coverage;
 }
 
+void apply(const CoverageArguments& arguments, GeneralizationOptions& options) {
+  options.coverage = coverage_or_throw(arguments.mode).value_or(kUsualCoverage);
+  options.close_gaps = arguments.close_gaps.value_or(0);
+  if (options.close_gaps > 0 && options.coverage == CoverageMode::off) {
+    throw std::runtime_error("--close-gaps needs --coverage auto or on");
+  }
+}
+
 int run_check(const CheckArguments& arguments) {
-  const auto coverage = coverage_or_throw(arguments.coverage);
   bool is_all_read = true;
-  for (const std::string& file : arguments.files) is_all_read &= check_file(file, coverage);
+  for (const std::string& file : arguments.files) {
+    is_all_read &= check_file(file, arguments.coverage);
+  }
   return is_all_read ? 0 : 1;
 }
 

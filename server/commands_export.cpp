@@ -47,7 +47,7 @@ ExportOptions options_from(const ExportArguments& arguments) {
   options.generalization.weights =
       known(weight_rule_from_name(arguments.weights),
             "--weights takes douglas-peucker, raised-parents or effective-area");
-  options.generalization.coverage = coverage_or_throw(arguments.coverage).value_or(kUsualCoverage);
+  apply(arguments.coverage, options.generalization);
   options.crs = known(export_crs_from_name(arguments.crs), "--crs takes EPSG:4326 or EPSG:3857");
   options.overwrite = arguments.overwrite;
   return options;

@@ -73,7 +73,7 @@ void prepare(const std::string& file, const LoadOptions& how, const std::string&
 int run_prepare(const PrepareArguments& arguments) {
   LoadOptions how;
   how.generalization.weights = weights_or_throw(arguments.weights);
-  how.generalization.coverage = coverage_or_throw(arguments.coverage).value_or(kUsualCoverage);
+  apply(arguments.coverage, how.generalization);
   how.selection = arguments.selection;
   const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
   make_folder(arguments.output);

@@ -33,6 +33,7 @@ struct LayerConfig {
   std::vector<ParameterId> locked;       // what requests cannot set for the layer
   std::optional<WeightRule> weights;     // unset: as a file was prepared, else Douglas-Peucker
   std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
+  std::optional<double> close_gaps;      // metres; unset: as a file was prepared, else 0
   int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
 

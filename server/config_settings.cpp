@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/gap_closing.h"
 #include "server/style_parameters.h"
 #include "server/url.h"
 
@@ -251,6 +252,19 @@ Setting<LayerConfig> coverage_setting() {
   return setting;
 }
 
+/// Not set is no number.
+Setting<LayerConfig> close_gaps_setting() {
+  auto setting = number<LayerConfig>(
+      "close_gaps", [](auto& layer) -> auto& { return layer.close_gaps; }, 0, kWidestGap,
+      "metres on the ground up to which gaps and overlaps between polygons are closed where "
+      "coverage is \"auto\" or \"on\"; not set: as a file was prepared, else 0");
+  setting.get = [](const LayerConfig& layer) -> SettingValue {
+    if (!layer.close_gaps) return std::string();
+    return *layer.close_gaps;
+  };
+  return setting;
+}
+
 /// Not set is no list.
 Setting<LayerConfig> attributes_setting() {
   auto setting = begin<LayerConfig>(
@@ -476,6 +490,7 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "the last zoom at which it is drawn"),
       weights_setting(),
       coverage_setting(),
+      close_gaps_setting(),
       list<LayerConfig>(
           "locked", [](auto& layer) -> auto& { return layer.locked; },
           "a list of parameters that are set for one layer: " + layer_parameter_names(),

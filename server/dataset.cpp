@@ -119,6 +119,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       OpenOptions options;
       options.weights = layer.weights;
       options.coverage = layer.coverage;
+      options.close_gaps = layer.close_gaps;
       options.selection = layer.selection;
       options.prepared_from = layer.prepared.empty() ? "" : layer.file;
       options.progress = [&progress, i](double share) { progress.show(i, share); };

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/gap_closing.h"
 #include "server/build_id.h"
 #include "server/commands.h"
 #include "server/config_settings.h"
@@ -171,13 +172,20 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   config->add_subcommand("schema", "Print the JSON Schema of configurations");
 }
 
-void add_coverage(CLI::App& command, std::string& coverage) {
+void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage) {
   command
       .add_option(
-          "--coverage", coverage,
+          "--coverage", coverage.mode,
           "Whether polygons that share borders keep them in common: auto, on or off; as the "
           "setting of layers")
       ->type_name("NAME");
+  command
+      .add_option(
+          "--close-gaps", coverage.close_gaps,
+          "With --coverage: close gaps and overlaps between polygons of up to so many metres "
+          "on the ground")
+      ->check(CLI::Range(0.0, trapeze::kWidestGap))
+      ->type_name("METRES");
 }
 
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/clean_rings.h"
+#include "core/gap_closing.h"
 #include "core/io/checksum.h"
 #include "core/layer_arrays.h"
 #include "core/layer_builder.h"
@@ -48,10 +49,10 @@ void draw_shape(Random& random, int shape, Rings& rings) {
 
 /// The same kind of rings as features of one coverage: borders between all of them, junctions, and
 /// regions of all sizes that are to go.
-void add_coverage(Random& random, FeatureTable& features, LayerBuilder& builder) {
+void add_coverage(Random& random, double gap, FeatureTable& features, LayerBuilder& builder) {
   std::vector<Rings> rings(kShapes);
   std::vector<std::uint32_t> rows;
-  std::vector<const Rings*> pointers;
+  std::vector<Rings*> pointers;
   for (int shape = 0; shape < kShapes; ++shape) {
     Rings& drawn = rings[static_cast<std::size_t>(shape)];
     draw_shape(random, shape, drawn);
@@ -59,7 +60,8 @@ void add_coverage(Random& random, FeatureTable& features, LayerBuilder& builder)
     rows.push_back(features.append(kShapes + shape, {}));
     pointers.push_back(&drawn);
   }
-  builder.add_coverage(rows, pointers);
+  if (gap > 0) close_gaps(pointers, gap);
+  builder.add_coverage(rows, std::vector<const Rings*>(pointers.begin(), pointers.end()));
 }
 
 std::unique_ptr<Layer> build_probe(GeneralizationOptions options) {
@@ -74,7 +76,7 @@ std::unique_ptr<Layer> build_probe(GeneralizationOptions options) {
     draw_shape(random, shape, rings);
     builders.front().add(features.append(shape, {}), rings);
   }
-  add_coverage(random, features, builders.front());
+  add_coverage(random, options.close_gaps, features, builders.front());
   return LayerBuilder::join(builders, std::move(features));
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/clean_rings.h"
 #include "core/coverage_groups.h"
+#include "core/gap_closing.h"
 #include "core/graph_builder.h"
 #include "core/io/feature_source.h"
 #include "core/io/open_source.h"
@@ -73,7 +74,8 @@ class Exporter {
     std::vector<const Rings*> rings;
     for (const Job* job : jobs) rings.push_back(&job->rings);
     const Assembly assembly =
-        assemble(rings, options_.generalization.coverage, coverage_builder_, graph_);
+        assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
+                 coverage_builder_, graph_);
     if (!assembly.together.empty()) adapt_together(jobs, assembly);
     for (const std::uint32_t i : assembly.apart) run_apart(*jobs[i], jobs[i]->rings);
   }
@@ -91,8 +93,11 @@ class Exporter {
     job.all_vertices = graph_.corners().size();
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
-    finish(job, polygons_of(adaptable.graph()));
-    job.held = job.polygons > 0 ? count_held(adaptable) : 0;
+    const Polygons polygons = polygons_of(adaptable.graph());
+    finish(job, polygons);
+    if (job.polygons == 0) return;
+    job.result = geometry_of(polygons, options_.crs);
+    job.held = count_held(adaptable);
   }
 
   /// What the features of one graph have in common is counted with the first one that is written.
@@ -102,11 +107,14 @@ class Exporter {
     adaptable.adapt_to(options_.epsilon);
     const std::vector<Polygons> polygons = polygons_of_faces(adaptable.graph());
     std::size_t held = count_held(adaptable);
+    std::vector<PolygonGeometry> geometries = geometries_of_neighbours(polygons, options_.crs);
     for (const std::uint32_t i : assembly.together) {
       Job& job = *jobs[i];
       job.all_vertices = outlines[i].points.size();
       finish(job, polygons[i]);
-      if (job.polygons > 0) job.held = std::exchange(held, 0);
+      if (job.polygons == 0) continue;
+      job.result = std::move(geometries[i]);
+      job.held = std::exchange(held, 0);
     }
   }
 
@@ -119,7 +127,6 @@ class Exporter {
     job.polygons = polygons.size();
     job.rings_written = polygons.rings.size();
     job.vertices = polygons.rings.points.size();
-    job.result = geometry_of(polygons, options_.crs);
   }
 
   std::size_t count_held(const AdaptableGraph& adaptable) const {
@@ -246,11 +253,16 @@ class Export {
   /// The jobs that have waited, those that share borders together.
   std::vector<std::vector<Job*>> neighbours() {
     std::vector<Job*> waiting;
+    std::vector<Rings*> to_close;
     std::vector<const Rings*> rings;
     for (Job& job : jobs_) {
       if (job.rings.empty()) continue;
       waiting.push_back(&job);
+      to_close.push_back(&job.rings);
       rings.push_back(&job.rings);
+    }
+    if (options_.generalization.close_gaps > 0) {
+      close_gaps(to_close, options_.generalization.close_gaps);
     }
     std::vector<std::vector<Job*>> groups;
     for (const auto& group : group_features(rings, options_.generalization.coverage)) {

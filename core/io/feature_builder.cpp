@@ -7,6 +7,7 @@
 
 #include "core/clean_rings.h"
 #include "core/for_each_in_parallel.h"
+#include "core/gap_closing.h"
 
 namespace trapeze {
 namespace {
@@ -71,6 +72,13 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
   if (!assembly.together.empty()) count(features, assembly);
 }
 
+void FeatureBuilder::close_gaps(std::span<WaitingFeature> features) {
+  std::vector<Rings*> rings;
+  for (WaitingFeature& feature : features) rings.push_back(&feature.rings);
+  const GapClosing done = trapeze::close_gaps(rings, generalization_.close_gaps);
+  tally_.coverage.snapped += done.moved + done.led;
+}
+
 void FeatureBuilder::count(std::span<WaitingFeature* const> features, const Assembly& assembly) {
   for (const std::uint32_t i : assembly.together) features[i]->rings = Rings();
   const CoverageOutcome& outcome = assembly.outcome;
@@ -84,6 +92,7 @@ void FeatureBuilder::count(std::span<WaitingFeature* const> features, const Asse
   counts.junctions += outcome.junctions;
   counts.overlaps += outcome.overlaps.size();
   counts.gaps += outcome.gaps;
+  counts.filled += outcome.filled;
   for (const Overlap& overlap : outcome.overlaps) {
     const WaitingFeature& lower = *features[overlap.lower];
     const double share = overlap.area / outcome.areas[overlap.lower];
@@ -110,18 +119,19 @@ void FeatureBuilder::count(const Subject& subject, const BuildOutcome& outcome) 
   tally_.remark(subject.order, subject.id, "repaired: its rings cross or touch");
 }
 
-void build_waiting(std::vector<FeatureBuilder>& builders, CoverageMode coverage) {
+void build_waiting(std::vector<FeatureBuilder>& builders, const GeneralizationOptions& options) {
   std::vector<WaitingFeature> waiting;
   for (FeatureBuilder& builder : builders) {
     for (WaitingFeature& feature : builder.take_waiting()) waiting.push_back(std::move(feature));
   }
   std::sort(waiting.begin(), waiting.end(),
             [](const auto& a, const auto& b) { return a.row < b.row; });
+  if (options.close_gaps > 0) builders.front().close_gaps(waiting);
   std::vector<const Rings*> rings;
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
   std::vector<std::vector<WaitingFeature*>> tasks;
   std::vector<bool> is_grouped(waiting.size(), false);
-  for (const auto& group : group_features(rings, coverage)) {
+  for (const auto& group : group_features(rings, options.coverage)) {
     auto& task = tasks.emplace_back();
     for (const std::uint32_t i : group) {
       task.push_back(&waiting[i]);

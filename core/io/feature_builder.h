@@ -81,6 +81,9 @@ class FeatureBuilder {
   /// apart (see assemble()). Their rings are used up.
   void build_together(std::span<WaitingFeature* const> features);
 
+  /// Brings the borders of features together that waited; their rings are still those of each.
+  void close_gaps(std::span<WaitingFeature> features);
+
   const BuildTally& tally() const { return tally_; }
   LayerBuilder take_builder() { return std::move(builder_); }
 
@@ -102,6 +105,6 @@ class FeatureBuilder {
 
 /// Builds all features that wait in the builders, with those with which they share borders, on a
 /// thread for each builder. What comes of it does not depend on their number.
-void build_waiting(std::vector<FeatureBuilder>& builders, CoverageMode coverage);
+void build_waiting(std::vector<FeatureBuilder>& builders, const GeneralizationOptions& options);
 
 }  // namespace trapeze

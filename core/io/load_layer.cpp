@@ -167,15 +167,7 @@ void add_sums(const BuildTally& tally, LoadReport& report) {
   report.vertices += tally.vertices;
   report.collapsed_rings += tally.collapsed_rings;
   report.repaired += tally.repaired;
-  const auto add = [&](std::size_t CoverageCounts::*count) {
-    report.coverage.*count += tally.coverage.*count;
-  };
-  for (const auto count :
-       {&CoverageCounts::groups, &CoverageCounts::features, &CoverageCounts::noded,
-        &CoverageCounts::shared_edges, &CoverageCounts::junctions, &CoverageCounts::overlaps,
-        &CoverageCounts::gaps, &CoverageCounts::apart}) {
-    add(count);
-  }
+  for (const auto count : kCoverageCounts) report.coverage.*count += tally.coverage.*count;
 }
 
 void sort_by_order(std::vector<OrderedNote>& notes) {
@@ -231,8 +223,9 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options,
   loader.read_all();
   loaded.report.read_seconds = seconds_since(start);
   std::vector<FeatureBuilder>& builders = pool.finish();
-  const CoverageMode coverage = options.generalization.coverage;
-  if (coverage != CoverageMode::off) build_waiting(builders, coverage);
+  if (options.generalization.coverage != CoverageMode::off) {
+    build_waiting(builders, options.generalization);
+  }
   fill_report(loader, builders, source, loaded.report);
   loaded.layer = join_layer(builders, loader.take_table());
   if (options.progress) options.progress(1);

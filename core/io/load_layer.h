@@ -1,6 +1,7 @@
 // Reads the polygons of any vector source that GDAL understands into a layer, on all cores.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,8 +33,17 @@ struct CoverageCounts {
   std::size_t junctions = 0;     // vertices where three or more borders meet
   std::size_t overlaps = 0;      // pairs of features of which one is drawn over a part of the other
   std::size_t gaps = 0;          // places between features that none of them covers
+  std::size_t filled = 0;        // such ones that went to a neighbour: they were narrow enough
+  std::size_t snapped = 0;       // vertices moved or added to close gaps
   std::size_t apart = 0;  // features built by themselves: they overlap their neighbours by too much
 };
+
+/// All of them.
+inline constexpr std::array kCoverageCounts = {
+    &CoverageCounts::groups,       &CoverageCounts::features,  &CoverageCounts::noded,
+    &CoverageCounts::shared_edges, &CoverageCounts::junctions, &CoverageCounts::overlaps,
+    &CoverageCounts::gaps,         &CoverageCounts::filled,    &CoverageCounts::snapped,
+    &CoverageCounts::apart};
 
 /// What was found in a source. Every feature is counted once in exactly one of `loaded`,
 /// `other_geometry`, `empty`, `skipped`.

@@ -15,7 +15,8 @@ struct OpenOptions {
   std::string prepared_from;  // the source of a prepared layer, where it is now; empty: as it says
   std::function<void(double)> progress = {};  // see LoadOptions
   std::optional<CoverageMode> coverage =
-      {};  // unset: that of a prepared layer, else kUsualCoverage
+      {};                                 // unset: that of a prepared layer, else kUsualCoverage
+  std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
 };
 
 /// Maps a prepared file, which is known by its first bytes, or loads a source. Throws as

@@ -1,5 +1,6 @@
 #include "core/io/polygon_geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -102,6 +103,25 @@ std::unique_ptr<OGRPolygon> plain_polygon(const OneOf& which, ExportCrs crs) {
   return polygon;
 }
 
+std::size_t vertex_count(const OneOf& which) {
+  std::size_t count = 0;
+  for (std::size_t r = which.begin(); r < which.end(); ++r) count += which.polygons.rings[r].size();
+  return count;
+}
+
+std::size_t vertex_count(const OGRPolygon& polygon) {
+  std::size_t count = 0;
+  for (const OGRLinearRing* ring : polygon) {
+    count += static_cast<std::size_t>(ring->getNumPoints()) - 1;
+  }
+  return count;
+}
+
+/// Whether it can be told if it is valid.
+bool can_be_checked(const OneOf& which) {
+  return which.end() - which.begin() <= kMaxHolesToCheck + 1 && OGRGeometryFactory::haveGEOS();
+}
+
 /// Null if there would be too many vertices.
 std::unique_ptr<OGRPolygon> subdivided_polygon(const OneOf& which, double limit) {
   auto polygon = std::make_unique<OGRPolygon>();
@@ -122,7 +142,7 @@ bool is_valid(const OGRGeometry& geometry) {
 
 std::unique_ptr<OGRPolygon> polygon_in_degrees(const OneOf& which, PolygonGeometry& result) {
   auto plain = plain_polygon(which, ExportCrs::degrees);
-  if (which.end() - which.begin() > kMaxHolesToCheck + 1 || !OGRGeometryFactory::haveGEOS()) {
+  if (!can_be_checked(which)) {
     ++result.unchecked;
     return plain;
   }
@@ -138,23 +158,78 @@ std::unique_ptr<OGRPolygon> polygon_in_degrees(const OneOf& which, PolygonGeomet
   return plain;
 }
 
+/// A polygon, or a multipolygon of several: make(which) of each. Null if one is.
+template <typename Make>
+std::unique_ptr<OGRGeometry> join_parts(const Polygons& polygons, const Make& make) {
+  if (polygons.size() == 1) return make(OneOf{polygons, 0});
+  auto all = std::make_unique<OGRMultiPolygon>();
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    auto part = make(OneOf{polygons, i});
+    if (part == nullptr) return nullptr;
+    all->addGeometryDirectly(part.release());
+  }
+  return all;
+}
+
+/// In degrees, with vertices along long edges; is_invalid if that is not enough. No geometry if it
+/// would have too many vertices.
+PolygonGeometry finer_geometry(const Polygons& polygons, double limit) {
+  PolygonGeometry result;
+  result.geometry = join_parts(polygons, [&](const OneOf& which) {
+    auto polygon = subdivided_polygon(which, limit);
+    if (polygon == nullptr) return polygon;
+    result.subdivided += vertex_count(*polygon) > vertex_count(which);
+    if (!can_be_checked(which)) {
+      ++result.unchecked;
+    } else if (!is_valid(*polygon)) {
+      result.is_invalid = true;
+    }
+    return polygon;
+  });
+  return result;
+}
+
+bool is_any_invalid(const std::vector<PolygonGeometry>& geometries) {
+  return std::any_of(geometries.begin(), geometries.end(),
+                     [](const PolygonGeometry& geometry) { return geometry.is_invalid; });
+}
+
+/// All with the same limit; none if one would have too many vertices.
+std::vector<PolygonGeometry> finer_geometries(std::span<const Polygons> neighbours, double limit) {
+  std::vector<PolygonGeometry> finer;
+  for (const Polygons& polygons : neighbours) {
+    finer.push_back(polygons.empty() ? PolygonGeometry{} : finer_geometry(polygons, limit));
+    if (!polygons.empty() && finer.back().geometry == nullptr) return {};
+  }
+  return finer;
+}
+
 }  // namespace
 
 PolygonGeometry geometry_of(const Polygons& polygons, ExportCrs crs) {
   PolygonGeometry result;
-  const auto polygon = [&](std::size_t i) {
-    const OneOf which{polygons, i};
+  result.geometry = join_parts(polygons, [&](const OneOf& which) {
     return crs == ExportCrs::degrees ? polygon_in_degrees(which, result)
                                      : plain_polygon(which, crs);
-  };
-  if (polygons.size() == 1) {
-    result.geometry = polygon(0);
-    return result;
-  }
-  auto all = std::make_unique<OGRMultiPolygon>();
-  for (std::size_t i = 0; i < polygons.size(); ++i) all->addGeometryDirectly(polygon(i).release());
-  result.geometry = std::move(all);
+  });
   return result;
+}
+
+std::vector<PolygonGeometry> geometries_of_neighbours(std::span<const Polygons> neighbours,
+                                                      ExportCrs crs) {
+  std::vector<PolygonGeometry> plain;
+  bool is_any_subdivided = false;
+  for (const Polygons& polygons : neighbours) {
+    plain.push_back(polygons.empty() ? PolygonGeometry{} : geometry_of(polygons, crs));
+    is_any_subdivided = is_any_subdivided || plain.back().subdivided > 0;
+  }
+  if (!is_any_subdivided) return plain;
+  for (const double limit : kDeviations) {
+    std::vector<PolygonGeometry> finer = finer_geometries(neighbours, limit);
+    if (finer.empty()) break;
+    if (!is_any_invalid(finer)) return finer;
+  }
+  return plain;
 }
 
 OGRSpatialReference reference_of(ExportCrs crs) {

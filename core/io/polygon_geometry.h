@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include <ogr_geometry.h>
 #include <ogr_spatialref.h>
@@ -29,6 +31,11 @@ struct PolygonGeometry {
 ///
 /// Thread-safety: any thread.
 PolygonGeometry geometry_of(const Polygons& polygons, ExportCrs crs);
+
+/// The same of polygons that share borders, each of which may be empty and then has no geometry: if
+/// one of them gets vertices along its edges, all of them do, and their borders stay in common.
+std::vector<PolygonGeometry> geometries_of_neighbours(std::span<const Polygons> neighbours,
+                                                      ExportCrs crs);
 
 /// With x (east, longitude) first. Throws std::runtime_error if PROJ lacks its database.
 OGRSpatialReference reference_of(ExportCrs crs);

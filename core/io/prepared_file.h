@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be raised when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 3;
+constexpr std::uint32_t kPreparedVersion = 4;
 
 /// As in PNG, what text conversion would spoil.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};

@@ -1,5 +1,7 @@
 #include "core/io/prepared_layer.h"
 
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
@@ -56,12 +58,10 @@ template <typename Report, typename Visit>
 void for_each_count(Report& report, const Visit& visit) {
   for (auto* count : {&report.features, &report.loaded, &report.other_geometry, &report.empty,
                       &report.skipped, &report.polygons, &report.rings, &report.source_vertices,
-                      &report.vertices, &report.collapsed_rings, &report.repaired,
-                      &report.coverage.groups, &report.coverage.features, &report.coverage.noded,
-                      &report.coverage.shared_edges, &report.coverage.junctions,
-                      &report.coverage.overlaps, &report.coverage.gaps, &report.coverage.apart}) {
+                      &report.vertices, &report.collapsed_rings, &report.repaired}) {
     visit(*count);
   }
+  for (const auto count : kCoverageCounts) visit(report.coverage.*count);
 }
 
 void write_report(const LoadReport& report, ByteWriter& out) {
@@ -117,6 +117,7 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.weights));
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
   out.add(static_cast<std::uint8_t>(numbers.options.coverage));
+  out.add(numbers.options.close_gaps);
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
   const Layer::Size& size = numbers.size;
@@ -133,6 +134,7 @@ LayerArrays read_numbers(ByteReader& in) {
   numbers.options.weights = take_enum(in, WeightRule::effective_area);
   numbers.options.topology = take_enum(in, Topology::fast);
   numbers.options.coverage = take_enum(in, CoverageMode::on);
+  numbers.options.close_gaps = in.take<double>();
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();
@@ -218,6 +220,11 @@ void take_arrays(SectionReader& in, LayerArrays& a) {
   in.finish();
 }
 
+std::string text_of(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
 void check_options(const GeneralizationOptions& options, const PreparedDemands& demands) {
   if (demands.weights && *demands.weights != options.weights) {
     throw PreparedFileError("was prepared with the weights " +
@@ -227,6 +234,10 @@ void check_options(const GeneralizationOptions& options, const PreparedDemands& 
   if (demands.coverage && *demands.coverage != options.coverage) {
     throw PreparedFileError("was prepared with coverage " + std::string(name_of(options.coverage)) +
                             ", and " + std::string(name_of(*demands.coverage)) + " is configured");
+  }
+  if (demands.close_gaps && *demands.close_gaps != options.close_gaps) {
+    throw PreparedFileError("was prepared with gaps closed up to " + text_of(options.close_gaps) +
+                            " m, and " + text_of(*demands.close_gaps) + " m are configured");
   }
 }
 

@@ -23,6 +23,7 @@ struct PreparedDemands {
   std::optional<WeightRule> weights;  // unset: any
   std::string source;  // what it must have been prepared from; empty: what it names itself
   std::optional<CoverageMode> coverage = {};  // unset: any
+  std::optional<double> close_gaps = {};      // unset: any
 };
 
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large

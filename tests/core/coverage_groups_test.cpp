@@ -25,7 +25,7 @@ class Features {
   }
   Assembly assembly(CoverageMode coverage) {
     CoverageBuilder builder;
-    return assemble(pointers_, coverage, builder, graph);
+    return assemble(pointers_, coverage, 0, builder, graph);
   }
 
   TrapezoidalGraph graph;

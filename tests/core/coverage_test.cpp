@@ -40,7 +40,7 @@ struct BuiltCoverage {
   TrapezoidalGraph graph;
 
   explicit BuiltCoverage(const std::vector<Rings>& features) {
-    outcome = CoverageBuilder().build(pointers_to(features), kAll, graph);
+    outcome = CoverageBuilder().build(pointers_to(features), {.most_overlap = kAll}, graph);
     EXPECT_EQ(outcome.failure, "");
     if (!outcome.built) return;
     EXPECT_EQ(check_graph(graph), "");
@@ -133,7 +133,8 @@ TEST(Coverage, RingsOfFacesAreThoseThatItWasBuiltFrom) {
 void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
   const std::vector<Rings> rings = rings_of_faces(graph);
   TrapezoidalGraph fresh;
-  const CoverageOutcome outcome = CoverageBuilder().build(pointers_to(rings), kAll, fresh);
+  const CoverageOutcome outcome =
+      CoverageBuilder().build(pointers_to(rings), {.most_overlap = kAll}, fresh);
   EXPECT_FALSE(outcome.noded) << "the borders that are left cross or touch";
   if (!outcome.built) {
     EXPECT_EQ(graph.inside_nodes().size(), 0u);
@@ -239,6 +240,22 @@ TEST(Coverage, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
           << "level " << level;
     }
   }
+}
+
+TEST(Coverage, RegionAtTheCoastGoesToALandHoweverLongTheCoast) {
+  // A spit with three sides in the sea, between two countries; as thin as the tolerance.
+  BuiltCoverage c(Texts{"0 0, 1000 0, 1000 400, 0 400", "1000 198, 1100 198, 1100 202, 1000 202",
+                        "1000 0, 1400 0, 1400 198, 1100 198, 1000 198"});
+  ASSERT_TRUE(c.outcome.built);
+  AdaptableGraph adaptable(c.graph);
+  adaptable.adapt_to(3);
+  const TrapezoidalGraph& graph = adaptable.graph();
+  EXPECT_EQ(check_graph(graph), "");
+  const std::vector<Int128> areas = graph.doubled_areas();
+  EXPECT_EQ(static_cast<std::int64_t>(areas[2]), 0);
+  EXPECT_EQ(static_cast<std::int64_t>(areas[1] + areas[3]),
+            static_cast<std::int64_t>(c.graph.doubled_area()))
+      << "what is all around has not changed";
 }
 
 TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {

@@ -209,7 +209,7 @@ TEST_P(CoverageDataTest, StaysACoverageAtEveryTolerance) {
     std::vector<const Rings*> members;
     for (const std::uint32_t i : group) members.push_back(pointers[i]);
     TrapezoidalGraph graph;
-    const CoverageOutcome outcome = CoverageBuilder().build(members, 0.01, graph);
+    const CoverageOutcome outcome = CoverageBuilder().build(members, {.most_overlap = 0.01}, graph);
     ASSERT_EQ(outcome.failure, "");
     ASSERT_TRUE(outcome.built);
     grouped += group.size();
