@@ -148,7 +148,8 @@ void PriorityStack::enqueue(const Candidate& candidate) {
   std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
 }
 
-std::optional<double> PriorityStack::remove_next(const TrapezoidalGraph& graph, EditLog& log) {
+std::optional<double> PriorityStack::remove_next([[maybe_unused]] const TrapezoidalGraph& graph,
+                                                 EditLog& log) {
   assert(&graph == graph_);
   while (const auto candidate = next_candidate()) {
     const bool has_gone = is_region(candidate->corner)

@@ -41,11 +41,11 @@ std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spo
   return pairs;
 }
 
-void BorderArcs::trace(const Boundary& boundary, FaceId faces, TrapezoidalGraph& graph) {
+void BorderArcs::trace(const Boundary& boundary, FaceId faces, const Regions& regions,
+                       TrapezoidalGraph& graph) {
   boundary_ = &boundary;
   graph.face_count_ = faces;
   const std::size_t count = boundary.edges.size();
-  const Regions regions(graph);
   partner_.assign(2 * count, EdgeId());
   for (std::size_t v = 1; v + 1 < boundary.vertices.size(); ++v) {
     pair_edges(VertexId(v), regions, graph);

@@ -40,9 +40,10 @@ std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spo
 /// Reusable memory; one a thread.
 class BorderArcs {
  public:
-  /// Fills the corners of `graph` from its edges and faces; edge i leaves corner i. Its faces are
+  /// Fills the corners of `graph` from its edges and regions; edge i leaves corner i. Its faces are
   /// those of `faces` polygons.
-  void trace(const Boundary& boundary, FaceId faces, TrapezoidalGraph& graph);
+  void trace(const Boundary& boundary, FaceId faces, const Regions& regions,
+             TrapezoidalGraph& graph);
 
   /// The faces beside edge i are sides[i] from then on, left and right.
   static void name_faces(std::span<const std::pair<FaceId, FaceId>> sides, TrapezoidalGraph& graph);

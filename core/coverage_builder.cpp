@@ -280,9 +280,8 @@ bool keep_borders(std::vector<Segment>& segments, Sides& sides) {
   return kept < count;
 }
 
-void count_borders(const TrapezoidalGraph& g, CoverageOutcome& outcome) {
+void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOutcome& outcome) {
   outcome.vertices = g.vertex_count();
-  const Regions regions(g);
   std::vector<FaceId> first_beside(regions.face.size(), kOutside);
   std::vector<bool> is_gap(regions.face.size(), false);
   for (std::size_t i = 0; i < g.edges().size(); ++i) {
@@ -338,57 +337,112 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     BorderArcs::name_faces(sides, graph);
   }
   outcome.built = true;
-  arcs_.trace(boundary_, static_cast<FaceId>(features.size()), graph);
-  count_borders(graph, outcome);
+  const Regions regions(graph);
+  arcs_.trace(boundary_, static_cast<FaceId>(features.size()), regions, graph);
+  count_borders(graph, regions, outcome);
   return outcome;
 }
 
-std::vector<Rings> rings_of_faces(const TrapezoidalGraph& g) {
-  // Every side of an edge that lies in a face is an item at both of its ends.
-  struct Item {
-    FaceId face;
-    VertexId vertex;
-    EdgeId edge;
-    auto operator<=>(const Item&) const = default;
-  };
-  std::vector<Item> items;
-  for (std::size_t i = 0; i < g.edges().size(); ++i) {
-    const Edge& edge = g.edge(EdgeId(i));
-    if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
-    for (const FaceId face : edge.face) {
-      if (face == kOutside) continue;
-      for (const VertexId v : edge.end) items.push_back({face, v, EdgeId(i)});
+namespace {
+
+/// Where an arc of the boundary of a face begins or ends.
+struct ArcEnd {
+  FaceId face;
+  VertexId vertex;
+  CornerId corner;  // the first or the last one of the arc
+  CornerId other;   // at the other end
+  auto operator<=>(const ArcEnd&) const = default;
+};
+
+/// Sorts the boundary of each face into closed rings.
+class FaceRings {
+ public:
+  explicit FaceRings(const TrapezoidalGraph& graph)
+      : g_(graph), rings_(graph.face_count()), seen_(graph.corners().size(), false) {
+    for (const bool is_loop : {false, true}) {
+      for (std::size_t i = 0; i < g_.corners().size(); ++i) {
+        const CornerId c(i);
+        const Corner& corner = g_.corner(c);
+        if (!corner.is_alive() || seen_[i] || (!is_loop && !corner.prev.is_none())) continue;
+        add(c, is_loop);
+      }
+    }
+    std::sort(ends_.begin(), ends_.end());
+    is_used_.assign(ends_.size(), false);
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      if (!is_used_[i]) walk(ends_[i]);
     }
   }
-  std::sort(items.begin(), items.end());
-  std::vector<bool> used(items.size(), false);
-  const auto take_edge = [&](const Item& item) {
-    used[static_cast<std::size_t>(std::lower_bound(items.begin(), items.end(), item) -
-                                  items.begin())] = true;
-  };
-  std::vector<Rings> rings(g.face_count());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (used[i]) continue;
-    Rings& of_face = rings[items[i].face - 1];
-    Item at = items[i];
-    do {
-      of_face.points.push_back(g.point(at.vertex));
-      take_edge(at);
-      const Edge& edge = g.edge(at.edge);
-      at.vertex = edge.end[edge.end[kUp] == at.vertex ? kDown : kUp];
-      take_edge(at);
-      // Another edge of the face that leaves from here; each vertex has an even number of them.
-      auto next = std::lower_bound(items.begin(), items.end(), Item{at.face, at.vertex, EdgeId(0)});
-      while (next != items.end() && next->face == at.face && next->vertex == at.vertex &&
-             used[static_cast<std::size_t>(next - items.begin())]) {
-        ++next;
+
+  std::vector<Rings> take() { return std::move(rings_); }
+
+ private:
+  /// An arc from its first corner, or a loop.
+  void add(CornerId first, bool is_loop) {
+    CornerId last = first;
+    seen_[first.value] = true;
+    for (CornerId c = g_.corner(first).next; !c.is_none() && c != first; c = g_.corner(c).next) {
+      seen_[c.value] = true;
+      last = c;
+    }
+    for (const FaceId face : g_.edge(g_.corner(first).edge).face) {
+      if (face == kOutside) continue;
+      if (is_loop) {
+        append(first, last, rings_[face - 1]);
+        rings_[face - 1].points.push_back(g_.point(g_.corner(last).vertex));
+        rings_[face - 1].close_ring();
+      } else {
+        ends_.push_back({face, g_.corner(first).vertex, first, last});
+        ends_.push_back({face, g_.corner(last).vertex, last, first});
       }
-      if (next == items.end() || next->face != at.face || next->vertex != at.vertex) break;
-      at = *next;
-    } while (true);
-    of_face.close_ring();
+    }
   }
-  return rings;
+
+  /// From arc to arc, until there is none left to go on by. Each vertex has an even number of ends
+  /// in a face, so that is where the ring began.
+  void walk(ArcEnd at) {
+    Rings& rings = rings_[at.face - 1];
+    for (;;) {
+      append(at.corner, at.other, rings);
+      use(at);
+      at = {at.face, g_.corner(at.other).vertex, at.other, at.corner};
+      use(at);
+      auto next = std::lower_bound(ends_.begin(), ends_.end(),
+                                   ArcEnd{at.face, at.vertex, CornerId(0), CornerId(0)});
+      const auto is_there = [&] {
+        return next != ends_.end() && next->face == at.face && next->vertex == at.vertex;
+      };
+      while (is_there() && is_used_[static_cast<std::size_t>(next - ends_.begin())]) ++next;
+      if (!is_there()) break;
+      at = *next;
+    }
+    rings.close_ring();
+  }
+
+  void use(const ArcEnd& end) {
+    const auto found = std::lower_bound(ends_.begin(), ends_.end(), end);
+    is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
+  }
+
+  /// What lies between the ends of an arc, with the end that it begins at.
+  void append(CornerId from, CornerId to, Rings& rings) const {
+    const bool is_forward = !g_.corner(from).next.is_none();
+    for (CornerId c = from; c != to; c = is_forward ? g_.corner(c).next : g_.corner(c).prev) {
+      rings.points.push_back(g_.point(g_.corner(c).vertex));
+    }
+  }
+
+  const TrapezoidalGraph& g_;
+  std::vector<Rings> rings_;
+  std::vector<bool> seen_;
+  std::vector<ArcEnd> ends_;
+  std::vector<bool> is_used_;
+};
+
+}  // namespace
+
+std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph) {
+  return FaceRings(graph).take();
 }
 
 }  // namespace trapeze

@@ -1,7 +1,7 @@
 #include "core/owned_segments.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cstdint>
 
 namespace trapeze {
 
@@ -16,12 +16,14 @@ std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features) {
 }
 
 void sort_by_place(std::vector<OwnedSegment>& segments) {
-  const auto key = [](const OwnedSegment& s) {
-    const auto& [upper, lower] = s.segment;
-    return std::tuple(upper.y, upper.x, lower.y, lower.x, s.owner);
-  };
-  std::sort(segments.begin(), segments.end(),
-            [&key](const OwnedSegment& a, const OwnedSegment& b) { return key(a) < key(b); });
+  const auto place = [](Point p) { return (static_cast<std::int64_t>(p.y) << 32) + p.x; };
+  std::sort(segments.begin(), segments.end(), [&](const OwnedSegment& a, const OwnedSegment& b) {
+    const auto [a_upper, a_lower] = a.segment;
+    const auto [b_upper, b_lower] = b.segment;
+    if (a_upper != b_upper) return place(a_upper) < place(b_upper);
+    if (a_lower != b_lower) return place(a_lower) < place(b_lower);
+    return a.owner < b.owner;
+  });
 }
 
 }  // namespace trapeze

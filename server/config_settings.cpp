@@ -254,13 +254,19 @@ Setting<LayerConfig> coverage_setting() {
 
 /// Not set is no number.
 Setting<LayerConfig> close_gaps_setting() {
-  auto setting = number<LayerConfig>(
-      "close_gaps", [](auto& layer) -> auto& { return layer.close_gaps; }, 0, kWidestGap,
+  auto setting = begin<LayerConfig>(
+      "close_gaps", SettingType::number, fmt::format("a number from 0 to {}", kWidestGap),
       "metres on the ground up to which gaps and overlaps between polygons are closed where "
       "coverage is \"auto\" or \"on\"; not set: as a file was prepared, else 0");
+  setting.min = 0;
+  setting.max = kWidestGap;
   setting.get = [](const LayerConfig& layer) -> SettingValue {
     if (!layer.close_gaps) return std::string();
     return *layer.close_gaps;
+  };
+  setting.set = [](LayerConfig& layer, const SettingValue& value) {
+    layer.close_gaps = std::get<double>(value);
+    return true;
   };
   return setting;
 }

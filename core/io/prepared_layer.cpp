@@ -1,6 +1,7 @@
 #include "core/io/prepared_layer.h"
 
 #include <array>
+#include <bit>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -117,7 +118,7 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.weights));
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
   out.add(static_cast<std::uint8_t>(numbers.options.coverage));
-  out.add(numbers.options.close_gaps);
+  out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
   const Layer::Size& size = numbers.size;
@@ -134,7 +135,7 @@ LayerArrays read_numbers(ByteReader& in) {
   numbers.options.weights = take_enum(in, WeightRule::effective_area);
   numbers.options.topology = take_enum(in, Topology::fast);
   numbers.options.coverage = take_enum(in, CoverageMode::on);
-  numbers.options.close_gaps = in.take<double>();
+  numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();

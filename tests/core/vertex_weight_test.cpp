@@ -134,7 +134,8 @@ TEST(Figure2, NoChildOutweighsItsParentSoBothDistanceRulesAgree) {
 // Where a child lies farther from its chord than its parent from its own, one rule lowers the
 // child, the other, Eq. (1), raises the parent.
 TEST(VertexWeights, AChildFartherThanItsParentIsLoweredOrTheParentRaised) {
-  // The second splits the first and the last at a distance of 30; the third is 45 from what is left.
+  // The second splits the first and the last at a distance of 30; the third is 45 from what is
+  // left.
   const Ring ring{{0, 0}, {50, 30}, {5, 25}, {100, 0}};
   const Partitioning tree(ring);
   bool found = false;

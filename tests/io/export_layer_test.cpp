@@ -314,6 +314,42 @@ TEST_P(ExportFormatTest, NeighboursKeepTheirBorderInCommon) {
   }
 }
 
+/// The vertices of a polygon's shell.
+std::vector<std::pair<double, double>> shell_of(const OGRGeometry& geometry) {
+  const OGRPolygon* polygon = wkbFlatten(geometry.getGeometryType()) == wkbPolygon
+                                  ? geometry.toPolygon()
+                                  : geometry.toMultiPolygon()->getGeometryRef(0);
+  std::vector<std::pair<double, double>> points;
+  for (const OGRPoint& point : polygon->getExteriorRing()) {
+    points.emplace_back(point.getX(), point.getY());
+  }
+  return points;
+}
+
+TEST_P(ExportFormatTest, NeighboursGetFurtherVerticesTogether) {
+  // The first one is not valid in degrees without, see below; the second one would be.
+  const std::string source = metres_source(
+      folder_, {{.wkt = "POLYGON((0 0,10000000 0,10000000 10000000,0 0),"
+                        "(5010000 5000000,5100000 5000000,5100000 5050000,5010000 5000000))"},
+                {.wkt = "POLYGON((0 0,10000000 10000000,0 10000000,0 0))"}});
+  ExportOptions options;
+  options.crs = ExportCrs::degrees;
+  options.epsilon = 1;
+  options.generalization.coverage = CoverageMode::automatic;
+  const ExportReport report = export_layer(source, output(), options);
+  EXPECT_EQ(report.subdivided, 2u);
+  const Written written(output());
+  ASSERT_EQ(written.size(), 2u);
+  EXPECT_TRUE(written.are_all_valid());
+  const auto first = shell_of(*written[0].GetGeometryRef());
+  const auto second = shell_of(*written[1].GetGeometryRef());
+  const auto is_common = [&second](const auto& point) { return std::ranges::count(second, point); };
+  EXPECT_GT(std::ranges::count_if(first, is_common), 10);
+  const std::unique_ptr<OGRGeometry> cut(
+      written[0].GetGeometryRef()->Intersection(written[1].GetGeometryRef()));
+  EXPECT_TRUE(cut->IsEmpty() || cut->getDimension() < 2) << "they overlap";
+}
+
 TEST_P(ExportFormatTest, AFileOfWhichNothingIsLeftHasFieldsAndNoFeatures) {
   const std::string source = metres_source(folder_, {{.wkt = kSquare}});
   ExportOptions options;

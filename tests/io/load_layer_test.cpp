@@ -521,6 +521,22 @@ TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {
   EXPECT_EQ(load_layer(path).report.coverage.groups, 0u);
 }
 
+TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {
+  const std::string path = folder_.file("columns.gpkg");
+  write_source(path, "GPKG", {columns_of_squares(4)});
+  LoadOptions options;
+  options.generalization.coverage = CoverageMode::automatic;
+  options.generalization.close_gaps = 4;  // those that overlap do so by five and a half metres
+  EXPECT_EQ(load_layer(path, options).report.coverage.overlaps, 4u);
+  options.generalization.close_gaps = 8;
+  const CoverageCounts closed = load_layer(path, options).report.coverage;
+  EXPECT_EQ(closed.overlaps, 0u);
+  EXPECT_EQ(closed.gaps, 0u);
+  EXPECT_GE(closed.snapped, 4u);
+  EXPECT_EQ(closed.groups, 4u);
+  EXPECT_EQ(closed.features, 40u);
+}
+
 TEST_F(LoadLayerTest, ReportsProgressThatRisesToOne) {
   const std::string path = folder_.file("a.fgb");
   TestLayer layer;

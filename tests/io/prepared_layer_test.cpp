@@ -328,7 +328,7 @@ TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
   prepare(kMixed, prepared_);
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(failure_of(prepared_),
-              AllOf(StartsWith(prepared_), HasSubstr("format 4"), HasSubstr("reads 3")));
+              AllOf(StartsWith(prepared_), HasSubstr("format 5"), HasSubstr("reads 4")));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));
@@ -365,6 +365,19 @@ TEST_F(PreparedLayerTest, WithAnotherCoverageThanDemandedIsRefused) {
   EXPECT_EQ(opened.report.coverage.groups, 1u);
   EXPECT_EQ(opened.report.coverage.features, 2u);
   EXPECT_EQ(opened.report.coverage.shared_edges, 1u);
+}
+
+TEST_F(PreparedLayerTest, WithOtherGapsClosedThanDemandedIsRefused) {
+  LoadOptions options;
+  options.generalization.coverage = CoverageMode::automatic;
+  options.generalization.close_gaps = 2.5;
+  prepare(kMixed, prepared_, options);
+  PreparedDemands demands;
+  demands.close_gaps = 0;
+  EXPECT_THAT(failure_of(prepared_, demands),
+              AllOf(HasSubstr("gaps closed up to 2.5 m"), HasSubstr("0 m are configured")));
+  demands.close_gaps = 2.5;
+  EXPECT_NO_THROW(open_prepared_layer(prepared_, demands));
 }
 
 TEST_F(PreparedLayerTest, IsServedWithoutItsSource) {

@@ -173,11 +173,11 @@ TEST_P(RealGraphTest, AreasAreExactAndEveryWayLeadsToTheSameGraph) {
     if (!outcome.built) continue;
     // What was noded has other rings than came in, and of rings that touch nesting tells little;
     // there the sum over all edges, which check_graph makes, has to do.
-    const bool is_as_it_came =
-        !outcome.noded && graph.vertex_count() == features[i].points.size();
+    const bool is_as_it_came = !outcome.noded && graph.vertex_count() == features[i].points.size();
     EXPECT_EQ(check_graph(graph), "");
     if (is_as_it_came) expect_exact_area(graph, features[i]);
-    // The giants have holes that touch; their rings are run through shells one way, holes the other.
+    // The giants have holes that touch; their rings are run through shells one way, holes the
+    // other.
     if (!outcome.noded && is_large) expect_area_of_orientation(graph, features[i]);
     ++exact;
     if (!is_large && i % stride != 0) continue;

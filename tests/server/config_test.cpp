@@ -52,6 +52,7 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
     prepared = "out/b.trapeze"
     weights = "raised-parents"
     coverage = "on"
+    close_gaps = 2.5
     [[layer]]
     name = "c"
     prepared = "c.trapeze")");
@@ -63,6 +64,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
   EXPECT_EQ(config.layers[1].weights, WeightRule::raised_parents);
   EXPECT_EQ(config.layers[0].coverage, std::nullopt);
   EXPECT_EQ(config.layers[1].coverage, CoverageMode::on);
+  EXPECT_EQ(config.layers[0].close_gaps, std::nullopt);
+  EXPECT_EQ(config.layers[1].close_gaps, 2.5);
   EXPECT_EQ(config.layers[2].file, "");
   EXPECT_THAT(config.layers[2].file_to_open(), ::testing::EndsWith("/c.trapeze"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\""), HasSubstr("needs a file"));
@@ -70,6 +73,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
               HasSubstr("effective-area"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\ncoverage = \"yes\""),
               HasSubstr("\"auto\", \"on\" or \"off\""));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nclose_gaps = -1"),
+              HasSubstr("a number from 0 to 1000"));
 }
 
 TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
