@@ -83,8 +83,9 @@ Service::Service(const Config& config, LayerSource source)
   drawing.deadline = milliseconds(config.server.deadline_ms);
   drawing.batch = config.server.batch;
   drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
-  tiles_ = std::make_unique<TileService>(
-      drawing, start_renderers(config.server.renderer, worker_count(config)));
+  auto renderers = start_renderers(config.server.renderer, worker_count(config));
+  warm_up(renderers);
+  tiles_ = std::make_unique<TileService>(drawing, std::move(renderers));
   SiteOptions options = site_options(config);
   if (config.server.metrics) options.metrics = [this] { return metrics_text(); };
   options.is_stopping = [this] { return server_->is_stopping(); };

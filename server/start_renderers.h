@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "render/make_renderer.h"
@@ -11,5 +12,10 @@ namespace trapeze {
 /// Throws std::runtime_error with all reasons if what is asked for does not work here.
 std::vector<std::unique_ptr<CoverageRenderer>> start_renderers(const RendererOptions& options,
                                                                int count);
+
+/// Has each draw a little of everything, all at once: what a GL device compiles at its first
+/// picture is then ready, and the first visitors do not wait for it (10 to 40 ms on llvmpipe). Throws
+/// std::runtime_error if a device cannot draw.
+void warm_up(std::span<const std::unique_ptr<CoverageRenderer>> renderers);
 
 }  // namespace trapeze
