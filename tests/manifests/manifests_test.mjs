@@ -4,12 +4,13 @@
 //
 // Without the packages of script/bootstrap it ends with 77.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+
+import { checkConfig, drainMilliseconds, printedSettings } from './settings.mjs';
 
 const folder = path.join(path.dirname(fileURLToPath(import.meta.url)), '../../docker/kubernetes');
 
@@ -72,13 +73,9 @@ test('the configuration in them is right, and ends in time', () => {
   try {
     const file = path.join(work, 'trapeze.toml');
     writeFileSync(file, named('ConfigMap').data['trapeze.toml']);
-    execFileSync(process.env.TRAPEZE_BINARY, ['config', 'check', file], { stdio: 'pipe' });
-    const printed = execFileSync(process.env.TRAPEZE_BINARY, ['config', 'print', '--config', file], {
-      encoding: 'utf8',
-    });
-    const milliseconds = (key) => Number(printed.match(new RegExp(`^${key} = (\\d+)`, 'm'))[1]);
+    checkConfig(file);
     const grace = 1000 * named('Deployment').spec.template.spec.terminationGracePeriodSeconds;
-    assert.ok(milliseconds('drain_delay_ms') + milliseconds('drain_timeout_ms') < grace);
+    assert.ok(drainMilliseconds(printedSettings({ file })) < grace);
   } finally {
     rmSync(work, { recursive: true });
   }
