@@ -8,6 +8,7 @@
 
 #include "core/layer_builder.h"
 #include "server/legend.h"
+#include "tests/sanitized.h"
 #include "tests/server/sample_site.h"
 
 namespace trapeze {
@@ -177,6 +178,7 @@ TEST_F(LayerStyleTest, EqualDrawingHasOneKey) {
 }
 
 TEST_F(LayerStyleTest, AKeyTakesMicroseconds) {
+  if (testing::kIsSanitized) GTEST_SKIP() << "sanitizers take their time";
   const auto pairs = decode_query(
                          "fill=ff8800&fill-opacity=0.5&stroke=rgb(1,2,3)&stroke-width=1.5&pattern="
                          "hatch&pattern-size=8&simplify=1&towns.small=keep&topology=fast")
