@@ -17,6 +17,7 @@ namespace trapeze {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace std::string_literals;
 using testing::RawClient;
 using testing::RawResponse;
 
@@ -165,7 +166,7 @@ TEST_F(HttpServerTest, RefusesWhatIsNotHttp) {
         std::string("GET /health HTTP/1.1\r\n\r\n"),
         std::string("GET /health HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"),
         std::string("GET /health HTTP/1.1\r\nHost: a\r\nContent-Length: x\r\n\r\n"),
-        std::string("GET /hea\0lth HTTP/1.1\r\nHost: a\r\n\r\n", 42)}) {
+        "GET /hea\0lth HTTP/1.1\r\nHost: a\r\n\r\n"s}) {
     RawClient client(port());
     client.send(request);
     EXPECT_EQ(client.receive().status, 400) << request;
