@@ -192,7 +192,7 @@ TEST_F(SiteTest, GeneralizationsThatAreNoneAreRefusedWithWhatIsAllowed) {
       {"simplify=1e9", "a number from 0 to 64"},
       {"small=tiny", "one of drop, dust, keep"},
       {"topology=none", "one of fast, strict"},
-      {"debug=everything", "some of mesh, tile, vertices, separated by commas"}};
+      {"debug=everything", "some of faces, junctions, mesh, tile, vertices, separated by commas"}};
   for (const auto& [query, takes] : wrong) {
     const auto response = get("/tiles/rings/0/0/0.png?" + query);
     EXPECT_EQ(response.status, 400) << query;
