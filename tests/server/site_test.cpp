@@ -367,6 +367,7 @@ TEST_F(SiteTest, TheCatalogListsLayersAndParameters) {
   EXPECT_EQ(rings["polygons"], 2);
   EXPECT_EQ(rings["rings"], 3);
   EXPECT_EQ(rings["vertices"], 12);
+  EXPECT_EQ(rings["coverages"], 0);
   EXPECT_GT(rings["trapezoids"], 0);
   EXPECT_NEAR(rings["bounds"][0], -90, 1e-6);
   EXPECT_NEAR(rings["bounds"][3], 66.5132604, 1e-6);
