@@ -26,11 +26,17 @@ struct Beside {
 
 /// A feature, or kNoFeature for what none covers, at a vertex.
 struct Around {
-  Point vertex;
+  std::uint32_t vertex;
   std::uint32_t feature;
 
-  friend bool operator==(const Around&, const Around&) = default;
+  friend auto operator<=>(const Around&, const Around&) = default;
 };
+
+template <typename Item>
+void sort_and_unite(std::vector<Item>& items) {
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
 
 std::vector<Beside> boundary_of(const Layer& layer, Level level) {
   std::vector<Beside> boundary;
@@ -45,8 +51,7 @@ std::vector<Beside> boundary_of(const Layer& layer, Level level) {
   for_each_trapezoid(ranges, add);
   layer.select_level_edges(layer.bounds(), level, ranges);
   for_each_trapezoid(ranges, add);
-  std::ranges::sort(boundary);
-  boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+  sort_and_unite(boundary);
   return boundary;
 }
 
@@ -58,25 +63,17 @@ std::vector<Around> features_around(const MeshView& mesh, const std::vector<Besi
     const bool is_alone = (i == 0 || boundary[i - 1].edge != edge) &&
                           (i + 1 == boundary.size() || boundary[i + 1].edge != edge);
     for (const std::uint32_t v : {mesh.edges[edge].upper, mesh.edges[edge].lower}) {
-      around.push_back({mesh.vertices[v], boundary[i].feature});
-      if (is_alone) around.push_back({mesh.vertices[v], Layer::kNoFeature});
+      around.push_back({v, boundary[i].feature});
+      if (is_alone) around.push_back({v, Layer::kNoFeature});
     }
   }
-  std::ranges::sort(around, [](const Around& a, const Around& b) {
-    return a.vertex == b.vertex ? a.feature < b.feature : is_above(a.vertex, b.vertex);
-  });
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sort_and_unite(around);
   return around;
 }
 
-std::size_t ends_of(const MeshView& mesh, const std::vector<Beside>& boundary) {
-  std::vector<std::uint32_t> ends;
-  for (const auto& [edge, feature] : boundary) {
-    ends.push_back(mesh.edges[edge].upper);
-    ends.push_back(mesh.edges[edge].lower);
-  }
-  std::ranges::sort(ends);
-  return static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+std::size_t count_different(std::vector<Point>& points) {
+  std::ranges::sort(points, is_above);
+  return static_cast<std::size_t>(std::unique(points.begin(), points.end()) - points.begin());
 }
 
 double distance_of(WeightRule rule, double tolerance) {
@@ -87,17 +84,19 @@ double distance_of(WeightRule rule, double tolerance) {
 }  // namespace
 
 VerticesLeft vertices_left(const Layer& layer, Level level) {
-  const std::vector<Beside> boundary = boundary_of(layer, level);
+  const MeshView& mesh = layer.mesh();
+  const std::vector<Around> around = features_around(mesh, boundary_of(layer, level));
   VerticesLeft left;
-  left.stored = ends_of(layer.mesh(), boundary);
-  const std::vector<Around> around = features_around(layer.mesh(), boundary);
+  std::vector<Point> positions;
   for (auto begin = around.begin(); begin != around.end();) {
     const auto end = std::find_if(
         begin, around.end(), [&](const Around& other) { return other.vertex != begin->vertex; });
-    ++left.positions;
+    ++left.stored;
     left.junctions += end - begin >= 3;
+    positions.push_back(mesh.vertices[begin->vertex]);
     begin = end;
   }
+  left.positions = count_different(positions);
   return left;
 }
 

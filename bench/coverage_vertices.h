@@ -15,7 +15,7 @@ namespace trapeze {
 struct VerticesLeft {
   std::size_t positions = 0;  // of vertices; one that several polygons have counts once
   std::size_t stored = 0;     // the same, but where polygons live apart each has its own
-  std::size_t junctions = 0;  // positions around which lie three or more features, or two and none
+  std::size_t junctions = 0;  // of these, where three or more features meet, or two and the outside
 };
 
 VerticesLeft vertices_left(const Layer& layer, Level level);
