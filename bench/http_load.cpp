@@ -202,7 +202,7 @@ std::string http_request(const std::string& target, const std::string& more_head
 }
 
 LoadResult load_http(std::uint16_t port, std::span<const std::string> requests,
-                     const LoadOptions& options) {
+                     const HttpLoadOptions& options) {
   LoadResult result;
   if (requests.empty()) return result;
   if (options.keep_bodies) result.bodies.resize(requests.size());

@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-struct LoadOptions {
+struct HttpLoadOptions {
   int connections = 16;  // kept alive; each waits for its answer before it asks again
   int pipeline = 1;      // requests that one connection sends ahead
   double seconds = 0;    // asks for all requests again and again for so long; 0: once for each
@@ -41,6 +41,6 @@ std::string http_request(const std::string& target, const std::string& more_head
 /// std::runtime_error if the server is not there, hangs up, stays silent for half a minute, or does
 /// not say how long its answers are.
 LoadResult load_http(std::uint16_t port, std::span<const std::string> requests,
-                     const LoadOptions& options);
+                     const HttpLoadOptions& options);
 
 }  // namespace trapeze

@@ -161,7 +161,7 @@ std::vector<std::string> uncached_requests(const Trip& trip, int repeats, int fi
   return requests;
 }
 
-TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const LoadOptions& load,
+TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const HttpLoadOptions& load,
                      int repeats) {
   const auto requests = uncached_requests(trip, repeats);
   const double before = server.cpu_seconds();

@@ -71,7 +71,7 @@ std::vector<std::string> uncached_requests(const Trip& trip, int repeats = 0, in
 TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached);
 
 /// Asks for uncached_requests, and takes the processor time of the server.
-TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const LoadOptions& load,
+TileRun uncached_run(const TrapezeServer& server, const Trip& trip, const HttpLoadOptions& load,
                      int repeats = 0);
 
 }  // namespace trapeze

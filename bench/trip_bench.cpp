@@ -49,7 +49,7 @@ struct Rate {
 };
 
 Rate rate_of(const TrapezeServer& server, const std::vector<std::string>& requests, int status,
-             const LoadOptions& load) {
+             const HttpLoadOptions& load) {
   const double before = server.cpu_seconds();
   const LoadResult result = load_http(server.port(), requests, load);
   for (const Exchange& exchange : result.exchanges) {
@@ -83,7 +83,7 @@ class RendererFigures {
         known_(trip.name + "/trapeze-" + renderer + "/known") {}
 
   void measure(const TrapezeOptions& trapeze, const Options& options) {
-    const LoadOptions load{.connections = options.connections, .pipeline = options.pipeline};
+    const HttpLoadOptions load{.connections = options.connections, .pipeline = options.pipeline};
     {
       const TrapezeServer server(trip_.layers, trapeze);
       cold_.add(uncached_run(server, trip_, load, options.repeat));
@@ -99,7 +99,7 @@ class RendererFigures {
   }
 
  private:
-  void measure_known(const TrapezeServer& server, const Options& options, LoadOptions load) {
+  void measure_known(const TrapezeServer& server, const Options& options, HttpLoadOptions load) {
     const auto requests = tile_requests(trip_);
     load.keep_entity_tags = true;
     const double before = server.cpu_seconds();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trapeze {
@@ -106,6 +107,137 @@ void for_each(std::span<const TrapezoidRange> ranges, const MeshView& mesh, cons
   }
 }
 
+constexpr std::uint8_t kTintOpacity = 190;
+
+/// Around the circle of hues in steps of the golden section, so that numbers that follow each other
+/// are far apart and none comes back soon; light and dark in turn.
+Rgba tint_of(std::uint32_t feature) {
+  constexpr double kGoldenSection = 0.6180339887498949;
+  const double hue = 6 * std::fmod(feature * kGoldenSection, 1.0);
+  const double least = feature % 2 == 0 ? 0.15 : 0.5;
+  const double most = feature % 3 == 0 ? 0.75 : 1.0;
+  const auto channel = [&](double peak) {
+    const double off = std::abs(std::remainder(hue - peak, 6.0));
+    const double share = std::clamp(2 - off, 0.0, 1.0);
+    return static_cast<std::uint8_t>(std::lround(255 * (least + (most - least) * share)));
+  };
+  return {channel(0), channel(2), channel(4), kTintOpacity};
+}
+
+/// Colours of a row of pixels, premultiplied, and how much of each pixel they cover.
+struct Tinted {
+  double r = 0;
+  double g = 0;
+  double b = 0;
+  double share = 0;
+};
+
+/// Sums up tints in proportion to the areas that they cover: exact along a row, of which there are
+/// several to a pixel.
+class TintSum {
+ public:
+  explicit TintSum(const Picture& picture)
+      : width_(picture.width), height_(picture.height), pixels_(picture.pixels.size()) {}
+
+  void add(const MeshView& mesh, const MeshTrapezoid& t, const View& view, Rgba tint) {
+    const Position top = position_of(mesh.vertices[t.top], view);
+    const Position bottom = position_of(mesh.vertices[t.bottom], view);
+    const double rows = static_cast<double>(height_) * kRowsPerPixel;
+    // Rows whose middles lie between the levels.
+    const auto first = std::clamp(std::ceil(top.y * kRowsPerPixel - 0.5), 0.0, rows);
+    const auto end = std::clamp(std::ceil(bottom.y * kRowsPerPixel - 0.5), 0.0, rows);
+    for (int row = static_cast<int>(first); row < static_cast<int>(end); ++row) {
+      const double y = (row + 0.5) / kRowsPerPixel;
+      add_run(row / kRowsPerPixel, x_at(mesh, t.left, y, view), x_at(mesh, t.right, y, view), tint);
+    }
+  }
+
+  void blend_into(Picture& picture) const {
+    for (int row = 0; row < height_; ++row) {
+      for (int column = 0; column < width_; ++column) {
+        const Tinted& tinted = pixels_[index(row, column)];
+        if (tinted.share <= 0) continue;
+        const auto mean = [&](double sum) {
+          return static_cast<std::uint8_t>(std::lround(sum / tinted.share));
+        };
+        const Rgba colour{mean(tinted.r), mean(tinted.g), mean(tinted.b), kTintOpacity};
+        blend(picture, column, row, colour, std::min(tinted.share, 1.0));
+      }
+    }
+  }
+
+ private:
+  static constexpr int kRowsPerPixel = 4;
+
+  static double x_at(const MeshView& mesh, std::uint32_t edge, double y, const View& view) {
+    const Position a = position_of(mesh.vertices[mesh.edges[edge].upper], view);
+    const Position b = position_of(mesh.vertices[mesh.edges[edge].lower], view);
+    return a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+  }
+
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(column);
+  }
+
+  void add_run(int row, double from, double to, Rgba tint) {
+    from = std::clamp(from, 0.0, static_cast<double>(width_));
+    to = std::clamp(to, 0.0, static_cast<double>(width_));
+    for (int column = static_cast<int>(from); column < to; ++column) {
+      const double share =
+          (std::min(to, column + 1.0) - std::max<double>(from, column)) / kRowsPerPixel;
+      Tinted& tinted = pixels_[index(row, column)];
+      tinted.r += tint.r * share;
+      tinted.g += tint.g * share;
+      tinted.b += tint.b * share;
+      tinted.share += share;
+    }
+  }
+
+  int width_;
+  int height_;
+  std::vector<Tinted> pixels_;
+};
+
+/// A number and something of it; in order, what belongs to one number is together.
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+void sort_and_unite(Pairs& pairs) {
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+/// Calls visit(number, pairs of it) for every number there is. The pairs are in order.
+template <class Visit>
+void for_each_number(const Pairs& pairs, const Visit& visit) {
+  for (auto begin = pairs.begin(); begin != pairs.end();) {
+    const auto is_another = [&](const auto& pair) { return pair.first != begin->first; };
+    const auto end = std::find_if(begin, pairs.end(), is_another);
+    visit(begin->first, std::span(begin, end));
+    begin = end;
+  }
+}
+
+/// The vertices, ascending, around which lie three or more features. Different features lie on both
+/// sides of every edge; where only one was met, the other side is outside.
+std::vector<std::uint32_t> junctions_of(const MeshView& mesh, Pairs features_by_edge) {
+  constexpr std::uint32_t kOutside = 0xffffffff;
+  sort_and_unite(features_by_edge);
+  Pairs features_by_vertex;
+  for_each_number(features_by_edge, [&](std::uint32_t edge, std::span<const Pairs::value_type> of) {
+    for (const std::uint32_t v : {mesh.edges[edge].upper, mesh.edges[edge].lower}) {
+      for (const auto& [same, feature] : of) features_by_vertex.emplace_back(v, feature);
+      if (of.size() == 1) features_by_vertex.emplace_back(v, kOutside);
+    }
+  });
+  sort_and_unite(features_by_vertex);
+  std::vector<std::uint32_t> junctions;
+  for_each_number(features_by_vertex, [&](std::uint32_t v, std::span<const Pairs::value_type> of) {
+    if (of.size() >= 3) junctions.push_back(v);
+  });
+  return junctions;
+}
+
 constexpr int kGlyphWidth = 3;
 constexpr int kGlyphHeight = 5;
 
@@ -185,6 +317,39 @@ void mark_vertices(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
     const int row = static_cast<int>(std::floor(p.y));
     for (const int dy : {-1, 0, 1}) {
       for (const int dx : {-1, 0, 1}) blend(picture, column + dx, row + dy, colour, 1);
+    }
+  }
+}
+
+void mark_faces(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                const FeatureOf& feature_of, const View& view, Picture& picture) {
+  TintSum sum(picture);
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    sum.add(mesh, mesh.trapezoids[i], view, tint_of(feature_of(i)));
+  });
+  sum.blend_into(picture);
+}
+
+void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                    std::span<const TrapezoidRange> level_edges, const FeatureOf& feature_of,
+                    const View& view, Rgba colour, Picture& picture) {
+  Pairs features_by_edge;
+  for (const auto some : {ranges, level_edges}) {
+    for_each_trapezoid(some, [&](std::uint32_t i) {
+      for (const std::uint32_t edge : {mesh.trapezoids[i].left, mesh.trapezoids[i].right}) {
+        features_by_edge.emplace_back(edge, feature_of(i));
+      }
+    });
+  }
+  for (const std::uint32_t v : junctions_of(mesh, std::move(features_by_edge))) {
+    const Position p = position_of(mesh.vertices[v], view);
+    if (!(p.x > -3 && p.y > -3 && p.x < picture.width + 3 && p.y < picture.height + 3)) continue;
+    const int column = static_cast<int>(std::floor(p.x));
+    const int row = static_cast<int>(std::floor(p.y));
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        if (std::abs(dx) + std::abs(dy) < 3) blend(picture, column + dx, row + dy, colour, 1);
+      }
     }
   }
 }

@@ -62,6 +62,7 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["polygons"] = served.report.polygons;
   json["rings"] = served.report.rings;
   json["vertices"] = served.report.vertices;
+  json["coverages"] = served.report.coverage.groups;
   json["trapezoids"] = served.layer->mesh().trapezoids.size();
   json["memory"] = served.layer->memory() + served.layer->features().memory();
   json["repaired"] = served.report.repaired;

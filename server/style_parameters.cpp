@@ -56,11 +56,13 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::debug,
                    .name = "debug",
                    .type = Type::words,
-                   .words = "mesh tile vertices",
+                   .words = "faces junctions mesh tile vertices",
                    .default_text = "nothing",
                    .is_per_layer = false,
-                   .description = "what to draw over the tile: the trapezoids, the border of the "
-                                  "tile with its numbers, the vertices that are kept"},
+                   .description = "what to draw over the tile: each feature in a colour of its "
+                                  "own, the junctions of three or more in a coverage, the "
+                                  "trapezoids, the border of the tile with its numbers, the "
+                                  "vertices that are kept"},
     StyleParameter{.id = ParameterId::fill,
                    .name = "fill",
                    .type = Type::colour,

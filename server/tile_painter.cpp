@@ -17,7 +17,15 @@ constexpr std::size_t kMaxConstants = 64;
 
 constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 150};
 constexpr Rgba kVertexColour{0xc0, 0x20, 0x20, 255};
+constexpr Rgba kJunctionColour{0x10, 0x18, 0x30, 255};
 constexpr Rgba kBorderColour{0x70, 0x20, 0x90, 255};
+
+View with_margin(const View& view) {
+  constexpr int kPixels = 4;
+  const auto cells = static_cast<std::int64_t>(std::ceil(kPixels * view.cells_per_pixel));
+  return {view.origin_x - cells, view.origin_y - cells, view.cells_per_pixel,
+          view.width + 2 * kPixels, view.height + 2 * kPixels};
+}
 
 }  // namespace
 
@@ -156,12 +164,20 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, 
 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
   spread_palette(picture);
+  const View around = with_margin(view);  // of marks that reach into the picture
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = plan.layer_of(paint);
     std::vector<TrapezoidRange> ranges;
-    layer.select({view.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
+    layer.select({around.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
+    const FeatureOf feature_of = [&layer](std::uint32_t i) { return layer.feature_of(i); };
+    if (plan.debug.faces) mark_faces(layer.mesh(), ranges, feature_of, view, picture);
     if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
     if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
+    if (plan.debug.junctions) {
+      std::vector<TrapezoidRange> level_edges;
+      layer.select_level_edges(around.box(), paint.level, level_edges);
+      mark_junctions(layer.mesh(), ranges, level_edges, feature_of, view, kJunctionColour, picture);
+    }
   }
   if (!plan.debug.tile) return;
   std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);

@@ -41,7 +41,7 @@ DebugMarks debug_marks(const StyleQuery& query) {
   const auto has = [&words](std::string_view word) {
     return words.find(word) != std::string::npos;
   };
-  return {has("mesh"), has("vertices"), has("tile")};
+  return {has("faces"), has("mesh"), has("vertices"), has("junctions"), has("tile")};
 }
 
 }  // namespace
@@ -74,7 +74,8 @@ std::string TilePlan::key() const {
   }
   if (format == TileFormat::webp) key += " webp";
   if (debug.any())
-    key += fmt::format(" debug {:d}{:d}{:d}", debug.mesh, debug.vertices, debug.tile);
+    key += fmt::format(" debug {:d}{:d}{:d}{:d}{:d}", debug.faces, debug.mesh, debug.vertices,
+                       debug.junctions, debug.tile);
   return key;
 }
 

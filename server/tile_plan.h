@@ -31,11 +31,13 @@ struct LayerPaint {
 
 /// What is drawn over the tile to look into it (paper, Figure 7 f to j).
 struct DebugMarks {
-  bool mesh = false;      // the sides of the trapezoids
-  bool vertices = false;  // the vertices that are kept
-  bool tile = false;      // the border of the tile, with its numbers
+  bool faces = false;      // each feature in a colour of its own
+  bool mesh = false;       // the sides of the trapezoids
+  bool vertices = false;   // the vertices that are kept
+  bool junctions = false;  // those of them around which lie three or more features
+  bool tile = false;       // the border of the tile, with its numbers
 
-  bool any() const { return mesh || vertices || tile; }
+  bool any() const { return faces || mesh || vertices || junctions || tile; }
   friend bool operator==(const DebugMarks&, const DebugMarks&) = default;
 };
 

@@ -15,9 +15,9 @@ export class Comparison {
     this.left_ = left;
     this.right_ = right;
     this.slider_ = input("range", { min: 0, max: 1, step: 0.01 });
-    this.slider_.setAttribute("aria-label", "Divider between the simplified map and every vertex");
     this.left_label_ = element("span", "left");
-    this.line_ = element("div", "divider", this.left_label_, element("span", "right", "every vertex"));
+    this.right_label_ = element("span", "right");
+    this.line_ = element("div", "divider", this.left_label_, this.right_label_);
     this.node_ = element("div", "comparison", this.line_, this.slider_);
     map.getContainer().after(this.node_);
     this.slider_.addEventListener("input", () => this.clip_());
@@ -27,10 +27,12 @@ export class Comparison {
   }
 
   /** `part` as on_change tells it; null shows the left picture alone. */
-  show(part, left_text = "") {
+  show(part, left_text = "", right_text = "") {
     this.node_.hidden = part === null;
     if (part !== null) this.slider_.value = part;
     this.left_label_.textContent = left_text;
+    this.right_label_.textContent = right_text;
+    this.slider_.setAttribute("aria-label", `Divider between the simplified map and ${right_text}`);
     this.clip_();
   }
 

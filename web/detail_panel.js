@@ -5,7 +5,10 @@ import { choose, element, input, select } from "./elements.js";
 const BUILTIN = [["simplify", "0.25"], ["topology", "strict"], ["small", "dust"], ["debug", ""]];
 const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const SMALL = [["dust", "as a tint"], ["keep", "a pixel large"], ["drop", "left out"]];
-const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["tile", "Borders of tiles"]];
+const COMPARISONS = [["full", "Compare with every vertex"],
+  ["apart", "Compare with polygons apart"]];
+const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["faces", "Faces"],
+  ["junctions", "Junctions"], ["tile", "Borders of tiles"]];
 
 /** "0.25 px", or in words that nothing is left out. */
 export function simplify_in_words(pixels) {
@@ -13,34 +16,41 @@ export function simplify_in_words(pixels) {
 }
 
 export class DetailPanel {
-  /** `on_change` is called without arguments. */
-  constructor(on_change) {
+  /** `on_change` is called without arguments; `has_coverage`: polygons of a layer share borders. */
+  constructor(on_change, { has_coverage }) {
     this.simplify_ = input("range", {
       min: 0, max: STEPS.length - 1, step: 1, "aria-label": "Simplify",
     });
     this.told_ = document.createElement("output");
     this.strict_ = input("checkbox");
     this.small_ = select(SMALL);
-    this.compare_ = input("checkbox");
+    this.comparisons_ = COMPARISONS.map(([value]) => Object.assign(input("checkbox"), { value }));
     this.debug_ = DEBUG.map(([word]) => Object.assign(input("checkbox"), { value: word }));
     this.pixels_ = 0;
     this.usual_ = new Map();
 
     this.simplify_.addEventListener("input", () => this.tell_(STEPS[this.simplify_.value]));
     this.simplify_.addEventListener("change", () => (this.pixels_ = STEPS[this.simplify_.value]));
-    for (const control of [this.simplify_, this.strict_, this.small_, this.compare_,
+    for (const box of this.comparisons_) {
+      box.addEventListener("change", () => this.compare_with_(box.checked ? box.value : null));
+    }
+    for (const control of [this.simplify_, this.strict_, this.small_, ...this.comparisons_,
       ...this.debug_]) {
       control.addEventListener("change", on_change);
     }
     this.node = element("div", "part",
       element("label", "row slider", element("span", "", "Simplify"), this.simplify_, this.told_),
-      element("label", "check", this.compare_, "Compare with every vertex"),
+      ...COMPARISONS.filter(([value]) => has_coverage || value !== "apart").map(([, text], i) =>
+        element("label", "check", this.comparisons_[i], text)),
       element("label", "check", this.strict_, "Borders never cross"),
       element("label", "row", "Too small", this.small_),
       ...DEBUG.map(([, text], i) => element("label", "check", this.debug_[i], text)));
   }
 
-  /** {shared: Map of parameters, without those that have their usual value; is_comparing}. */
+  /**
+   * {shared: Map of parameters, without those that have their usual value; against: "full" or
+   * "apart", null if nothing is compared}.
+   */
   read() {
     const debug = this.debug_.filter(({ checked }) => checked).map(({ value }) => value);
     const chosen = new Map([
@@ -50,11 +60,11 @@ export class DetailPanel {
       ["debug", debug.join(",")],
     ]);
     const shared = new Map([...chosen].filter(([name, value]) => value !== this.usual_.get(name)));
-    return { shared, is_comparing: this.compare_.checked };
+    return { shared, against: this.comparisons_.find(({ checked }) => checked)?.value ?? null };
   }
 
   /** `usual` is what holds where `shared` says nothing: a Map of parameters, perhaps not of all. */
-  show({ shared, is_comparing }, usual) {
+  show({ shared, against }, usual) {
     this.usual_ = new Map([...BUILTIN, ...usual]);
     const shown = new Map([...this.usual_, ...shared]);
     this.pixels_ = Number(shown.get("simplify"));
@@ -63,9 +73,13 @@ export class DetailPanel {
     this.tell_(this.pixels_);
     this.strict_.checked = shown.get("topology") === "strict";
     choose(this.small_, shown.get("small"));
-    this.compare_.checked = is_comparing;
+    this.compare_with_(against);
     const debug = shown.get("debug").split(",");
     for (const box of this.debug_) box.checked = debug.includes(box.value);
+  }
+
+  compare_with_(against) {
+    for (const box of this.comparisons_) box.checked = box.value === against;
   }
 
   /** How far it is simplified now, in pixels. */

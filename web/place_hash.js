@@ -6,6 +6,7 @@
 //   ...&simplify=4&debug=mesh                   parameters of all layers, where changed
 //   ...&style=night                             a style that the server knows by that name
 //   ...&compare=0.5                             full detail to the right of the middle
+//   ...&compare=0.5&against=apart               there, each polygon simplified by itself
 //   ...&at=51.5,-0.12                           the place whose features are told
 //
 // Names and values are percent-encoded. Whatever cannot be understood is left out, never an error:
@@ -16,6 +17,7 @@ import { encode } from "./tile_query.js";
 const MAX_ZOOM = 24;
 const MAX_LATITUDE = 85.0511287798066;
 const LONGEST_SIMPLIFY = 64;
+const DEBUG = ["faces", "junctions", "mesh", "tile", "vertices"];
 const PARAMETER = /^[a-z]+(-[a-z]+)*$/;
 
 const READ_SHARED = {
@@ -23,14 +25,14 @@ const READ_SHARED = {
   simplify: (text) => is_number(text, 0, LONGEST_SIMPLIFY),
   topology: (text) => ["strict", "fast"].includes(text),
   small: (text) => ["dust", "keep", "drop"].includes(text),
-  debug: (text) => text.split(",").every((word) => ["mesh", "tile", "vertices"].includes(word)),
+  debug: (text) => text.split(",").every((word) => DEBUG.includes(word)),
 };
 
 /**
  * @typedef {{zoom: number, lat: number, lon: number}} Place
  * @typedef {Map<string, string>} Style  values of parameters by name
  * @typedef {{place: ?Place, on: ?string[], styles: Map<string, Style>, shared: Style,
- *   compare: ?number, at: ?{lat: number, lon: number}}} View
+ *   compare: ?number, against: ("apart"|undefined), at: ?{lat: number, lon: number}}} View
  */
 
 /** @returns {View} null, or empty, is what the hash does not say */
@@ -48,7 +50,7 @@ export function parse_hash(hash) {
 }
 
 /** The inverse of parse_hash, with the '#'. */
-export function format_hash({ place, on, styles, shared, compare, at }) {
+export function format_hash({ place, on, styles, shared, compare, against, at }) {
   const parts = [place ? format_place(place) : ""];
   if (on) parts.push("on=" + on.map(encode_name).join(","));
   for (const [layer, style] of styles) {
@@ -56,6 +58,7 @@ export function format_hash({ place, on, styles, shared, compare, at }) {
   }
   for (const [name, value] of shared) parts.push(`${name}=${encode(value)}`);
   if (compare !== null) parts.push(`compare=${Number(compare.toFixed(3))}`);
+  if (compare !== null && against) parts.push(`against=${against}`);
   if (at) parts.push(`at=${Number(at.lat.toFixed(7))},${Number(at.lon.toFixed(7))}`);
   return "#" + parts.join("&");
 }
@@ -65,6 +68,8 @@ function read_part(view, key, value) {
     view.on = value.split(",").map(decode).filter(Boolean);
   } else if (key === "compare") {
     if (is_number(value, 0, 1)) view.compare = Number(value);
+  } else if (key === "against") {
+    if (value === "apart") view.against = value;
   } else if (key === "at") {
     view.at = parse_point(value);
   } else if (Object.hasOwn(READ_SHARED, key)) {

@@ -176,7 +176,7 @@ class Viewer {
         on_trouble: (is_missing) => tell_trouble(`${layer.name} ${pane}`, is_missing),
       }));
     this.map_layers_ = layers_in("simplified");
-    this.full_layers_ = layers_in("full");
+    this.compared_layers_ = layers_in("full");
     this.comparison_ = new Comparison(this.map_, simplified, full, (part) => {
       this.compare_ = part;
       this.write_address_();
@@ -190,7 +190,8 @@ class Viewer {
     $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
     load_style_names(BASE).then((names) => this.show_style_names_(names));
     $("style").addEventListener("change", () => this.change_named_style_($("style").value));
-    this.detail_ = new DetailPanel(() => this.change_detail_());
+    const has_coverage = this.layers_.some(({ coverages }) => coverages > 0);
+    this.detail_ = new DetailPanel(() => this.change_detail_(), { has_coverage });
     $("detail").append(this.detail_.node);
     this.features_ = new FeaturePanel($("features"), {
       choose: (feature) => this.choose_(feature),
@@ -221,6 +222,7 @@ class Viewer {
     this.named_ = named;
     this.shared_ = view.shared;
     this.compare_ = view.compare;
+    this.against_ = view.against ?? "full";
     this.at_ = view.at;
     this.states_ = this.layers_.map(({ name }, i) => {
       const style = view.styles.get(name) ?? new Map();
@@ -245,8 +247,8 @@ class Viewer {
       state.usual = usual_style(this.layers_[i], this.named_);
       this.rows_[i].show(state);
     });
-    this.detail_.show({ shared: this.shared_, is_comparing: this.compare_ !== null },
-      usual_shared(this.named_));
+    const against = this.compare_ === null ? null : this.against_;
+    this.detail_.show({ shared: this.shared_, against }, usual_shared(this.named_));
     choose($("style"), this.shared_.get("style") ?? "");
     $("style-row").hidden = $("style").options.length < 2;
   }
@@ -292,10 +294,11 @@ class Viewer {
   }
 
   change_detail_() {
-    const { shared, is_comparing } = this.detail_.read();
+    const { shared, against } = this.detail_.read();
     const named = [...this.shared_].filter(([key]) => key === "style");
     this.shared_ = new Map([...named, ...shared]);
-    this.compare_ = is_comparing ? (this.compare_ ?? 0.5) : null;
+    this.compare_ = against === null ? null : (this.compare_ ?? 0.5);
+    this.against_ = against ?? this.against_;
     this.draw_();
     this.write_address_();
   }
@@ -320,18 +323,20 @@ class Viewer {
   }
 
   draw_() {
-    const full = new Map([...this.shared_, ["simplify", "0"]]);
+    const is_apart = this.against_ === "apart";
+    const compared = new Map([...this.shared_, is_apart ? ["topology", "fast"] : ["simplify", "0"]]);
     let is_lowest = true;
     this.states_.forEach(({ is_on, drawn }, i) => {
       const is_shown = is_on && drawn !== null;
       const query = (shared) => query_part([...drawn, ...shared, ...this.background_(is_lowest)]);
       this.map_layers_[i].show(is_shown ? query(this.shared_) : null);
-      this.full_layers_[i].show(is_shown && this.compare_ !== null ? query(full) : null);
+      this.compared_layers_[i].show(is_shown && this.compare_ !== null ? query(compared) : null);
       if (is_shown) is_lowest = false;
     });
     const { pixels } = this.detail_;
     const words = simplify_in_words(pixels);
-    this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`);
+    this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`,
+      is_apart ? "each polygon by itself" : "every vertex");
     this.show_legend_();
     $("tile-url").value = this.tile_url_();
   }
@@ -450,6 +455,7 @@ class Viewer {
         [name, this.states_[i].drawn ?? this.states_[i].style])),
       shared: this.shared_,
       compare: this.compare_,
+      against: this.against_ === "apart" ? "apart" : undefined,
       at: this.at_,
     });
     history.replaceState(null, "", hash);

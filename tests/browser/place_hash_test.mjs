@@ -16,7 +16,7 @@ test("what is written is read back", () => {
       ["a,b", new Map([["fill", "ff8800"], ["classes", "'x:y&z#':red,*:eee"]])],
       ["dots.in.it", new Map([["filter", "name = '100 % + 1'"]])],
     ]),
-    shared: new Map([["style", "night-2"], ["simplify", "4"], ["debug", "mesh,tile"],
+    shared: new Map([["style", "night-2"], ["simplify", "4"], ["debug", "faces,junctions,mesh,tile"],
       ["topology", "fast"], ["small", "drop"]]),
     compare: 0.25,
     at: { lat: -12.3456789, lon: 179.5 },
@@ -25,6 +25,13 @@ test("what is written is read back", () => {
   assert.ok(Math.abs(back.place.lat - view.place.lat) < 1e-4);
   assert.deepEqual({ ...back, place: null }, { ...view, place: null });
   assert.equal(back.place.zoom, 12);
+});
+
+test("what is compared with is written where anything is", () => {
+  const view = view_of({ place: { zoom: 1, lat: 0, lon: 0 }, compare: 0.5, against: "apart" });
+  assert.ok(format_hash(view).endsWith("&compare=0.5&against=apart"));
+  assert.deepEqual(parse_hash(format_hash(view)), view);
+  assert.ok(!format_hash({ ...view, compare: null }).includes("against"));
 });
 
 test("a place is written to less than a pixel at every zoom", () => {
@@ -54,7 +61,7 @@ test("a part that is none is left out and the rest is kept", () => {
   const wrong = ["fill=red", "a.fill=", "a.fill", ".fill=red", "%.fill=red", "a.=red", "a.Fill=red",
     "a.b<c=1", "a.fill=%", "x=y", "=", "simplify=", "simplify=-1", "simplify=65", "simplify=x",
     "topology=loose", "style=a.b", "style=", "small=", "debug=mesh,all", "compare=1.5",
-    "compare=", "at=1", "at=1,2,3",
+    "compare=", "against=", "against=all", "at=1", "at=1,2,3",
     "at=86,0", "at=0,181", "at=,", "toString=1", "__proto__=1"];
   for (const part of wrong) {
     assert.deepEqual(parse_hash(`#1/2/3&${part}&on=b`),

@@ -40,7 +40,7 @@ function free_port() {
   });
 }
 
-const config = (web_root) => `
+const config = (web_root, more) => `
 [server]
 address = "127.0.0.1"
 web_root = "${web_root}"
@@ -69,7 +69,7 @@ name = "lake"
 file = "${join(HERE, "lake.geojson")}"
 title = "Lake"
 style = { fill = "#4f8fba" }
-`;
+${more}`;
 
 async function wait_until_ready(base, server) {
   const end = Date.now() + START_TIMEOUT_MS;
@@ -86,7 +86,7 @@ async function wait_until_ready(base, server) {
 }
 
 /** Starts the server on a free port; the result is closed with `close`. */
-async function start_server() {
+async function start_server(more_config) {
   const binary = process.env.TRAPEZE_BINARY;
   if (!binary) throw new Error("TRAPEZE_BINARY must name the program to test");
   const folder = mkdtempSync(join(tmpdir(), "trapeze-viewer-"));
@@ -94,7 +94,7 @@ async function start_server() {
   // Not web/dist: that is as old as the last run of script/bootstrap.
   execFileSync(process.execPath, [join(WEB, "assemble.mjs"), web_root]);
   const config_file = join(folder, "trapeze.toml");
-  writeFileSync(config_file, config(web_root));
+  writeFileSync(config_file, config(web_root, more_config));
 
   const port = await free_port();
   const child = spawn(binary, ["serve", "--config", config_file, "--port", String(port)], {
@@ -133,15 +133,18 @@ async function start_browser(options) {
   });
 }
 
-/** Both, closed when the tests of the file have ended; the server must then end in order. */
-export async function start_browser_and_server(options = []) {
+/**
+ * Both, closed when the tests of the file have ended; the server must then end in order.
+ * `more_config` is added to the server's configuration.
+ */
+export async function start_browser_and_server(options = [], more_config = "") {
   const browser = await start_browser(options);
   let server;
   after(async () => {
     await browser.close();
     assert.deepEqual(await server?.close(), { code: 0, signal: null }, "SIGTERM ends the server");
   });
-  server = await start_server();
+  server = await start_server(more_config);
   return { browser, server };
 }
 

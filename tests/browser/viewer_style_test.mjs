@@ -300,6 +300,7 @@ async function colour_on_screen(page, x, y) {
 
 test("compare shows every vertex right of a divider that pointer and keyboard move", async () => {
   const { page, seen } = await open("#5/46/10&on=land&simplify=64&debug=vertices");
+  assert.equal(await page.getByLabel("Compare with polygons apart").count(), 0, "none share borders");
   await page.getByLabel("Compare with every vertex").check();
   await page.waitForFunction(() => location.hash.includes("compare=0.5"));
   await page.waitForSelector("img[src*='simplify=0']");

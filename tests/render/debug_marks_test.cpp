@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -193,6 +194,154 @@ TEST(DebugMarksTest, EveryEndOfAnEdgeIsMarkedAndNoImpliedCorner) {
                                     ".###....###.",  //
                                     ".###....###.",  //
                                     ".###....###."}));
+}
+
+constexpr auto kByNumber = [](std::uint32_t trapezoid) { return trapezoid; };
+
+/// The tint of a feature over white.
+Rgba tint_on_white(std::uint32_t feature) {
+  Picture picture = white_picture(1, 1);
+  SampleMesh mesh;
+  mesh.add_box(0, 0, kCells, kCells);
+  const TrapezoidRange all = mesh.all();
+  mark_faces(
+      mesh.view(), {&all, 1}, [feature](std::uint32_t) { return feature; }, view_of(picture),
+      picture);
+  return picture.at(0, 0);
+}
+
+int distance(Rgba a, Rgba b) {
+  return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
+}
+
+TEST(DebugMarksTest, FeaturesWhoseNumbersAreCloseHaveTintsThatAreNot) {
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    for (std::uint32_t k = 1; k <= 4; ++k) {
+      EXPECT_GT(distance(tint_on_white(i), tint_on_white(i + k)), 40) << i << " and " << i + k;
+    }
+  }
+}
+
+TEST(DebugMarksTest, FacesAreTintedByTheAreaThatTheyCover) {
+  Picture picture = white_picture(6, 4);
+  SampleMesh mesh;
+  mesh.add_box(kCells, kCells, 3 * kCells + 4, 3 * kCells);  // a quarter of the fourth column
+  mesh.add_box(3 * kCells + 4, kCells, 5 * kCells, 3 * kCells);
+  const TrapezoidRange all = mesh.all();
+  mark_faces(mesh.view(), {&all, 1}, kByNumber, view_of(picture), picture);
+  const Rgba first = tint_on_white(0);
+  const Rgba second = tint_on_white(1);
+  for (int row = 0; row < 4; ++row) {
+    const bool is_inside = row == 1 || row == 2;
+    EXPECT_EQ(picture.at(0, row), kWhite);
+    EXPECT_EQ(picture.at(5, row), kWhite);
+    EXPECT_EQ(picture.at(2, row), is_inside ? first : kWhite);
+    EXPECT_EQ(picture.at(4, row), is_inside ? second : kWhite);
+    const Rgba mixed = picture.at(3, row);
+    EXPECT_NEAR(mixed.r, is_inside ? (first.r + 3 * second.r) / 4 : 255, 1);
+    EXPECT_NEAR(mixed.b, is_inside ? (first.b + 3 * second.b) / 4 : 255, 1);
+  }
+}
+
+TEST(DebugMarksTest, FacesThatFillAPictureLeaveNothingUntintedBetweenThem) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  // Two on either side of a line that is anywhere, with a tint for both.
+  for (int i = 0; i < 20; ++i) {
+    Picture picture = white_picture(16, 16);
+    const auto somewhere = [&random] { return static_cast<std::int32_t>(random() % 256); };
+    SampleMesh mesh;
+    const auto left = mesh.add_edge({-9, -9}, {-9, 999});
+    const auto middle = mesh.add_edge({somewhere(), -9}, {somewhere(), 999});
+    const auto right = mesh.add_edge({999, -9}, {999, 999});
+    const std::int32_t level = somewhere();
+    mesh.add(left, middle, -9, level);
+    mesh.add(left, middle, level, 999);
+    mesh.add(middle, right, -9, 999);
+    const TrapezoidRange all = mesh.all();
+    mark_faces(
+        mesh.view(), {&all, 1}, [](std::uint32_t) { return 5u; }, view_of(picture), picture);
+    const Rgba tint = tint_on_white(5);
+    for (int row = 0; row < 16; ++row) {
+      for (int column = 0; column < 16; ++column) {
+        ASSERT_LE(distance(picture.at(column, row), tint), 3) << column << ", " << row;
+      }
+    }
+  }
+}
+
+/// Three fields, A west of B and C. Each vertex is in the middle of a pixel.
+///
+///     0-------1-------2
+///     |       |   B   |
+///     |   A   3-------4
+///     |       |   C   |
+///     5-------6-------7
+class ThreeFields {
+ public:
+  MeshView mesh() const { return {1, vertices_, edges_, trapezoids_}; }
+
+  /// What is marked as junctions if only those of the trapezoids are there whose field is one of
+  /// `fields`.
+  Rows junctions(const std::string& fields) const {
+    std::vector<TrapezoidRange> ranges;
+    std::vector<TrapezoidRange> level_edges;
+    for (std::uint32_t i = 0; i < trapezoids_.size(); ++i) {
+      if (fields.find(kFieldOf[i]) == std::string::npos) continue;
+      (trapezoids_[i].left == trapezoids_[i].right ? level_edges : ranges).push_back({i, 1});
+    }
+    Picture picture = white_picture(15, 11);
+    const auto field_of = [](std::uint32_t i) { return static_cast<std::uint32_t>(kFieldOf[i]); };
+    mark_junctions(mesh(), ranges, level_edges, field_of, view_of(picture), kBlack, picture);
+    return drawing(picture);
+  }
+
+ private:
+  static constexpr Point at(int column, int row) {
+    return {column * kCells + kCells / 2, row * kCells + kCells / 2};
+  }
+
+  const std::vector<Point> vertices_ = {at(2, 2),  at(7, 2), at(12, 2), at(7, 5),
+                                        at(12, 5), at(2, 8), at(7, 8),  at(12, 8)};
+  const std::vector<MeshEdge> edges_ = {{0, 5}, {1, 3}, {3, 6}, {2, 4}, {4, 7},
+                                        {0, 1}, {1, 2}, {3, 4}, {5, 6}, {6, 7}};
+  const std::vector<MeshTrapezoid> trapezoids_ = {
+      {0, 3, 0, 1}, {3, 5, 0, 2}, {1, 3, 1, 3}, {4, 6, 2, 4},  // with height
+      {0, 1, 5, 5}, {1, 2, 6, 6}, {3, 4, 7, 7}, {3, 4, 7, 7}, {5, 6, 8, 8}, {6, 7, 9, 9}};
+  static constexpr std::string_view kFieldOf = "AABCABBCAC";
+};
+
+TEST(DebugMarksTest, JunctionsAreWhereThreeFeaturesMeetOfWhichOneMayBeTheOutside) {
+  EXPECT_EQ(ThreeFields().junctions("ABC"), Rows({".......#.......",  //
+                                                  "......###......",  //
+                                                  ".....#####.....",  //
+                                                  "......###...#..",  //
+                                                  "......###..###.",  //
+                                                  ".....##########",  //
+                                                  "......###..###.",  //
+                                                  "......###...#..",  //
+                                                  ".....#####.....",  //
+                                                  "......###......",  //
+                                                  ".......#......."}));
+}
+
+TEST(DebugMarksTest, WhereAllButOneOrTwoFeaturesAreOutsideIsNoJunctionButWhereTheyPart) {
+  const Rows none(11, std::string(15, '.'));
+  EXPECT_EQ(ThreeFields().junctions("A"), none);
+  EXPECT_EQ(ThreeFields().junctions("B"), none);
+  EXPECT_EQ(ThreeFields().junctions(""), none);
+  EXPECT_EQ(ThreeFields().junctions("BC"), Rows({"...............",  //
+                                                 "...............",  //
+                                                 "...............",  //
+                                                 ".......#....#..",  //
+                                                 "......###..###.",  //
+                                                 ".....##########",  //
+                                                 "......###..###.",  //
+                                                 ".......#....#..",  //
+                                                 "...............",  //
+                                                 "...............",  //
+                                                 "..............."}));
 }
 
 TEST(DebugMarksTest, TheBorderIsALineAroundThePictureWithItsTextInTheCorner) {

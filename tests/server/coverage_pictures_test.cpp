@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 #include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/layer_builder.h"
 #include "render/png.h"
@@ -213,6 +219,58 @@ TEST_F(CoveragePicturesTest, DashesOfASharedBorderAreDrawnOnce) {
     return static_cast<double>(dark);
   };
   EXPECT_NEAR(dark_pixels("&stroke-dasharray=4,4") / dark_pixels(""), 0.5, 0.12);
+}
+
+bool is_dark(Rgba colour) {
+  return colour.a == 255 && colour.r < 64 && colour.g < 64 && colour.b < 64;
+}
+
+TEST_F(CoveragePicturesTest, JunctionsAreMarkedAsLongAsThereAreAny) {
+  const Picture picture = tile("plots", "0/0/0", "fill=white&debug=junctions&simplify=0.5");
+  const Picture apart = tile("apart", "0/0/0", "fill=white&debug=junctions&simplify=0.5");
+  for (int y = 0; y <= kColumns; ++y) {
+    for (int x = 0; x <= kColumns; ++x) {
+      const int column = static_cast<int>(kFrom + x * kSide);
+      const int row = static_cast<int>(kFrom + y * kSide);
+      const bool is_corner_of_all = (x == 0 || x == kColumns) && (y == 0 || y == kColumns);
+      EXPECT_EQ(is_dark(picture.at(column, row)), !is_corner_of_all) << x << ", " << y;
+    }
+  }
+  // Borders that begin at a corner may cross each other near it.
+  const auto is_near_corner = [](int at) {
+    return std::abs(std::remainder(at + 0.5 - kFrom, kSide)) < 6;
+  };
+  for (int row = 0; row < 256; ++row) {
+    for (int column = 0; column < 256; ++column) {
+      const bool is_of_crumbs = std::min(row, column) > kFrom + 2.1 * kSide &&
+                                std::max(row, column) < kFrom + 2.7 * kSide;
+      if (is_of_crumbs || (is_near_corner(row) && is_near_corner(column))) continue;
+      ASSERT_FALSE(is_dark(picture.at(column, row))) << column << ", " << row;
+    }
+  }
+  EXPECT_EQ(std::ranges::count_if(apart.pixels, is_dark), 0) << "they know nothing of each other";
+  const Picture coarse = tile("plots", "0/0/0", "fill=white&debug=junctions&simplify=64");
+  EXPECT_EQ(std::ranges::count_if(coarse.pixels, is_dark), 0) << "only one is left of the plots";
+}
+
+TEST_F(CoveragePicturesTest, EveryFeatureHasItsTintInAllTiles) {
+  const Picture whole = tile("plots", "0/0/0@2x", "debug=faces&simplify=2");
+  const Picture part = tile("plots", "1/0/0", "debug=faces&simplify=2");
+  std::set<std::string> tints;
+  for (int y = 0; y < kColumns / 2; ++y) {
+    for (int x = 0; x < kColumns / 2; ++x) {
+      const int column = static_cast<int>(2 * (kFrom + (x + 0.2) * kSide));
+      const int row = static_cast<int>(2 * (kFrom + (y + 0.2) * kSide));
+      EXPECT_EQ(part.at(column, row), whole.at(column, row));
+      tints.insert(to_hex(part.at(column, row)));
+    }
+  }
+  EXPECT_EQ(tints.size(), kColumns * kColumns / 4u);
+  for (int row = static_cast<int>(2 * kFrom); row < 256; ++row) {
+    for (int column = static_cast<int>(2 * kFrom); column < 256; ++column) {
+      ASSERT_EQ(part.at(column, row).a, 255) << column << ", " << row;
+    }
+  }
 }
 
 TEST_F(CoveragePicturesTest, NeighbouringTilesAgree) {

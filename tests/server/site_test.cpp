@@ -192,7 +192,7 @@ TEST_F(SiteTest, GeneralizationsThatAreNoneAreRefusedWithWhatIsAllowed) {
       {"simplify=1e9", "a number from 0 to 64"},
       {"small=tiny", "one of drop, dust, keep"},
       {"topology=none", "one of fast, strict"},
-      {"debug=everything", "some of mesh, tile, vertices, separated by commas"}};
+      {"debug=everything", "some of faces, junctions, mesh, tile, vertices, separated by commas"}};
   for (const auto& [query, takes] : wrong) {
     const auto response = get("/tiles/rings/0/0/0.png?" + query);
     EXPECT_EQ(response.status, 400) << query;
@@ -367,6 +367,7 @@ TEST_F(SiteTest, TheCatalogListsLayersAndParameters) {
   EXPECT_EQ(rings["polygons"], 2);
   EXPECT_EQ(rings["rings"], 3);
   EXPECT_EQ(rings["vertices"], 12);
+  EXPECT_EQ(rings["coverages"], 0);
   EXPECT_GT(rings["trapezoids"], 0);
   EXPECT_NEAR(rings["bounds"][0], -90, 1e-6);
   EXPECT_NEAR(rings["bounds"][3], 66.5132604, 1e-6);

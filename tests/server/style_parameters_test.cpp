@@ -134,7 +134,7 @@ TEST(StyleParametersTest, WrongGeneralizationsAreProblemsThatSayWhatIsAllowed) {
   for (const char* value :
        {"", ",", "tile,", ",tile", "tile,,mesh", "tile%20mesh", "all", "mesh;"}) {
     EXPECT_EQ(problem_of(std::string("debug=") + value).takes,
-              "some of mesh, tile, vertices, separated by commas")
+              "some of faces, junctions, mesh, tile, vertices, separated by commas")
         << value;
   }
   EXPECT_EQ(problem_of("simplify=1&simplify=1").takes, "a number from 0 to 64, once");

@@ -152,6 +152,9 @@ TEST_F(TilePlanTest, EveryGeneralizationAndEveryMarkHasItsOwnTag) {
                                             "simplify=64",
                                             "small=drop",
                                             "small=keep",
+                                            "debug=faces",
+                                            "debug=junctions",
+                                            "debug=faces,junctions",
                                             "debug=mesh",
                                             "debug=tile",
                                             "debug=vertices",
@@ -167,7 +170,7 @@ TEST_F(TilePlanTest, AnInvisibleLayerIsKeptForItsMarks) {
   EXPECT_EQ(plan("rings/0/0/0.png?fill-opacity=0").layers.size(), 0u);
   const TilePlan plan = this->plan("rings/0/0/0.png?fill-opacity=0&debug=vertices,tile");
   EXPECT_EQ(plan.layers.size(), 1u);
-  EXPECT_EQ(plan.debug, (DebugMarks{false, true, true}));
+  EXPECT_EQ(plan.debug, (DebugMarks{.vertices = true, .tile = true}));
 }
 
 }  // namespace
