@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -156,25 +158,56 @@ void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
   }
 }
 
-/// Without these, in ascending order, none of those that are left overlaps another by more than
-/// `most` of the smaller one's area.
-std::vector<std::uint32_t> overlapping_features(const CoverageOutcome& outcome, double most) {
+/// How many edges each feature has in common with a neighbour, which begins where it ends.
+std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Borders& borders,
+                                            const FeatureSets& sets, std::size_t features) {
+  std::vector<std::size_t> count(features, 0);
+  for (std::size_t e = 0; e < borders.segments.size(); ++e) {
+    const std::vector<std::uint32_t>& owners = sets[borders.owners[e]];
+    const std::vector<std::uint32_t>& left = sets[g.edge(EdgeId(e)).face[kLeft]];
+    const auto ends_here = [&left](std::uint32_t owner) {
+      return std::binary_search(left.begin(), left.end(), owner);
+    };
+    const auto ending = std::count_if(owners.begin(), owners.end(), ends_here);
+    if (ending == 0 || ending == std::ssize(owners)) continue;
+    for (const std::uint32_t owner : owners) ++count[owner];
+  }
+  return count;
+}
+
+/// Those by more than `most` of the smaller one's area.
+std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most) {
   std::vector<Overlap> overlaps;
   for (const Overlap& overlap : outcome.overlaps) {
     const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
     if (overlap.area > most * smaller) overlaps.push_back(overlap);
   }
+  return overlaps;
+}
+
+/// Without these, in ascending order, no two overlap. First go those that have the fewest edges in
+/// common with neighbours: an overseas region that is there a second time as a country, and not the
+/// motherland.
+std::vector<std::uint32_t> features_to_leave_out(std::vector<Overlap> overlaps,
+                                                 const std::vector<std::size_t>& common_edges) {
   std::vector<std::uint32_t> apart;
-  std::vector<std::uint32_t> count(outcome.areas.size());
+  std::vector<std::size_t> count(common_edges.size());
   while (!overlaps.empty()) {
     std::fill(count.begin(), count.end(), 0u);
     for (const Overlap& overlap : overlaps) {
       ++count[overlap.lower];
       ++count[overlap.upper];
     }
-    // The last one of the greatest.
-    const auto most_often = std::max_element(count.rbegin(), count.rend());
-    const auto worst = static_cast<std::uint32_t>(count.rend() - most_often - 1);
+    // Of several, that with the most overlaps, and of these the last one.
+    const auto goes_before = [&](std::uint32_t a, std::uint32_t b) {
+      return std::tuple(common_edges[a], count[b], b) < std::tuple(common_edges[b], count[a], a);
+    };
+    std::uint32_t worst = overlaps.front().lower;
+    for (const Overlap& overlap : overlaps) {
+      for (const std::uint32_t feature : {overlap.lower, overlap.upper}) {
+        if (goes_before(feature, worst)) worst = feature;
+      }
+    }
     apart.push_back(worst);
     std::erase_if(overlaps, [worst](const Overlap& overlap) {
       return overlap.lower == worst || overlap.upper == worst;
@@ -318,8 +351,10 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     outcome.areas.assign(features.size(), 0);
     outcome.overlaps.clear();
     note_areas(graph, map.sets, outcome);
-    const std::vector<std::uint32_t> apart = overlapping_features(outcome, tolerance.most_overlap);
-    if (apart.empty()) break;
+    const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
+    if (overlaps.empty()) break;
+    const std::vector<std::uint32_t> apart = features_to_leave_out(
+        overlaps, count_common_edges(graph, map.borders, map.sets, features.size()));
     outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
     std::sort(outcome.apart.begin(), outcome.apart.end());
     if (features.size() - outcome.apart.size() < 2) return outcome;

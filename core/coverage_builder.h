@@ -54,8 +54,8 @@ class CoverageBuilder {
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
   /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
   /// has the place. Gaps whose mean width, area over half of the border, is at most the widest go
-  /// to the feature with the longest border. Features that overlap others by more than is tolerated
-  /// are left out: of those with the most such overlaps, the last one first. If fewer than two are
+  /// to the feature with the longest border. Of features that overlap by more than is tolerated,
+  /// those are left out that have the fewest edges in common with neighbours. If fewer than two are
   /// left, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
   /// outcome says built.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,

@@ -76,12 +76,21 @@ TEST(CoverageGroups, WhatOverlapsByTooMuchStaysApart) {
   EXPECT_EQ(all.outcome.overlaps.size(), 1u);
 }
 
-TEST(CoverageGroups, TheOneThatOverlapsMostGoesFirst) {
+TEST(CoverageGroups, TheOneWithTheFewestNeighboursIsLeftOut) {
   // A field under two plots, which are neighbours.
   Features features({"0 0, 20 0, 20 10, 0 10", kLeft10, kRight10});
   const Assembly assembly = features.assembly(CoverageMode::automatic);
   EXPECT_THAT(assembly.together, ElementsAre(1, 2));
   EXPECT_THAT(assembly.apart, ElementsAre(0));
+}
+
+TEST(CoverageGroups, WhatIsThereTwiceDoesNotCostTheMotherland) {
+  // The left one has two islands, which are there as features as well.
+  Features features({"0 0, 10 0, 10 10, 0 10; 50 0, 55 0, 55 5; 60 0, 65 0, 65 5", kRight10,
+                     "50 0, 55 0, 55 5", "60 0, 65 0, 65 5"});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, ElementsAre(0, 1));
+  EXPECT_THAT(assembly.apart, ElementsAre(2, 3));
 }
 
 TEST(CoverageGroups, ALittleOverlapIsNoReason) {
