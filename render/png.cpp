@@ -36,7 +36,7 @@ std::uint64_t block_at(const std::uint8_t* indices) {
 
 std::array<bool, kMaxColours> used_indices(std::span<const std::uint8_t> indices) {
   std::array<bool, kMaxColours> is_used{};
-  std::uint64_t seen = ~block_at(indices.data());
+  std::uint64_t seen = indices.size() < kBlock ? 0 : ~block_at(indices.data());
   std::size_t i = 0;
   for (; i + kBlock <= indices.size(); i += kBlock) {
     const std::uint64_t block = block_at(indices.data() + i);
