@@ -1,13 +1,13 @@
 #include "core/coverage_builder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 
+#include "core/border_lengths.h"
 #include "core/owned_segments.h"
 #include "core/web_mercator.h"
 
@@ -237,29 +237,9 @@ Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t e
 
 /// What surrounds a region that no feature covers.
 struct Gap {
-  double border = 0;                                       // its length in cells
-  double reach = 0;                                        // the widest gap at this place, in cells
-  std::vector<std::pair<FaceId, double>> neighbours = {};  // with the lengths of their borders
-
-  void add(FaceId face, double length) {
-    border += length;
-    const auto known = std::find_if(neighbours.begin(), neighbours.end(),
-                                    [face](const auto& n) { return n.first == face; });
-    if (known == neighbours.end()) {
-      neighbours.emplace_back(face, length);
-    } else {
-      known->second += length;
-    }
-  }
-
-  /// Of several with as long a border, the one of the smallest number.
-  FaceId closest() const {
-    return std::max_element(neighbours.begin(), neighbours.end(),
-                            [](const auto& a, const auto& b) {
-                              return a.second != b.second ? a.second < b.second : a.first > b.first;
-                            })
-        ->first;
-  }
+  double border = 0;  // its length in cells
+  double reach = 0;   // the widest gap at this place, in cells
+  BorderLengths neighbours = {};
 };
 
 /// Narrow gaps between features get the face of a neighbour; returns how many.
@@ -275,23 +255,22 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
       const RegionId hole = hole_beside(e, s);
       if (hole.is_none()) continue;
       const Edge& edge = g.edge(EdgeId(e));
-      const Point a = g.point(edge.end[kUp]);
-      const Point b = g.point(edge.end[kDown]);
-      gaps[hole.value].reach = cells_from_ground(widest_gap, a.y);
-      gaps[hole.value].add(
-          s == kLeft ? sides[e].second : sides[e].first,
-          std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y));
+      const double length = length_of(g, edge);
+      Gap& gap = gaps[hole.value];
+      gap.reach = cells_from_ground(widest_gap, g.point(edge.end[kUp]).y);
+      gap.border += length;
+      gap.neighbours.add(s == kLeft ? sides[e].second : sides[e].first, length);
     }
   }
   const auto is_narrow = [&](RegionId hole) {
     const Gap& gap = gaps[hole.value];
-    return gap.neighbours.size() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
+    return gap.neighbours.faces() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
   };
   for (std::size_t e = 0; e < sides.size(); ++e) {
     for (const Side s : {kLeft, kRight}) {
       const RegionId hole = hole_beside(e, s);
       if (hole.is_none() || !is_narrow(hole)) continue;
-      (s == kLeft ? sides[e].first : sides[e].second) = gaps[hole.value].closest();
+      (s == kLeft ? sides[e].first : sides[e].second) = gaps[hole.value].neighbours.longest();
     }
   }
   std::size_t filled = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/border_lengths.h"
 #include "core/generalization.h"
 
 namespace trapeze {
@@ -13,12 +14,6 @@ namespace {
 
 // Of a square, area over diagonal is its width over the square root of two.
 constexpr double kWeightOfMeanWidth = 0.70710678118654752;
-
-double length_of(const TrapezoidalGraph& g, const Edge& edge) {
-  const Point a = g.point(edge.end[kUp]);
-  const Point b = g.point(edge.end[kDown]);
-  return std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
-}
 
 }  // namespace
 
@@ -172,26 +167,14 @@ Side RegionBorders::side_of(EdgeId edge, RegionId region) {
   return find(beside_[edge][kLeft]) == region ? kLeft : kRight;
 }
 
-/// The face with the longest border, of several the one of the smallest number; the outside only if
-/// there is no other, so that a coverage does not fray out along its coasts.
+/// The face with the longest border; the outside only if there is no other, so that a coverage does
+/// not fray out along its coasts.
 FaceId RegionBorders::choose_taker() const {
-  std::vector<std::pair<FaceId, double>> lengths;
+  BorderLengths lengths;
   for (const Arc& arc : arcs_) {
-    if (arc.beyond == kOutside) continue;
-    const auto same = std::find_if(lengths.begin(), lengths.end(),
-                                   [&](const auto& item) { return item.first == arc.beyond; });
-    if (same == lengths.end()) {
-      lengths.emplace_back(arc.beyond, arc.length);
-    } else {
-      same->second += arc.length;
-    }
+    if (arc.beyond != kOutside) lengths.add(arc.beyond, arc.length);
   }
-  if (lengths.empty()) return kOutside;
-  return std::min_element(lengths.begin(), lengths.end(),
-                          [](const auto& a, const auto& b) {
-                            return a.second != b.second ? a.second > b.second : a.first < b.first;
-                          })
-      ->first;
+  return lengths.longest();
 }
 
 std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
