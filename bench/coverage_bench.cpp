@@ -21,6 +21,7 @@
 
 #include "bench/coverage_vertices.h"
 #include "bench/figures.h"
+#include "bench/run_program.h"
 #include "bench/source_rings.h"
 #include "bench/trapeze_server.h"
 #include "bench/trip.h"
@@ -282,10 +283,5 @@ int run(int argc, char** argv) {
 }  // namespace trapeze
 
 int main(int argc, char** argv) {
-  try {
-    return trapeze::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "coverage_bench: %s\n", error.what());
-    return 1;
-  }
+  return trapeze::run_program("coverage_bench", trapeze::run, argc, argv);
 }

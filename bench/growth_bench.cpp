@@ -13,7 +13,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -21,6 +20,7 @@
 
 #include "bench/figures.h"
 #include "bench/http_load.h"
+#include "bench/run_program.h"
 #include "bench/trapeze_server.h"
 #include "bench/trip.h"
 #include "core/web_mercator.h"
@@ -257,10 +257,5 @@ int run(int argc, char** argv) {
 }  // namespace trapeze
 
 int main(int argc, char** argv) {
-  try {
-    return trapeze::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "growth_bench: %s\n", error.what());
-    return 1;
-  }
+  return trapeze::run_program("growth_bench", trapeze::run, argc, argv);
 }

@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -16,6 +15,7 @@
 
 #include "bench/figures.h"
 #include "bench/http_load.h"
+#include "bench/run_program.h"
 #include "bench/trapeze_server.h"
 #include "bench/trip.h"
 
@@ -139,10 +139,5 @@ int run(int argc, char** argv) {
 }  // namespace trapeze
 
 int main(int argc, char** argv) {
-  try {
-    return trapeze::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "latency_bench: %s\n", error.what());
-    return 1;
-  }
+  return trapeze::run_program("latency_bench", trapeze::run, argc, argv);
 }

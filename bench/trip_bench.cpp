@@ -16,13 +16,13 @@
 // used. Servers are started anew for every round.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/figures.h"
 #include "bench/http_load.h"
+#include "bench/run_program.h"
 #include "bench/trapeze_server.h"
 #include "bench/trip.h"
 
@@ -209,10 +209,5 @@ int run(int argc, char** argv) {
 }  // namespace trapeze
 
 int main(int argc, char** argv) {
-  try {
-    return trapeze::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "trip_bench: %s\n", error.what());
-    return 1;
-  }
+  return trapeze::run_program("trip_bench", trapeze::run, argc, argv);
 }

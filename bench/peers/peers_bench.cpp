@@ -27,6 +27,7 @@
 #include "bench/peers/map_server.h"
 #include "bench/peers/peer_maps.h"
 #include "bench/peers/side_by_side.h"
+#include "bench/run_program.h"
 #include "bench/trapeze_server.h"
 #include "bench/trip.h"
 
@@ -303,10 +304,5 @@ int run(int argc, char** argv) {
 }  // namespace trapeze
 
 int main(int argc, char** argv) {
-  try {
-    return trapeze::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "peers_bench: %s\n", error.what());
-    return 1;
-  }
+  return trapeze::run_program("peers_bench", trapeze::run, argc, argv);
 }
