@@ -72,28 +72,78 @@ bool Coverage::is_all(std::uint8_t level) const {
 
 namespace {
 
-std::uint8_t to_level(float sum) {
-  const float share = std::min(std::max(sum, 0.0f), 1.0f);
-  return static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+constexpr std::size_t kBlock = 8;  // pixels that are looked at together
+
+struct FloatLevel {
+  std::uint8_t operator()(float sum) const {
+    const float share = std::min(std::max(sum, 0.0f), 1.0f);
+    return static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+  }
+};
+
+struct IntegerLevel {
+  std::int32_t whole;
+  float levels_per_unit = 255.0f / static_cast<float>(whole);
+
+  std::uint8_t operator()(std::int32_t sum) const {
+    const auto part = static_cast<float>(std::min(std::max(sum, 0), whole));
+    return static_cast<std::uint8_t>(static_cast<std::int32_t>(part * levels_per_unit + 0.5f));
+  }
+};
+
+// Sums of the first 1, 2, ... 8 elements, by a tree: one after the other each would wait for the
+// one before.
+template <class Element>
+void sum_up(const Element* d, std::array<Element, kBlock>& sums) {
+  const Element to_1 = d[0] + d[1];
+  const Element to_3 = to_1 + (d[2] + d[3]);
+  const Element from_4_to_5 = d[4] + d[5];
+  sums = {d[0],
+          to_1,
+          to_1 + d[2],
+          to_3,
+          to_3 + d[4],
+          to_3 + from_4_to_5,
+          to_3 + (from_4_to_5 + d[6]),
+          to_3 + (from_4_to_5 + (d[6] + d[7]))};
+}
+
+// Between the boundaries of polygons nothing changes.
+template <class Element>
+bool is_all_zero(const Element* differences) {
+  std::array<std::uint64_t, kBlock / 2> pairs;
+  static_assert(sizeof pairs == kBlock * sizeof(Element));
+  std::memcpy(pairs.data(), differences, sizeof pairs);
+  return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0;
+}
+
+template <class Element, class ToLevel>
+void sum_to_levels_by(const ToLevel& to_level, std::span<const Element> differences,
+                      std::uint8_t* levels) {
+  Element before = 0;
+  std::size_t i = 0;
+  std::array<Element, kBlock> sums;
+  for (; i + kBlock <= differences.size(); i += kBlock) {
+    if (is_all_zero(differences.data() + i)) {
+      std::memset(levels + i, to_level(before), kBlock);
+      continue;
+    }
+    sum_up(differences.data() + i, sums);
+    for (std::size_t k = 0; k < kBlock; ++k) levels[i + k] = to_level(before + sums[k]);
+    before += sums.back();
+  }
+  for (; i < differences.size(); ++i) levels[i] = to_level(before += differences[i]);
 }
 
 }  // namespace
 
-// Looks at eight pixels at once: between the boundaries of polygons nothing changes.
 void sum_to_levels(std::span<const float> differences, std::uint8_t* levels) {
-  constexpr std::size_t kBlock = 8;
-  float sum = 0;
-  std::size_t i = 0;
-  for (; i + kBlock <= differences.size(); i += kBlock) {
-    std::array<std::uint64_t, kBlock / 2> pairs;
-    std::memcpy(pairs.data(), differences.data() + i, sizeof pairs);
-    if ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0) {
-      std::memset(levels + i, to_level(sum), kBlock);
-      continue;
-    }
-    for (std::size_t k = i; k < i + kBlock; ++k) levels[k] = to_level(sum += differences[k]);
-  }
-  for (; i < differences.size(); ++i) levels[i] = to_level(sum += differences[i]);
+  sum_to_levels_by(FloatLevel{}, differences, levels);
+}
+
+void sum_to_levels(std::span<const std::int32_t> differences, std::int32_t whole,
+                   std::uint8_t* levels) {
+  sum_to_levels_by(IntegerLevel{whole}, differences, levels);
 }
 
 }  // namespace trapeze

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "render/gl_shaders.h"
+#include "render/gl_shader.h"
 #include "render/stopwatch.h"
 
 namespace trapeze {
@@ -14,8 +14,6 @@ namespace {
 
 // Of a pass, in pixels: a few dozen tiles.
 constexpr std::size_t kMostPixels = std::size_t{1} << 22;
-
-constexpr float kPixelsPerUnit = 1.0f / kGlUnitsPerPixel;
 
 template <class Element>
 GLsizeiptr bytes_of(std::size_t elements) {
@@ -33,6 +31,13 @@ GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
   gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
   gl.DeleteShader(shader);
   throw std::runtime_error(std::string("the GL device rejects a shader: ") + log.data());
+}
+
+// Adds what the shader summed up to sums in pixels.
+void add_units(std::span<const std::int32_t> units, std::span<float> pixels) {
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i] += static_cast<float>(units[i]) * (1.0f / gl_shader::kUnitsPerPixel);
+  }
 }
 
 std::string_view gl_error_name(GLenum error) {
@@ -72,8 +77,9 @@ GlRenderer::GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMes
     throw std::runtime_error("the GL device has no room for a row of a picture");
   }
   try {
-    program_ = make_program(side_shader());
-    make_buffers();
+    program_ = make_program(gl_shader::source());
+    gl_.GenBuffers(1, &index_buffer_);
+    gl_.GenBuffers(1, &differences_buffer_);
     throw_on_gl_error(gl_, "setting the renderer up");
   } catch (...) {
     delete_objects();
@@ -123,13 +129,8 @@ GlRenderer::Program GlRenderer::make_program(const std::string& source) {
   return program;
 }
 
-void GlRenderer::make_buffers() {
-  gl_.GenBuffers(1, &chosen_buffer_);
-  gl_.GenBuffers(1, &differences_buffer_);
-}
-
 void GlRenderer::delete_objects() noexcept {
-  gl_.DeleteBuffers(1, &chosen_buffer_);
+  gl_.DeleteBuffers(1, &index_buffer_);
   gl_.DeleteBuffers(1, &differences_buffer_);
   gl_.DeleteProgram(program_.name);
 }
@@ -142,7 +143,7 @@ DrawTimes GlRenderer::draw(std::span<const CoverageTask> tasks) {
   // Of a draw that failed.
   bands_.clear();
   batches_.clear();
-  chosen_.clear();
+  indices_.clear();
   sums_.clear();
   used_ = 0;
   for (const CoverageTask& task : tasks) draw_task(task, times);
@@ -169,14 +170,14 @@ void GlRenderer::draw_band(Band band, DrawTimes& times) {
   for (const MeshPart& part : band.task->parts) {
     for (TrapezoidRange range : part.ranges) {
       while (range.count > 0) {
-        if (in_pass == kGlMostTrapezoids) {
+        if (in_pass == gl_shader::kMostTrapezoids) {
           set_last_band_aside(times);
           in_pass = 0;
         }
         const std::uint32_t number = range.first / store_->chunk_size();
         const std::uint32_t first = range.first % store_->chunk_size();
-        const std::uint32_t count =
-            std::min({range.count, store_->chunk_size() - first, kGlMostTrapezoids - in_pass});
+        const std::uint32_t count = std::min(
+            {range.count, store_->chunk_size() - first, gl_shader::kMostTrapezoids - in_pass});
         choose(part.mesh, number, first, count);
         in_pass += count;
         range.first += count;
@@ -192,10 +193,10 @@ void GlRenderer::choose(const MeshView& mesh, std::uint32_t number, std::uint32_
   if (batches_.empty() || batches_.back().band != band || batches_.back().mesh_id != mesh.id ||
       batches_.back().number != number) {
     batches_.push_back(
-        {band, mesh.id, number, store_->chunk(gl_, mesh, number), chosen_.size(), 0});
+        {band, mesh.id, number, store_->chunk(gl_, mesh, number), indices_.size(), 0});
   }
   batches_.back().count += count;
-  for (std::uint32_t i = first; i < first + count; ++i) chosen_.push_back(i);
+  for (std::uint32_t i = first; i < first + count; ++i) indices_.push_back(i);
 }
 
 // Draws what was put together, and reads it back.
@@ -212,7 +213,7 @@ void GlRenderer::run_pass(DrawTimes& times) {
                        differences_.data());
   throw_on_gl_error(gl_, "drawing");
   batches_.clear();
-  chosen_.clear();
+  indices_.clear();
 }
 
 void GlRenderer::finish_pass(DrawTimes& times) {
@@ -232,9 +233,7 @@ void GlRenderer::set_last_band_aside(DrawTimes& times) {
   bands_.pop_back();
   for (const Band& band : bands_) resolve(band);
   sums_.resize(last.pixels());
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    sums_[i] += static_cast<float>(differences_[last.place + i]) * kPixelsPerUnit;
-  }
+  add_units(std::span(differences_).subspan(last.place, last.pixels()), sums_);
   last.place = 0;
   bands_.assign(1, last);
   used_ = last.pixels();
@@ -242,13 +241,10 @@ void GlRenderer::set_last_band_aside(DrawTimes& times) {
 
 void GlRenderer::prepare_buffers() {
   gl_.UseProgram(program_.name);
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, kGlChosenBinding, chosen_buffer_);
-  gl_.BufferData(GL_SHADER_STORAGE_BUFFER,
-                 bytes_of<std::uint32_t>(std::max<std::size_t>(chosen_.size(), 1)), nullptr,
-                 GL_STREAM_DRAW);
-  gl_.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::uint32_t>(chosen_.size()),
-                    chosen_.data());
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, kGlDifferencesBinding, differences_buffer_);
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, gl_shader::kIndicesBinding, index_buffer_);
+  gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::uint32_t>(indices_.size()),
+                 indices_.data(), GL_STREAM_DRAW);
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, gl_shader::kDifferencesBinding, differences_buffer_);
   if (differences_size_ < used_) {
     gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::int32_t>(used_), nullptr,
                    GL_DYNAMIC_READ);
@@ -263,10 +259,11 @@ void GlRenderer::run_batches() {
   for (const Batch& batch : batches_) {
     if (batch.band != last_band) set_band(bands_[batch.band]);
     last_band = batch.band;
-    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, kGlTrapezoidsBinding, batch.chunk->buffer);
+    gl_.BindTexture(GL_TEXTURE_BUFFER, batch.chunk->texture);
     gl_.Uniform1ui(program_.first, static_cast<GLuint>(batch.first));
-    gl_.Uniform1ui(program_.count, static_cast<GLuint>(batch.count));
-    gl_.DispatchCompute((2 * static_cast<GLuint>(batch.count) + kGlGroup - 1) / kGlGroup, 1, 1);
+    const auto count = static_cast<GLuint>(batch.count);
+    gl_.Uniform1ui(program_.count, count);
+    gl_.DispatchCompute((2 * count + gl_shader::kGroup - 1) / gl_shader::kGroup, 1, 1);
   }
   gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, differences_buffer_);
@@ -282,20 +279,21 @@ void GlRenderer::set_band(const Band& band) {
   gl_.Uniform1i(program_.place, static_cast<GLint>(band.place));
 }
 
-// Rows of one band, which is the first one if there are sums.
+// Sums of earlier passes are those of the band that is resolved first.
 void GlRenderer::resolve(const Band& band) {
   const auto width = static_cast<std::size_t>(band.task->view.width);
-  row_.resize(width);
   const std::int32_t* differences = differences_.data() + band.place;
+  const float* sums = sums_.data();
   for (int row = 0; row < band.rows; ++row, differences += width) {
-    for (std::size_t i = 0; i < width; ++i) {
-      row_[i] = static_cast<float>(differences[i]) * kPixelsPerUnit;
+    std::uint8_t* levels = band.task->out->row_begin(band.first_row + row);
+    if (sums_.empty()) {
+      sum_to_levels({differences, width}, gl_shader::kUnitsPerPixel, levels);
+      continue;
     }
-    if (!sums_.empty()) {
-      const float* sums = sums_.data() + static_cast<std::size_t>(row) * width;
-      for (std::size_t i = 0; i < width; ++i) row_[i] += sums[i];
-    }
-    sum_to_levels(row_, band.task->out->row_begin(band.first_row + row));
+    row_.assign(sums, sums + width);
+    add_units({differences, width}, row_);
+    sum_to_levels(row_, levels);
+    sums += width;
   }
   sums_.clear();
 }

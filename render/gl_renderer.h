@@ -1,4 +1,4 @@
-// Draws coverage with OpenGL: exact area, not multisampling. See gl_shaders.h for how.
+// Draws coverage with OpenGL: exact area, not multisampling. See gl_shader.h for how.
 //
 // A compute shader adds areas up as integers in a buffer, which is read back and summed up to 8
 // bits here. Rasterizing strips and points with additive blending gives the same pictures, but
@@ -63,7 +63,7 @@ class GlRenderer final : public CoverageRenderer {
     }
   };
 
-  // Some of chosen_, drawn by one call: trapezoids of one chunk of a mesh.
+  // Some of indices_, drawn by one call: trapezoids of one chunk of a mesh.
   struct Batch {
     std::size_t band = 0;
     std::uint64_t mesh_id = 0;
@@ -74,7 +74,6 @@ class GlRenderer final : public CoverageRenderer {
   };
 
   Program make_program(const std::string& source);
-  void make_buffers();
   void delete_objects() noexcept;
   void draw_task(const CoverageTask& task, DrawTimes& times);
   void draw_band(Band band, DrawTimes& times);
@@ -92,12 +91,12 @@ class GlRenderer final : public CoverageRenderer {
   const GlFunctions& gl_;
   Program program_;
   std::size_t room_ = 0;  // pixels in a pass
-  GLuint chosen_buffer_ = 0;
+  GLuint index_buffer_ = 0;
   GLuint differences_buffer_ = 0;
   std::size_t differences_size_ = 0;  // pixels
 
   // Of the pass being put together.
-  std::vector<std::uint32_t> chosen_;
+  std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Band> bands_;
   std::size_t used_ = 0;                   // pixels
