@@ -11,6 +11,7 @@
   F(ATTACHSHADER, AttachShader)             \
   F(BINDBUFFER, BindBuffer)                 \
   F(BINDBUFFERBASE, BindBufferBase)         \
+  F(BINDBUFFERRANGE, BindBufferRange)       \
   F(BINDTEXTURE, BindTexture)               \
   F(BUFFERDATA, BufferData)                 \
   F(BUFFERSUBDATA, BufferSubData)           \
