@@ -27,7 +27,6 @@
   F(FINISH, Finish)                         \
   F(GENBUFFERS, GenBuffers)                 \
   F(GENTEXTURES, GenTextures)               \
-  F(GETBUFFERSUBDATA, GetBufferSubData)     \
   F(GETERROR, GetError)                     \
   F(GETINTEGERV, GetIntegerv)               \
   F(GETPROGRAMINFOLOG, GetProgramInfoLog)   \

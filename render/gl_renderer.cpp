@@ -199,7 +199,7 @@ void GlRenderer::choose(const MeshView& mesh, std::uint32_t number, std::uint32_
   for (std::uint32_t i = first; i < first + count; ++i) indices_.push_back(i);
 }
 
-// Draws what was put together, and reads it back.
+// Draws what was put together, and maps it.
 void GlRenderer::run_pass(DrawTimes& times) {
   {
     const Stopwatch stopwatch(times.draw_ms);
@@ -208,12 +208,20 @@ void GlRenderer::run_pass(DrawTimes& times) {
     gl_.Finish();
   }
   const Stopwatch stopwatch(times.read_ms);
-  differences_.resize(used_);
-  gl_.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::int32_t>(used_),
-                       differences_.data());
-  throw_on_gl_error(gl_, "drawing");
   batches_.clear();
   indices_.clear();
+  const auto* differences = static_cast<const std::int32_t*>(gl_.MapBufferRange(
+      GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::int32_t>(used_), GL_MAP_READ_BIT));
+  throw_on_gl_error(gl_, "drawing");
+  if (differences == nullptr) throw std::runtime_error("OpenGL: what was drawn cannot be read");
+  differences_ = {differences, used_};
+}
+
+void GlRenderer::unmap() {
+  differences_ = {};
+  if (gl_.UnmapBuffer(GL_SHADER_STORAGE_BUFFER) != GL_TRUE) {
+    throw std::runtime_error("OpenGL: what was drawn was lost while it was read");
+  }
 }
 
 void GlRenderer::finish_pass(DrawTimes& times) {
@@ -221,6 +229,7 @@ void GlRenderer::finish_pass(DrawTimes& times) {
   run_pass(times);
   const Stopwatch stopwatch(times.resolve_ms);
   for (const Band& band : bands_) resolve(band);
+  unmap();
   bands_.clear();
   used_ = 0;
 }
@@ -233,7 +242,8 @@ void GlRenderer::set_last_band_aside(DrawTimes& times) {
   bands_.pop_back();
   for (const Band& band : bands_) resolve(band);
   sums_.resize(last.pixels());
-  add_units(std::span(differences_).subspan(last.place, last.pixels()), sums_);
+  add_units(differences_.subspan(last.place, last.pixels()), sums_);
+  unmap();
   last.place = 0;
   bands_.assign(1, last);
   used_ = last.pixels();
@@ -247,7 +257,7 @@ void GlRenderer::prepare_buffers() {
   gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, gl_shader::kDifferencesBinding, differences_buffer_);
   if (differences_size_ < used_) {
     gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::int32_t>(used_), nullptr,
-                   GL_DYNAMIC_READ);
+                   GL_STREAM_COPY);
     differences_size_ = used_;
   }
   gl_.ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32I, 0, bytes_of<std::int32_t>(used_),
@@ -282,16 +292,17 @@ void GlRenderer::set_band(const Band& band) {
 // Sums of earlier passes are those of the band that is resolved first.
 void GlRenderer::resolve(const Band& band) {
   const auto width = static_cast<std::size_t>(band.task->view.width);
-  const std::int32_t* differences = differences_.data() + band.place;
+  std::span<const std::int32_t> differences = differences_.subspan(band.place, band.pixels());
   const float* sums = sums_.data();
-  for (int row = 0; row < band.rows; ++row, differences += width) {
+  for (int row = 0; row < band.rows; ++row) {
+    const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
     std::uint8_t* levels = band.task->out->row_begin(band.first_row + row);
     if (sums_.empty()) {
-      sum_to_levels({differences, width}, gl_shader::kUnitsPerPixel, levels);
+      sum_to_levels(of_row, gl_shader::kUnitsPerPixel, levels);
       continue;
     }
     row_.assign(sums, sums + width);
-    add_units({differences, width}, row_);
+    add_units(of_row, row_);
     sum_to_levels(row_, levels);
     sums += width;
   }

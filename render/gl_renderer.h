@@ -79,6 +79,7 @@ class GlRenderer final : public CoverageRenderer {
   void draw_band(Band band, DrawTimes& times);
   void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count);
   void run_pass(DrawTimes& times);
+  void unmap();
   void finish_pass(DrawTimes& times);
   void set_last_band_aside(DrawTimes& times);
   void prepare_buffers();
@@ -99,9 +100,9 @@ class GlRenderer final : public CoverageRenderer {
   std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Band> bands_;
-  std::size_t used_ = 0;                   // pixels
-  std::vector<std::int32_t> differences_;  // read back
-  std::vector<float> sums_;                // of earlier passes, of the first band; or empty
+  std::size_t used_ = 0;                       // pixels
+  std::span<const std::int32_t> differences_;  // mapped
+  std::vector<float> sums_;                    // of earlier passes, of the first band; or empty
   std::vector<float> row_;
 };
 
