@@ -74,31 +74,29 @@ namespace {
 
 constexpr std::size_t kBlock = 8;  // pixels that are looked at together
 
-struct FloatLevel {
-  std::uint8_t operator()(float sum) const {
-    const float share = std::min(std::max(sum, 0.0f), 1.0f);
-    return static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
-  }
-};
+template <class Element>
+using Block = std::array<Element, kBlock>;
 
-struct IntegerLevel {
-  std::int32_t whole;
-  float levels_per_unit = 255.0f / static_cast<float>(whole);
+// A coverage of 1 is `whole`.
+template <class Element>
+struct ToLevel {
+  Element whole;
+  float levels = 255.0f / static_cast<float>(whole);
 
-  std::uint8_t operator()(std::int32_t sum) const {
-    const auto part = static_cast<float>(std::min(std::max(sum, 0), whole));
-    return static_cast<std::uint8_t>(static_cast<std::int32_t>(part * levels_per_unit + 0.5f));
+  std::uint8_t operator()(Element sum) const {
+    const auto within = static_cast<float>(std::min(std::max(sum, Element{0}), whole));
+    return static_cast<std::uint8_t>(static_cast<std::int32_t>(within * levels + 0.5f));
   }
 };
 
 // Sums of the first 1, 2, ... 8 elements, by a tree: one after the other each would wait for the
 // one before.
 template <class Element>
-void sum_up(const Element* d, std::array<Element, kBlock>& sums) {
+Block<Element> sums_of(const Block<Element>& d) {
   const Element to_1 = d[0] + d[1];
   const Element to_3 = to_1 + (d[2] + d[3]);
   const Element from_4_to_5 = d[4] + d[5];
-  sums = {d[0],
+  return {d[0],
           to_1,
           to_1 + d[2],
           to_3,
@@ -108,42 +106,51 @@ void sum_up(const Element* d, std::array<Element, kBlock>& sums) {
           to_3 + (from_4_to_5 + (d[6] + d[7]))};
 }
 
-// Between the boundaries of polygons nothing changes.
 template <class Element>
 bool is_all_zero(const Element* differences) {
-  std::array<std::uint64_t, kBlock / 2> pairs;
-  static_assert(sizeof pairs == kBlock * sizeof(Element));
-  std::memcpy(pairs.data(), differences, sizeof pairs);
-  return (pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0;
+  const auto pair = [differences](std::size_t i) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, differences + 2 * i, sizeof bits);
+    return bits;
+  };
+  return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
 }
 
-template <class Element, class ToLevel>
-void sum_to_levels_by(const ToLevel& to_level, std::span<const Element> differences,
-                      std::uint8_t* levels) {
+// Between the boundaries of polygons nothing changes.
+template <class Element>
+void take_levels_by(const ToLevel<Element>& to_level, std::span<Element> differences,
+                    std::uint8_t* levels) {
   Element before = 0;
+  std::uint8_t level_before = 0;
   std::size_t i = 0;
-  std::array<Element, kBlock> sums;
   for (; i + kBlock <= differences.size(); i += kBlock) {
-    if (is_all_zero(differences.data() + i)) {
-      std::memset(levels + i, to_level(before), kBlock);
+    Element* begin = differences.data() + i;
+    if (is_all_zero(begin)) {
+      std::memset(levels + i, level_before, kBlock);
       continue;
     }
-    sum_up(differences.data() + i, sums);
+    Block<Element> sums;
+    std::copy_n(begin, kBlock, sums.begin());
+    sums = sums_of(sums);
     for (std::size_t k = 0; k < kBlock; ++k) levels[i + k] = to_level(before + sums[k]);
     before += sums.back();
+    level_before = levels[i + kBlock - 1];
+    std::fill_n(begin, kBlock, Element{0});
   }
-  for (; i < differences.size(); ++i) levels[i] = to_level(before += differences[i]);
+  for (; i < differences.size(); ++i) {
+    levels[i] = to_level(before += differences[i]);
+    differences[i] = 0;
+  }
 }
 
 }  // namespace
 
-void sum_to_levels(std::span<const float> differences, std::uint8_t* levels) {
-  sum_to_levels_by(FloatLevel{}, differences, levels);
+void take_levels(std::span<float> differences, std::uint8_t* levels) {
+  take_levels_by(ToLevel<float>{1}, differences, levels);
 }
 
-void sum_to_levels(std::span<const std::int32_t> differences, std::int32_t whole,
-                   std::uint8_t* levels) {
-  sum_to_levels_by(IntegerLevel{whole}, differences, levels);
+void take_levels(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* levels) {
+  take_levels_by(ToLevel<std::int32_t>{whole}, differences, levels);
 }
 
 }  // namespace trapeze

@@ -33,10 +33,11 @@ GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
   throw std::runtime_error(std::string("the GL device rejects a shader: ") + log.data());
 }
 
-// Adds what the shader summed up to sums in pixels.
-void add_units(std::span<const std::int32_t> units, std::span<float> pixels) {
+// Adds what the shader summed up to sums in pixels, and leaves zeros behind.
+void take_units(std::span<std::int32_t> units, std::span<float> pixels) {
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     pixels[i] += static_cast<float>(units[i]) * (1.0f / gl_shader::kUnitsPerPixel);
+    units[i] = 0;
   }
 }
 
@@ -141,6 +142,7 @@ DrawTimes GlRenderer::draw(std::span<const CoverageTask> tasks) {
   const CurrentContext current(*context_);
   store_->delete_forgotten(gl_);
   // Of a draw that failed.
+  if (used_ > 0) differences_size_ = 0;
   bands_.clear();
   batches_.clear();
   indices_.clear();
@@ -210,8 +212,9 @@ void GlRenderer::run_pass(DrawTimes& times) {
   const Stopwatch stopwatch(times.read_ms);
   batches_.clear();
   indices_.clear();
-  const auto* differences = static_cast<const std::int32_t*>(gl_.MapBufferRange(
-      GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::int32_t>(used_), GL_MAP_READ_BIT));
+  auto* differences = static_cast<std::int32_t*>(
+      gl_.MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::int32_t>(used_),
+                         GL_MAP_READ_BIT | GL_MAP_WRITE_BIT));
   throw_on_gl_error(gl_, "drawing");
   if (differences == nullptr) throw std::runtime_error("OpenGL: what was drawn cannot be read");
   differences_ = {differences, used_};
@@ -242,7 +245,7 @@ void GlRenderer::set_last_band_aside(DrawTimes& times) {
   bands_.pop_back();
   for (const Band& band : bands_) resolve(band);
   sums_.resize(last.pixels());
-  add_units(differences_.subspan(last.place, last.pixels()), sums_);
+  take_units(differences_.subspan(last.place, last.pixels()), sums_);
   unmap();
   last.place = 0;
   bands_.assign(1, last);
@@ -255,13 +258,11 @@ void GlRenderer::prepare_buffers() {
   gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::uint32_t>(indices_.size()),
                  indices_.data(), GL_STREAM_DRAW);
   gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, gl_shader::kDifferencesBinding, differences_buffer_);
-  if (differences_size_ < used_) {
-    gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::int32_t>(used_), nullptr,
-                   GL_STREAM_COPY);
-    differences_size_ = used_;
-  }
+  if (differences_size_ >= used_) return;
+  gl_.BufferData(GL_SHADER_STORAGE_BUFFER, bytes_of<std::int32_t>(used_), nullptr, GL_STREAM_COPY);
   gl_.ClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32I, 0, bytes_of<std::int32_t>(used_),
                          GL_RED_INTEGER, GL_INT, nullptr);
+  differences_size_ = used_;
 }
 
 void GlRenderer::run_batches() {
@@ -292,18 +293,18 @@ void GlRenderer::set_band(const Band& band) {
 // Sums of earlier passes are those of the band that is resolved first.
 void GlRenderer::resolve(const Band& band) {
   const auto width = static_cast<std::size_t>(band.task->view.width);
-  std::span<const std::int32_t> differences = differences_.subspan(band.place, band.pixels());
+  const std::span<std::int32_t> differences = differences_.subspan(band.place, band.pixels());
   const float* sums = sums_.data();
   for (int row = 0; row < band.rows; ++row) {
     const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
     std::uint8_t* levels = band.task->out->row_begin(band.first_row + row);
     if (sums_.empty()) {
-      sum_to_levels(of_row, gl_shader::kUnitsPerPixel, levels);
+      take_levels(of_row, gl_shader::kUnitsPerPixel, levels);
       continue;
     }
     row_.assign(sums, sums + width);
-    add_units(of_row, row_);
-    sum_to_levels(row_, levels);
+    take_units(of_row, row_);
+    take_levels(row_, levels);
     sums += width;
   }
   sums_.clear();

@@ -94,15 +94,15 @@ class GlRenderer final : public CoverageRenderer {
   std::size_t room_ = 0;  // pixels in a pass
   GLuint index_buffer_ = 0;
   GLuint differences_buffer_ = 0;
-  std::size_t differences_size_ = 0;  // pixels
+  std::size_t differences_size_ = 0;  // pixels; all are zero between passes
 
   // Of the pass being put together.
   std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Band> bands_;
-  std::size_t used_ = 0;                       // pixels
-  std::span<const std::int32_t> differences_;  // mapped
-  std::vector<float> sums_;                    // of earlier passes, of the first band; or empty
+  std::size_t used_ = 0;                 // pixels
+  std::span<std::int32_t> differences_;  // mapped
+  std::vector<float> sums_;              // of earlier passes, of the first band; or empty
   std::vector<float> row_;
 };
 
