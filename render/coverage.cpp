@@ -72,38 +72,33 @@ bool Coverage::is_all(std::uint8_t level) const {
 
 namespace {
 
+// Four pixels at once; compilers make vector instructions of it.
+template <class Element>
+struct Four {
+  typedef Element Type __attribute__((vector_size(4 * sizeof(Element))));
+};
+template <class Element>
+using FourOf = typename Four<Element>::Type;
+
 constexpr std::size_t kBlock = 8;  // pixels that are looked at together
 
+// Sums of the first 1, 2, 3, 4 elements.
 template <class Element>
-using Block = std::array<Element, kBlock>;
+FourOf<Element> sums_of(FourOf<Element> differences) {
+  const FourOf<Element> none{};
+  const FourOf<Element> pairs =
+      differences + __builtin_shufflevector(none, differences, 0, 4, 5, 6);
+  return pairs + __builtin_shufflevector(none, pairs, 0, 1, 4, 5);
+}
 
-// A coverage of 1 is `whole`.
-template <class Element>
-struct ToLevel {
-  Element whole;
-  float levels = 255.0f / static_cast<float>(whole);
-
-  std::uint8_t operator()(Element sum) const {
-    const auto within = static_cast<float>(std::min(std::max(sum, Element{0}), whole));
-    return static_cast<std::uint8_t>(static_cast<std::int32_t>(within * levels + 0.5f));
-  }
-};
-
-// Sums of the first 1, 2, ... 8 elements, by a tree: one after the other each would wait for the
-// one before.
-template <class Element>
-Block<Element> sums_of(const Block<Element>& d) {
-  const Element to_1 = d[0] + d[1];
-  const Element to_3 = to_1 + (d[2] + d[3]);
-  const Element from_4_to_5 = d[4] + d[5];
-  return {d[0],
-          to_1,
-          to_1 + d[2],
-          to_3,
-          to_3 + d[4],
-          to_3 + from_4_to_5,
-          to_3 + (from_4_to_5 + d[6]),
-          to_3 + (from_4_to_5 + (d[6] + d[7]))};
+void put_levels(FourOf<float> shares_of_255, std::uint8_t* levels) {
+  const FourOf<float> none{};
+  const FourOf<float> all = none + 255.0f;
+  shares_of_255 = shares_of_255 < none ? none : shares_of_255;
+  shares_of_255 = shares_of_255 > all ? all : shares_of_255;
+  const auto rounded = __builtin_convertvector(shares_of_255 + 0.5f, FourOf<std::int32_t>);
+  const auto bytes = __builtin_convertvector(rounded, FourOf<std::uint8_t>);
+  std::memcpy(levels, &bytes, sizeof bytes);
 }
 
 template <class Element>
@@ -118,10 +113,18 @@ bool is_all_zero(const Element* differences) {
 
 // Between the boundaries of polygons nothing changes.
 template <class Element>
-void take_levels_by(const ToLevel<Element>& to_level, std::span<Element> differences,
-                    std::uint8_t* levels) {
-  Element before = 0;
+void take_levels_by(Element whole, std::span<Element> differences, std::uint8_t* levels) {
+  const float levels_per_unit = 255.0f / static_cast<float>(whole);
+  FourOf<Element> before{};
   std::uint8_t level_before = 0;
+  const auto take_four = [&](Element* from, std::uint8_t* to) {
+    FourOf<Element> sums;
+    std::memcpy(&sums, from, sizeof sums);
+    sums = before + sums_of<Element>(sums);
+    before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
+    put_levels(__builtin_convertvector(sums, FourOf<float>) * levels_per_unit, to);
+    std::memset(from, 0, sizeof sums);
+  };
   std::size_t i = 0;
   for (; i + kBlock <= differences.size(); i += kBlock) {
     Element* begin = differences.data() + i;
@@ -129,28 +132,29 @@ void take_levels_by(const ToLevel<Element>& to_level, std::span<Element> differe
       std::memset(levels + i, level_before, kBlock);
       continue;
     }
-    Block<Element> sums;
-    std::copy_n(begin, kBlock, sums.begin());
-    sums = sums_of(sums);
-    for (std::size_t k = 0; k < kBlock; ++k) levels[i + k] = to_level(before + sums[k]);
-    before += sums.back();
+    take_four(begin, levels + i);
+    take_four(begin + 4, levels + i + 4);
     level_before = levels[i + kBlock - 1];
-    std::fill_n(begin, kBlock, Element{0});
   }
-  for (; i < differences.size(); ++i) {
-    levels[i] = to_level(before += differences[i]);
-    differences[i] = 0;
+  for (; i < differences.size(); i += 4) {
+    const std::size_t count = std::min<std::size_t>(4, differences.size() - i);
+    std::array<Element, 4> rest{};
+    std::array<std::uint8_t, 4> levels_of_rest;
+    std::copy_n(differences.data() + i, count, rest.data());
+    take_four(rest.data(), levels_of_rest.data());
+    std::copy_n(levels_of_rest.data(), count, levels + i);
+    std::fill_n(differences.data() + i, count, Element{0});
   }
 }
 
 }  // namespace
 
 void take_levels(std::span<float> differences, std::uint8_t* levels) {
-  take_levels_by(ToLevel<float>{1}, differences, levels);
+  take_levels_by(1.0f, differences, levels);
 }
 
 void take_levels(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* levels) {
-  take_levels_by(ToLevel<std::int32_t>{whole}, differences, levels);
+  take_levels_by(whole, differences, levels);
 }
 
 }  // namespace trapeze

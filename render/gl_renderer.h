@@ -4,8 +4,9 @@
 // bits here. Rasterizing strips and points with additive blending gives the same pictures, but
 // costs a software device ten times as much for each trapezoid.
 //
-// Tasks that are drawn together share one buffer, one after the other: the fixed cost of a pass,
-// which is what a light tile costs, is paid once for all.
+// On a GPU tasks that are drawn together share one buffer, one after the other: the fixed cost of a
+// pass, which is what a light tile costs, is paid once for all. A processor draws one task at a
+// time: it pays little for a pass, and the differences of one picture stay in its cache.
 #pragma once
 
 #include <array>
@@ -32,7 +33,9 @@ class GlRenderer final : public CoverageRenderer {
 
   using CoverageRenderer::draw;
   DrawTimes draw(std::span<const CoverageTask> tasks) override;
-  bool gains_by_company() const override { return true; }
+  bool gains_by_company() const override { return gains_by_company_; }
+  /// Draws tasks together, or one at a time, whatever suits the device.
+  void set_company(bool gains) { gains_by_company_ = gains; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
   std::string description() const override { return context_->info().text(); }
@@ -90,6 +93,7 @@ class GlRenderer final : public CoverageRenderer {
   std::unique_ptr<GlContext> context_;
   std::shared_ptr<GlMeshStore> store_;
   const GlFunctions& gl_;
+  bool gains_by_company_;
   Program program_;
   std::size_t room_ = 0;  // pixels in a pass
   GLuint index_buffer_ = 0;

@@ -254,8 +254,8 @@ TEST_P(GlRendererTest, DrawsTheSameBytesInWhateverOrder) {
   }
 }
 
-// Two pictures, the second one of more pixels than are drawn in one pass.
-TEST_P(GlRendererTest, DrawsLargePicturesInBandsLikeTheReference) {
+// Three pictures, the second one of more pixels than are drawn in one pass.
+TEST_P(GlRendererTest, DrawsSeveralAndLargePicturesLikeTheReference) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
@@ -264,14 +264,19 @@ TEST_P(GlRendererTest, DrawsLargePicturesInBandsLikeTheReference) {
   const MeshPart part{mesh.view(), {&all, 1}};
   Coverage small;
   Coverage large;
+  Coverage narrow;
   const CoverageTask tasks[] = {{{&part, 1}, {0, 0, 30, 256, 256}, &small},
-                                {{&part, 1}, {0, 0, 3.5, 2500, 2300}, &large}};
-  renderer().draw(tasks);
-  for (const CoverageTask& task : tasks) {
-    Coverage expected;
-    reference_.draw(task.parts, task.view, expected);
-    const Difference difference = compare_coverages(expected, *task.out);
-    EXPECT_TRUE(difference.is_within_bounds()) << difference;
+                                {{&part, 1}, {0, 0, 3.5, 2500, 2300}, &large},
+                                {{&part, 1}, {700, 90, 9, 33, 301}, &narrow}};
+  for (const bool together : {true, false}) {
+    renderer().set_company(together);
+    renderer().draw(tasks);
+    for (const CoverageTask& task : tasks) {
+      Coverage expected;
+      reference_.draw(task.parts, task.view, expected);
+      const Difference difference = compare_coverages(expected, *task.out);
+      EXPECT_TRUE(difference.is_within_bounds()) << together << ", " << difference;
+    }
   }
 }
 
