@@ -186,6 +186,8 @@ class Composer::Canvas {
       return;
     }
     mixed_.clear();
+    rows_.clear();
+    row_of_.assign(mixtures_.size(), kNoRow);
     const std::uint8_t* levels = coverage->pixels().data();
     const std::size_t whole_blocks = size_ / kBlock;
     for (std::size_t i = 0; i < whole_blocks; ++i, levels += kBlock) paint_block(i, levels, mix);
@@ -273,6 +275,8 @@ class Composer::Canvas {
  private:
   static constexpr std::uint32_t kMixed = 0xffffffff;  // a block of several mixtures
   static constexpr std::uint16_t kNoIndex = 0xffff;    // a mixture that was not met yet
+  static constexpr std::uint32_t kNoRow = 0xffffffff;
+  static constexpr std::size_t kMostRows = 1024;  // a megabyte
 
   template <typename Mix>
   void paint_block(std::size_t i, const std::uint8_t* levels, const Mix& mix) {
@@ -294,8 +298,23 @@ class Composer::Canvas {
   // What becomes of a mixture at that level.
   template <typename Mix>
   std::uint32_t mixture_for(std::uint32_t below, std::uint8_t level, const Mix& mix) {
-    return number_of(std::uint64_t{below} << 8 | level,
-                     [&] { return mix(mixtures_[below], level); });
+    std::uint32_t& row = row_of_[below];
+    if (row == kNoRow) {
+      if (rows_.size() == kMostRows * kLevels) {
+        return number_of(std::uint64_t{below} << 8 | level,
+                         [&] { return mix(mixtures_[below], level); });
+      }
+      row = static_cast<std::uint32_t>(rows_.size());
+      rows_.resize(rows_.size() + kLevels);
+    }
+    std::uint32_t& number = rows_[row + level];
+    if (number == 0) number = add(mix(mixtures_[below], level));
+    return number;
+  }
+
+  std::uint32_t add(const Paint& mixture) {
+    mixtures_.push_back(mixture);
+    return static_cast<std::uint32_t>(mixtures_.size() - 1);
   }
 
   // The mixture of that key, which make() makes if it is new.
@@ -303,11 +322,7 @@ class Composer::Canvas {
   std::uint32_t number_of(std::uint64_t key, const Make& make) {
     if (key == last_key_) return last_mixture_;
     std::uint32_t& number = mixed_[key];
-    if (number == 0) {
-      number = static_cast<std::uint32_t>(mixtures_.size());
-      const Paint mixture = make();
-      mixtures_.push_back(mixture);
-    }
+    if (number == 0) number = add(make());
     last_key_ = key;
     return last_mixture_ = number;
   }
@@ -370,7 +385,11 @@ class Composer::Canvas {
   std::vector<Paint> mixtures_;        // of number 0: what it begins with
   std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
   std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
-  NumberTable mixed_;                  // by mixture below and level, for the layer of now
+  // For the layer of now: what becomes of a mixture at each level, and where to look for that by
+  // mixture; of mixtures beyond the first so many, by mixture below and level.
+  std::vector<std::uint32_t> rows_;
+  std::vector<std::uint32_t> row_of_;
+  NumberTable mixed_;
   std::uint64_t last_key_ = 0;
   std::uint32_t last_mixture_ = 0;
   std::vector<std::uint16_t> index_of_;  // by mixture

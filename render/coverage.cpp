@@ -72,28 +72,89 @@ bool Coverage::is_all(std::uint8_t level) const {
 
 namespace {
 
-std::uint8_t to_level(float sum) {
-  const float share = std::min(std::max(sum, 0.0f), 1.0f);
-  return static_cast<std::uint8_t>(static_cast<std::int32_t>(share * 255.0f + 0.5f));
+// Four pixels at once; compilers make vector instructions of it.
+template <class Element>
+struct Four {
+  typedef Element Type __attribute__((vector_size(4 * sizeof(Element))));
+};
+template <class Element>
+using FourOf = typename Four<Element>::Type;
+
+constexpr std::size_t kBlock = 8;  // pixels that are looked at together
+
+// Sums of the first 1, 2, 3, 4 elements.
+template <class Element>
+FourOf<Element> sums_of(FourOf<Element> differences) {
+  const FourOf<Element> none{};
+  const FourOf<Element> pairs =
+      differences + __builtin_shufflevector(none, differences, 0, 4, 5, 6);
+  return pairs + __builtin_shufflevector(none, pairs, 0, 1, 4, 5);
+}
+
+void put_levels(FourOf<float> shares_of_255, std::uint8_t* levels) {
+  const FourOf<float> none{};
+  const FourOf<float> all = none + 255.0f;
+  shares_of_255 = shares_of_255 < none ? none : shares_of_255;
+  shares_of_255 = shares_of_255 > all ? all : shares_of_255;
+  const auto rounded = __builtin_convertvector(shares_of_255 + 0.5f, FourOf<std::int32_t>);
+  const auto bytes = __builtin_convertvector(rounded, FourOf<std::uint8_t>);
+  std::memcpy(levels, &bytes, sizeof bytes);
+}
+
+template <class Element>
+bool is_all_zero(const Element* differences) {
+  const auto pair = [differences](std::size_t i) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, differences + 2 * i, sizeof bits);
+    return bits;
+  };
+  return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
+}
+
+// Between the boundaries of polygons nothing changes.
+template <class Element>
+void take_levels_by(Element whole, std::span<Element> differences, std::uint8_t* levels) {
+  const float levels_per_unit = 255.0f / static_cast<float>(whole);
+  FourOf<Element> before{};
+  std::uint8_t level_before = 0;
+  const auto take_four = [&](Element* from, std::uint8_t* to) {
+    FourOf<Element> sums;
+    std::memcpy(&sums, from, sizeof sums);
+    sums = before + sums_of<Element>(sums);
+    before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
+    put_levels(__builtin_convertvector(sums, FourOf<float>) * levels_per_unit, to);
+    std::memset(from, 0, sizeof sums);
+  };
+  std::size_t i = 0;
+  for (; i + kBlock <= differences.size(); i += kBlock) {
+    Element* begin = differences.data() + i;
+    if (is_all_zero(begin)) {
+      std::memset(levels + i, level_before, kBlock);
+      continue;
+    }
+    take_four(begin, levels + i);
+    take_four(begin + 4, levels + i + 4);
+    level_before = levels[i + kBlock - 1];
+  }
+  for (; i < differences.size(); i += 4) {
+    const std::size_t count = std::min<std::size_t>(4, differences.size() - i);
+    std::array<Element, 4> rest{};
+    std::array<std::uint8_t, 4> levels_of_rest;
+    std::copy_n(differences.data() + i, count, rest.data());
+    take_four(rest.data(), levels_of_rest.data());
+    std::copy_n(levels_of_rest.data(), count, levels + i);
+    std::fill_n(differences.data() + i, count, Element{0});
+  }
 }
 
 }  // namespace
 
-// Looks at eight pixels at once: between the boundaries of polygons nothing changes.
-void sum_to_levels(std::span<const float> differences, std::uint8_t* levels) {
-  constexpr std::size_t kBlock = 8;
-  float sum = 0;
-  std::size_t i = 0;
-  for (; i + kBlock <= differences.size(); i += kBlock) {
-    std::array<std::uint64_t, kBlock / 2> pairs;
-    std::memcpy(pairs.data(), differences.data() + i, sizeof pairs);
-    if ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0) {
-      std::memset(levels + i, to_level(sum), kBlock);
-      continue;
-    }
-    for (std::size_t k = i; k < i + kBlock; ++k) levels[k] = to_level(sum += differences[k]);
-  }
-  for (; i < differences.size(); ++i) levels[i] = to_level(sum += differences[i]);
+void take_levels(std::span<float> differences, std::uint8_t* levels) {
+  take_levels_by(1.0f, differences, levels);
+}
+
+void take_levels(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* levels) {
+  take_levels_by(whole, differences, levels);
 }
 
 }  // namespace trapeze

@@ -74,8 +74,11 @@ class Coverage {
 };
 
 /// The end of a row: from differences of covered area between each pixel and the one west of it, 1
-/// a whole pixel, to as many levels of coverage, rounded once.
-void sum_to_levels(std::span<const float> differences, std::uint8_t* levels);
+/// a whole pixel, to as many levels of coverage, rounded once. Leaves zeros behind.
+void take_levels(std::span<float> differences, std::uint8_t* levels);
+/// The same with differences that are whole numbers, `whole` for a whole pixel; all sums fit into
+/// 32 bits.
+void take_levels(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* levels);
 
 /// Some trapezoids of one mesh; looks at memory of the caller. The ranges lie within the mesh.
 struct MeshPart {

@@ -372,6 +372,13 @@ std::string ContextCandidate::text() const {
   return text;
 }
 
+bool ContextInfo::is_software() const {
+  const std::array<std::string_view, 3> names{"llvmpipe", "softpipe", "swrast"};
+  return std::any_of(names.begin(), names.end(), [this](std::string_view name) {
+    return renderer.find(name) != std::string::npos;
+  });
+}
+
 std::string ContextInfo::text() const {
   return candidate.text() + ": " + renderer + " by " + vendor + ", OpenGL " + version;
 }

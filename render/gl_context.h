@@ -37,6 +37,8 @@ struct ContextInfo {
   std::string renderer;
   std::string version;
 
+  /// True if the processor draws.
+  bool is_software() const;
   /// One line for logs.
   std::string text() const;
 };

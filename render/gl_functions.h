@@ -7,57 +7,46 @@
 #include <GL/glcorearb.h>
 
 // TYPE is the middle of the function pointer's type name, NAME follows "gl".
-#define TRAPEZE_GL_FUNCTIONS(F)                       \
-  F(ATTACHSHADER, AttachShader)                       \
-  F(BINDBUFFER, BindBuffer)                           \
-  F(BINDFRAMEBUFFER, BindFramebuffer)                 \
-  F(BINDRENDERBUFFER, BindRenderbuffer)               \
-  F(BINDTEXTURE, BindTexture)                         \
-  F(BINDVERTEXARRAY, BindVertexArray)                 \
-  F(BLENDFUNC, BlendFunc)                             \
-  F(BUFFERDATA, BufferData)                           \
-  F(BUFFERSUBDATA, BufferSubData)                     \
-  F(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)   \
-  F(CLEARBUFFERFV, ClearBufferfv)                     \
-  F(COMPILESHADER, CompileShader)                     \
-  F(CREATEPROGRAM, CreateProgram)                     \
-  F(CREATESHADER, CreateShader)                       \
-  F(DELETEBUFFERS, DeleteBuffers)                     \
-  F(DELETEFRAMEBUFFERS, DeleteFramebuffers)           \
-  F(DELETEPROGRAM, DeleteProgram)                     \
-  F(DELETERENDERBUFFERS, DeleteRenderbuffers)         \
-  F(DELETESHADER, DeleteShader)                       \
-  F(DELETETEXTURES, DeleteTextures)                   \
-  F(DELETEVERTEXARRAYS, DeleteVertexArrays)           \
-  F(DRAWELEMENTS, DrawElements)                       \
-  F(ENABLE, Enable)                                   \
-  F(FINISH, Finish)                                   \
-  F(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) \
-  F(GENBUFFERS, GenBuffers)                           \
-  F(GENFRAMEBUFFERS, GenFramebuffers)                 \
-  F(GENRENDERBUFFERS, GenRenderbuffers)               \
-  F(GENTEXTURES, GenTextures)                         \
-  F(GENVERTEXARRAYS, GenVertexArrays)                 \
-  F(GETERROR, GetError)                               \
-  F(GETINTEGERV, GetIntegerv)                         \
-  F(GETPROGRAMINFOLOG, GetProgramInfoLog)             \
-  F(GETPROGRAMIV, GetProgramiv)                       \
-  F(GETSHADERINFOLOG, GetShaderInfoLog)               \
-  F(GETSHADERIV, GetShaderiv)                         \
-  F(GETSTRING, GetString)                             \
-  F(GETUNIFORMLOCATION, GetUniformLocation)           \
-  F(LINKPROGRAM, LinkProgram)                         \
-  F(MAPBUFFERRANGE, MapBufferRange)                   \
-  F(READPIXELS, ReadPixels)                           \
-  F(RENDERBUFFERSTORAGE, RenderbufferStorage)         \
-  F(SHADERSOURCE, ShaderSource)                       \
-  F(TEXBUFFER, TexBuffer)                             \
-  F(UNIFORM1D, Uniform1d)                             \
-  F(UNIFORM1F, Uniform1f)                             \
-  F(UNIFORM2D, Uniform2d)                             \
-  F(UNMAPBUFFER, UnmapBuffer)                         \
-  F(USEPROGRAM, UseProgram)                           \
-  F(VIEWPORT, Viewport)
+#define TRAPEZE_GL_FUNCTIONS(F)             \
+  F(ATTACHSHADER, AttachShader)             \
+  F(BINDBUFFER, BindBuffer)                 \
+  F(BINDBUFFERBASE, BindBufferBase)         \
+  F(BINDBUFFERRANGE, BindBufferRange)       \
+  F(BINDTEXTURE, BindTexture)               \
+  F(BUFFERDATA, BufferData)                 \
+  F(BUFFERSUBDATA, BufferSubData)           \
+  F(CLEARBUFFERSUBDATA, ClearBufferSubData) \
+  F(COMPILESHADER, CompileShader)           \
+  F(CREATEPROGRAM, CreateProgram)           \
+  F(CREATESHADER, CreateShader)             \
+  F(DELETEBUFFERS, DeleteBuffers)           \
+  F(DELETEPROGRAM, DeleteProgram)           \
+  F(DELETESHADER, DeleteShader)             \
+  F(DELETETEXTURES, DeleteTextures)         \
+  F(DISPATCHCOMPUTE, DispatchCompute)       \
+  F(FINISH, Finish)                         \
+  F(GENBUFFERS, GenBuffers)                 \
+  F(GENTEXTURES, GenTextures)               \
+  F(GETERROR, GetError)                     \
+  F(GETINTEGERV, GetIntegerv)               \
+  F(GETPROGRAMINFOLOG, GetProgramInfoLog)   \
+  F(GETPROGRAMIV, GetProgramiv)             \
+  F(GETSHADERINFOLOG, GetShaderInfoLog)     \
+  F(GETSHADERIV, GetShaderiv)               \
+  F(GETSTRING, GetString)                   \
+  F(GETUNIFORMLOCATION, GetUniformLocation) \
+  F(LINKPROGRAM, LinkProgram)               \
+  F(MAPBUFFERRANGE, MapBufferRange)         \
+  F(MEMORYBARRIER, MemoryBarrier)           \
+  F(SHADERSOURCE, ShaderSource)             \
+  F(TEXBUFFER, TexBuffer)                   \
+  F(UNIFORM1D, Uniform1d)                   \
+  F(UNIFORM1I, Uniform1i)                   \
+  F(UNIFORM1UI, Uniform1ui)                 \
+  F(UNIFORM2D, Uniform2d)                   \
+  F(UNIFORM2I, Uniform2i)                   \
+  F(UNMAPBUFFER, UnmapBuffer)               \
+  F(USEPROGRAM, UseProgram)
 
 namespace trapeze {
 

@@ -1,17 +1,14 @@
 #include "render/gl_mesh_store.h"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "core/mesh_index.h"
-
 namespace trapeze {
 namespace {
 
-constexpr std::uint32_t kLargestChunk = 1u << 18;  // 10 MiB
+constexpr std::uint32_t kLargestChunk = 1u << 16;  // 2.5 MiB: uploaded within milliseconds
 constexpr std::size_t kIntegersPerTrapezoid = 2 * GlMeshStore::kTexelsPerTrapezoid;
 
 void write(const MeshView& mesh, const MeshTrapezoid& trapezoid, std::int32_t* out) {
@@ -29,15 +26,6 @@ void write(const MeshView& mesh, const MeshTrapezoid& trapezoid, std::int32_t* o
   }
 }
 
-std::uint8_t size_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
-  const Box box = box_of(mesh, trapezoid);
-  if (box.min_y == box.max_y) return GlMeshStore::kNoSize;
-  const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
-  const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
-  return static_cast<std::uint8_t>(
-      std::bit_width(static_cast<std::uint64_t>(std::max(width, height))));
-}
-
 }  // namespace
 
 GlMeshStore::GlMeshStore(const GlFunctions& gl) {
@@ -48,8 +36,8 @@ GlMeshStore::GlMeshStore(const GlFunctions& gl) {
   if (chunk_size_ == 0) throw std::runtime_error("the GL device has no buffer textures");
 }
 
-GlMeshStore::MutableChunkPointer& GlMeshStore::place(std::uint64_t mesh_id, std::uint32_t index) {
-  std::vector<MutableChunkPointer>& chunks = meshes_[mesh_id];
+GlMeshStore::ChunkPointer& GlMeshStore::place(std::uint64_t mesh_id, std::uint32_t index) {
+  std::vector<ChunkPointer>& chunks = meshes_[mesh_id];
   if (index >= chunks.size()) chunks.resize(std::size_t{index} + 1);
   return chunks[index];
 }
@@ -58,28 +46,27 @@ GlMeshStore::ChunkPointer GlMeshStore::chunk(const GlFunctions& gl, const MeshVi
                                              std::uint32_t index) {
   // Held during an upload: whoever needs the same chunk has to wait for it anyway.
   const std::lock_guard lock(mutex_);
-  MutableChunkPointer& chunk = place(mesh.id, index);
+  ChunkPointer& chunk = place(mesh.id, index);
   if (!chunk) chunk = upload(gl, mesh, index);
   return chunk;
 }
 
-GlMeshStore::Chunk& GlMeshStore::changing_chunk(const GlFunctions& gl, std::uint64_t mesh_id,
-                                                std::uint32_t index) {
+GLuint GlMeshStore::changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id,
+                                    std::uint32_t index) {
   const std::lock_guard lock(mutex_);
-  MutableChunkPointer& chunk = place(mesh_id, index);
+  ChunkPointer& chunk = place(mesh_id, index);
   if (!chunk) chunk = make_chunk(gl, chunk_size_);
-  return *chunk;
+  return chunk->buffer;
 }
 
-GlMeshStore::MutableChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
-                                                         std::size_t trapezoids) const {
-  const MutableChunkPointer chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
+GlMeshStore::ChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
+                                                  std::size_t trapezoids) const {
+  const std::shared_ptr<Chunk> chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
     const std::lock_guard lock(graveyard->mutex);
     graveyard->buffers.push_back(dead->buffer);
     graveyard->textures.push_back(dead->texture);
     delete dead;
   });
-  chunk->sizes.assign(trapezoids, kNoSize);
   const std::size_t bytes = trapezoids * kIntegersPerTrapezoid * sizeof(std::int32_t);
   gl.GenBuffers(1, &chunk->buffer);
   gl.BindBuffer(GL_TEXTURE_BUFFER, chunk->buffer);
@@ -97,13 +84,13 @@ GlMeshStore::MutableChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
   return chunk;
 }
 
-GlMeshStore::MutableChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshView& mesh,
-                                                     std::uint32_t index) const {
+GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshView& mesh,
+                                              std::uint32_t index) const {
   const std::size_t first = std::size_t{index} * chunk_size_;
   const auto trapezoids = mesh.trapezoids.subspan(
       first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
   const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
-  MutableChunkPointer chunk = make_chunk(gl, trapezoids.size());
+  const ChunkPointer chunk = make_chunk(gl, trapezoids.size());
   auto* integers = static_cast<std::int32_t*>(
       gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
                         GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
@@ -111,7 +98,6 @@ GlMeshStore::MutableChunkPointer GlMeshStore::upload(const GlFunctions& gl, cons
   if (is_intact) {
     for (std::size_t i = 0; i < trapezoids.size(); ++i) {
       write(mesh, trapezoids[i], integers + i * kIntegersPerTrapezoid);
-      chunk->sizes[i] = size_of(mesh, trapezoids[i]);
     }
     is_intact = gl.UnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
   }

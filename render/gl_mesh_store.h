@@ -25,13 +25,9 @@ class GlMeshStore {
  public:
   static constexpr int kTexelsPerTrapezoid = 5;  // of two 32-bit integers each
 
-  /// What is never drawn, having no height, has this size.
-  static constexpr std::uint8_t kNoSize = 0xff;
-
   struct Chunk {
     GLuint buffer = 0;
-    GLuint texture = 0;               // a buffer texture, GL_RG32I
-    std::vector<std::uint8_t> sizes;  // by trapezoid: bits of the longer side of its box, in cells
+    GLuint texture = 0;  // a buffer texture, GL_RG32I
   };
   using ChunkPointer = std::shared_ptr<const Chunk>;
 
@@ -44,10 +40,10 @@ class GlMeshStore {
   /// the device has no memory left.
   ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index);
 
-  /// That chunk of a mesh that changes: it has room for chunk_size() trapezoids of no size, which
-  /// the caller writes into the buffer, and their sizes. Nobody may draw from it meanwhile, and
-  /// draws that follow find the chunk under the id. Throws like chunk().
-  Chunk& changing_chunk(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
+  /// The buffer of that chunk of a mesh that changes: it has room for chunk_size() trapezoids,
+  /// which the caller writes. Nobody may draw from it meanwhile, and draws that follow find the
+  /// chunk under the id. Throws like chunk().
+  GLuint changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
 
   /// Lets go of the chunks of a mesh; a draw in progress still finds those that it holds.
   void forget(std::uint64_t mesh_id);
@@ -63,17 +59,14 @@ class GlMeshStore {
     std::vector<GLuint> textures;
   };
 
-  using MutableChunkPointer = std::shared_ptr<Chunk>;
-
-  MutableChunkPointer& place(std::uint64_t mesh_id, std::uint32_t index);
-  MutableChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids) const;
-  MutableChunkPointer upload(const GlFunctions& gl, const MeshView& mesh,
-                             std::uint32_t index) const;
+  ChunkPointer& place(std::uint64_t mesh_id, std::uint32_t index);
+  ChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids) const;
+  ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;
 
   std::uint32_t chunk_size_ = 0;
   std::shared_ptr<Graveyard> graveyard_ = std::make_shared<Graveyard>();
   std::mutex mutex_;
-  std::unordered_map<std::uint64_t, std::vector<MutableChunkPointer>> meshes_;  // by MeshView::id
+  std::unordered_map<std::uint64_t, std::vector<ChunkPointer>> meshes_;  // by MeshView::id
 };
 
 }  // namespace trapeze

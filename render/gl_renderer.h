@@ -1,11 +1,12 @@
-// Draws coverage with OpenGL: exact area, not multisampling. See gl_shaders.h for how.
+// Draws coverage with OpenGL: exact area, not multisampling. See gl_shader.h for how.
 //
-// Additive blending sums the differences of areas in 32-bit floats. (16 bits would not do: a city
-// in a few pixels is tens of thousands of addends below their resolution.) Sums become 8 bits once,
-// after read-back.
+// A compute shader adds areas up as integers in a buffer, which is read back and summed up to 8
+// bits here. Rasterizing strips and points with additive blending gives the same pictures, but
+// costs a software device ten times as much for each trapezoid.
 //
-// Tasks that are drawn together share one target, one above the other: the fixed cost of a pass,
-// which is what a light tile costs, is paid once for all.
+// On a GPU tasks that are drawn together share one buffer, one after the other: the fixed cost of a
+// pass, which is what a light tile costs, is paid once for all. A processor draws one task at a
+// time: it pays little for a pass, and the differences of one picture stay in its cache.
 #pragma once
 
 #include <array>
@@ -32,7 +33,9 @@ class GlRenderer final : public CoverageRenderer {
 
   using CoverageRenderer::draw;
   DrawTimes draw(std::span<const CoverageTask> tasks) override;
-  bool gains_by_company() const override { return true; }
+  bool gains_by_company() const override { return gains_by_company_; }
+  /// Draws tasks together, or one at a time, whatever suits the device.
+  void set_company(bool gains) { gains_by_company_ = gains; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
   std::string description() const override { return context_->info().text(); }
@@ -42,64 +45,69 @@ class GlRenderer final : public CoverageRenderer {
  private:
   struct Program {
     GLuint name = 0;
+    GLint first = -1;
+    GLint count = -1;
     GLint origin = -1;
     GLint pixels_per_cell = -1;
-    GLint size = -1;
     GLint first_row = -1;
+    GLint size = -1;
+    GLint place = -1;
   };
 
-  // A framebuffer of 32-bit floats.
-  struct Target {
-    int width = 0;
-    int height = 0;
-    GLuint framebuffer = 0;
-    GLuint renderbuffer = 0;
+  // Some rows of a picture; all of them if the buffer has room.
+  struct Band {
+    const CoverageTask* task = nullptr;
+    int first_row = 0;
+    int rows = 0;
+    std::size_t place = 0;  // of its first pixel in the buffer
+
+    std::size_t pixels() const {
+      return static_cast<std::size_t>(task->view.width) * static_cast<std::size_t>(rows);
+    }
   };
 
-  // Some of indices_, drawn by one call. All indices of points come before those of sides.
+  // Some of indices_, drawn by one call: trapezoids of one chunk of a mesh.
   struct Batch {
-    std::size_t task = 0;  // in the pass
+    std::size_t band = 0;
+    std::uint64_t mesh_id = 0;
+    std::uint32_t number = 0;  // of the chunk
     GlMeshStore::ChunkPointer chunk;
     std::size_t first = 0;
     std::size_t count = 0;
   };
 
-  Program make_program(const std::string& vertex_source, const std::string& fragment_source);
-  void make_vertex_array();
+  Program make_program(const std::string& source);
   void delete_objects() noexcept;
-  void draw_pass(std::span<const CoverageTask> tasks, DrawTimes& times);
-  void bind_target(int width, int height);
-  void make_target(Target& target, int width, int height);
-  void collect(std::span<const CoverageTask> tasks);
-  void collect_run(const GlMeshStore::Chunk& chunk, std::uint32_t first, std::uint32_t count,
-                   std::uint8_t largest_point);
-  void end_batches(std::size_t task, const GlMeshStore::ChunkPointer& chunk);
-  void upload_indices();
-  void draw_batches(std::span<const CoverageTask> tasks, const Program& program,
-                    const std::vector<Batch>& batches, GLenum mode, std::size_t first_index);
-  void set_task(const Program& program, const View& view, std::size_t task);
-  void read_back(std::span<const CoverageTask> tasks);
-  void resolve(std::span<const CoverageTask> tasks) const;
+  void draw_task(const CoverageTask& task, DrawTimes& times);
+  void draw_band(Band band, DrawTimes& times);
+  void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count);
+  void run_pass(DrawTimes& times);
+  void unmap();
+  void finish_pass(DrawTimes& times);
+  void set_last_band_aside(DrawTimes& times);
+  void prepare_buffers();
+  void run_batches();
+  void set_band(const Band& band);
+  void resolve(const Band& band);
 
   std::unique_ptr<GlContext> context_;
   std::shared_ptr<GlMeshStore> store_;
   const GlFunctions& gl_;
-  GLint longest_side_ = 0;        // of a target, in pixels
-  bool can_draw_points_ = false;  // as large as they come here
-
-  Program point_program_;
-  Program side_program_;
-  GLuint vertex_array_ = 0;
+  bool gains_by_company_;
+  Program program_;
+  std::size_t room_ = 0;  // pixels in a pass
   GLuint index_buffer_ = 0;
-  std::array<Target, 8> targets_;  // of the sizes asked for last
-  std::size_t next_target_ = 0;    // the one to give up for a new size
+  GLuint differences_buffer_ = 0;
+  std::size_t differences_size_ = 0;  // pixels; all are zero between passes
 
-  // Of the pass being drawn.
-  std::vector<std::uint32_t> point_indices_;
-  std::vector<std::uint32_t> side_indices_;
-  std::vector<Batch> point_batches_;
-  std::vector<Batch> side_batches_;
-  std::vector<float> differences_;
+  // Of the pass being put together.
+  std::vector<std::uint32_t> indices_;
+  std::vector<Batch> batches_;
+  std::vector<Band> bands_;
+  std::size_t used_ = 0;                 // pixels
+  std::span<std::int32_t> differences_;  // mapped
+  std::vector<float> sums_;              // of earlier passes, of the first band; or empty
+  std::vector<float> row_;
 };
 
 }  // namespace trapeze

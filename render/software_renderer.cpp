@@ -212,8 +212,8 @@ void SoftwareRenderer::resolve(Coverage& out) {
     const int end = std::min(touched.last + 2, width_);
     float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
     if (touched.first < end)
-      sum_to_levels({cells + touched.first, cells + end}, levels + touched.first);
-    std::fill(cells + touched.first, cells + touched.last + 2, 0.0f);
+      take_levels({cells + touched.first, cells + end}, levels + touched.first);
+    std::fill(cells + std::max(end, touched.first), cells + touched.last + 2, 0.0f);
     touched = {width_, -1};
   }
 }

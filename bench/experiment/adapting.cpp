@@ -65,10 +65,9 @@ void AdaptingLayer::append_trapezoids(const Box& box, NumberedList& trapezoids) 
     if (!polygon.box.intersects(box)) continue;
     if (!polygon.is_listed) list(p);
     const NumberedList& own = polygon.trapezoids;
-    if (own.numbers.empty()) continue;
+    if (own.empty()) continue;
     if (is_within(polygon.box, box)) {
-      trapezoids.numbers.insert(trapezoids.numbers.end(), own.numbers.begin(), own.numbers.end());
-      trapezoids.sizes.insert(trapezoids.sizes.end(), own.sizes.begin(), own.sizes.end());
+      trapezoids.insert(trapezoids.end(), own.begin(), own.end());
     } else {
       const auto count = static_cast<std::uint32_t>(graphs_[p].graph().vertex_count());
       append_within(polygon, count, box, trapezoids);
@@ -84,23 +83,15 @@ void AdaptingLayer::list(std::size_t p) {
   polygon.reaches.clear();
   for (const Node& node : graph.nodes()) {
     if (!node.is_alive() || graph.face(node) == kOutside) continue;
-    const std::int32_t top = graph.point(node.end[kUp]).y;
-    const std::int32_t bottom = graph.point(node.end[kDown]).y;
-    if (top == bottom) continue;
+    if (graph.point(node.end[kUp]).y == graph.point(node.end[kDown]).y) continue;
     const Edge& left = graph.edge(node.edge[kLeft]);
     const Edge& right = graph.edge(node.edge[kRight]);
-    polygon.trapezoids.numbers.push_back({number(node.end[kUp]), number(node.end[kDown]),
-                                          number(left.end[kUp]), number(left.end[kDown]),
-                                          number(right.end[kUp]), number(right.end[kDown])});
-    const TrapezoidRecord record{top,
-                                 bottom,
-                                 graph.point(left.end[kUp]),
-                                 graph.point(left.end[kDown]),
-                                 graph.point(right.end[kUp]),
-                                 graph.point(right.end[kDown])};
-    polygon.trapezoids.sizes.push_back(size_of(record));
-    polygon.reaches.push_back({std::min(record.left_upper.x, record.left_lower.x),
-                               std::max(record.right_upper.x, record.right_lower.x)});
+    polygon.trapezoids.push_back({number(node.end[kUp]), number(node.end[kDown]),
+                                  number(left.end[kUp]), number(left.end[kDown]),
+                                  number(right.end[kUp]), number(right.end[kDown])});
+    polygon.reaches.push_back(
+        {std::min(graph.point(left.end[kUp]).x, graph.point(left.end[kDown]).x),
+         std::max(graph.point(right.end[kUp]).x, graph.point(right.end[kDown]).x)});
   }
   polygon.is_listed = true;
 }
@@ -117,12 +108,11 @@ void AdaptingLayer::append_within(const Polygon& polygon, std::uint32_t vertex_c
   const std::uint32_t from = number_at(box.min_y);
   const std::uint32_t to = number_at(box.max_y);
   const NumberedList& own = polygon.trapezoids;
-  for (std::size_t i = 0; i < own.numbers.size(); ++i) {
-    if (own.numbers[i].bottom < from || own.numbers[i].top > to) continue;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i].bottom < from || own[i].top > to) continue;
     const Reach& reach = polygon.reaches[i];
     if (reach.max_x < box.min_x || reach.min_x > box.max_x) continue;
-    trapezoids.numbers.push_back(own.numbers[i]);
-    trapezoids.sizes.push_back(own.sizes[i]);
+    trapezoids.push_back(own[i]);
   }
 }
 
@@ -151,15 +141,15 @@ ViewCost Adapting::draw(const ScaledView& view, std::vector<Coverage>& coverages
     ends_.clear();
     for (AdaptingLayer& layer : layers_) {
       layer.append_trapezoids(box, trapezoids_);
-      ends_.push_back(static_cast<std::uint32_t>(trapezoids_.numbers.size()));
+      ends_.push_back(static_cast<std::uint32_t>(trapezoids_.size()));
     }
-    device_->send(trapezoids_.numbers, trapezoids_.sizes);
+    device_->send(trapezoids_);
   }
   cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
   cost.add(device_->draw(ends_, view.view, coverages));
   cost.cpu_ms = cpu_clock_ms() - cpu_begin;
-  cost.trapezoids = trapezoids_.numbers.size();
-  cost.bytes = trapezoids_.numbers.size() * sizeof(VertexNumbers);
+  cost.trapezoids = trapezoids_.size();
+  cost.bytes = trapezoids_.size() * sizeof(VertexNumbers);
   return cost;
 }
 

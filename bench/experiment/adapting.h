@@ -18,15 +18,7 @@
 namespace trapeze::experiment {
 
 /// Trapezoids as they are sent.
-struct NumberedList {
-  std::vector<VertexNumbers> numbers;
-  std::vector<std::uint8_t> sizes;
-
-  void clear() {
-    numbers.clear();
-    sizes.clear();
-  }
-};
+using NumberedList = std::vector<VertexNumbers>;
 
 /// The graphs of a layer. Belongs to one thread.
 class AdaptingLayer {

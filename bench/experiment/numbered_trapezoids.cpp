@@ -1,7 +1,5 @@
 #include "bench/experiment/numbered_trapezoids.h"
 
-#include <EGL/egl.h>
-
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -27,29 +25,10 @@ void main() {
 )";
 constexpr GLuint kGroup = 64;
 
-template <class Function>
-Function function_named(const char* name) {
-  const auto function = reinterpret_cast<Function>(eglGetProcAddress(name));
-  if (function == nullptr) throw std::runtime_error(std::string(name) + " is missing");
-  return function;
-}
-
 }  // namespace
 
-struct NumberedTrapezoids::Functions {
-  PFNGLBINDBUFFERBASEPROC bind_buffer_base =
-      function_named<PFNGLBINDBUFFERBASEPROC>("glBindBufferBase");
-  PFNGLBINDBUFFERRANGEPROC bind_buffer_range =
-      function_named<PFNGLBINDBUFFERRANGEPROC>("glBindBufferRange");
-  PFNGLDISPATCHCOMPUTEPROC dispatch_compute =
-      function_named<PFNGLDISPATCHCOMPUTEPROC>("glDispatchCompute");
-  PFNGLMEMORYBARRIERPROC memory_barrier = function_named<PFNGLMEMORYBARRIERPROC>("glMemoryBarrier");
-  PFNGLPROGRAMUNIFORM1UIPROC program_uniform =
-      function_named<PFNGLPROGRAMUNIFORM1UIPROC>("glProgramUniform1ui");
-};
-
 NumberedTrapezoids::NumberedTrapezoids(Screen& screen, std::span<const Point> vertices)
-    : screen_(screen), trapezoids_(screen), functions_(std::make_unique<const Functions>()) {
+    : screen_(screen), trapezoids_(screen) {
   const CurrentContext current(screen.context());
   const GlFunctions& gl = screen.context().gl();
   make_program();
@@ -83,8 +62,7 @@ void NumberedTrapezoids::make_program() {
   count_location_ = gl.GetUniformLocation(program_, "count");
 }
 
-void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
-                              std::span<const std::uint8_t> sizes) {
+void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers) {
   if (numbers.empty()) return;
   const CurrentContext current(screen_.context());
   const GlFunctions& gl = screen_.context().gl();
@@ -101,26 +79,23 @@ void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers,
   std::memcpy(room, numbers.data(), numbers.size_bytes());
   gl.UnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 
-  GLint program_before = 0;  // the renderer's
-  gl.GetIntegerv(GL_CURRENT_PROGRAM, &program_before);
   gl.UseProgram(program_);
-  functions_->bind_buffer_base(GL_SHADER_STORAGE_BUFFER, 0, vertices_);
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, vertices_);
   for (std::size_t first = 0; first < numbers.size(); first += trapezoids_.chunk_size()) {
     const std::size_t count =
         std::min<std::size_t>(numbers.size() - first, trapezoids_.chunk_size());
-    const GLuint records = trapezoids_.open(first, sizes.subspan(first, count));
+    const GLuint records = trapezoids_.buffer(first);
     const auto bind = [&](GLuint binding, GLuint buffer, std::size_t from, std::size_t bytes) {
-      functions_->bind_buffer_range(GL_SHADER_STORAGE_BUFFER, binding, buffer,
-                                    static_cast<GLintptr>(from), static_cast<GLsizeiptr>(bytes));
+      gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer, static_cast<GLintptr>(from),
+                         static_cast<GLsizeiptr>(bytes));
     };
     bind(1, numbers_, first * sizeof(VertexNumbers), count * sizeof(VertexNumbers));
     bind(2, records, 0, count * sizeof(TrapezoidRecord));
-    functions_->program_uniform(program_, count_location_, static_cast<GLuint>(count));
-    functions_->dispatch_compute((static_cast<GLuint>(count) + kGroup - 1) / kGroup, 1, 1);
+    gl.Uniform1ui(count_location_, static_cast<GLuint>(count));
+    gl.DispatchCompute((static_cast<GLuint>(count) + kGroup - 1) / kGroup, 1, 1);
   }
-  functions_->memory_barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   gl.Finish();
-  gl.UseProgram(static_cast<GLuint>(program_before));
 }
 
 }  // namespace trapeze::experiment

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,9 +29,8 @@ class NumberedTrapezoids {
   NumberedTrapezoids(const NumberedTrapezoids&) = delete;
   NumberedTrapezoids& operator=(const NumberedTrapezoids&) = delete;
 
-  /// Sends the numbers, and waits until the device has made trapezoids of them. `sizes` are those
-  /// of the trapezoids.
-  void send(std::span<const VertexNumbers> numbers, std::span<const std::uint8_t> sizes);
+  /// Sends the numbers, and waits until the device has made trapezoids of them.
+  void send(std::span<const VertexNumbers> numbers);
 
   /// As DeviceTrapezoids.
   DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
@@ -41,13 +39,10 @@ class NumberedTrapezoids {
   }
 
  private:
-  struct Functions;
-
   void make_program();
 
   Screen& screen_;
   DeviceTrapezoids trapezoids_;
-  std::unique_ptr<const Functions> functions_;
   GLuint program_ = 0;
   GLint count_location_ = -1;
   GLuint vertices_ = 0;

@@ -49,12 +49,9 @@ DrawTimes Screen::draw(std::span<const MeshView> meshes, std::span<const Ranges>
   return renderer_->draw(tasks_);
 }
 
-GLuint DeviceTrapezoids::open(std::size_t first, std::span<const std::uint8_t> sizes) {
-  GlMeshStore::Chunk& chunk = screen_.store().changing_chunk(
-      screen_.context().gl(), mesh_id_, static_cast<std::uint32_t>(first / chunk_size()));
-  std::copy(sizes.begin(), sizes.end(),
-            chunk.sizes.begin() + static_cast<std::ptrdiff_t>(first % chunk_size()));
-  return chunk.buffer;
+GLuint DeviceTrapezoids::buffer(std::size_t first) {
+  return screen_.store().changing_buffer(screen_.context().gl(), mesh_id_,
+                                         static_cast<std::uint32_t>(first / chunk_size()));
 }
 
 void DeviceTrapezoids::send(const TrapezoidList& trapezoids) {
@@ -62,8 +59,7 @@ void DeviceTrapezoids::send(const TrapezoidList& trapezoids) {
   const GlFunctions& gl = screen_.context().gl();
   for (std::size_t first = 0; first < trapezoids.size(); first += chunk_size()) {
     const std::size_t count = std::min<std::size_t>(trapezoids.size() - first, chunk_size());
-    gl.BindBuffer(GL_TEXTURE_BUFFER,
-                  open(first, std::span(trapezoids.sizes).subspan(first, count)));
+    gl.BindBuffer(GL_TEXTURE_BUFFER, buffer(first));
     // Every view ends with reading it back, so the device is done with what was there.
     const std::size_t bytes = count * sizeof(TrapezoidRecord);
     void* room = gl.MapBufferRange(

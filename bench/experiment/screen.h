@@ -60,10 +60,9 @@ class DeviceTrapezoids {
   /// Writes the trapezoids over what was there, and waits until the device has them.
   void send(const TrapezoidList& trapezoids);
 
-  /// For whoever fills in the records on the device: notes the sizes of trapezoids `first` and
-  /// after it, all of one chunk, and returns the chunk's buffer. A context of the screen is
-  /// current.
-  GLuint open(std::size_t first, std::span<const std::uint8_t> sizes);
+  /// The buffer of the chunk that begins with trapezoid `first`, for whoever fills it in on the
+  /// device. A context of the screen is current.
+  GLuint buffer(std::size_t first);
   std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
 
   /// Draws layers: trapezoids ends[i - 1] .. ends[i] - 1 are those of layer i.

@@ -22,22 +22,15 @@ struct TrapezoidRecord {
 };
 static_assert(sizeof(TrapezoidRecord) == GlMeshStore::kTexelsPerTrapezoid * sizeof(Point));
 
-/// The size of a trapezoid as GlMeshStore::Chunk has it.
-std::uint8_t size_of(const TrapezoidRecord& trapezoid);
-
 /// Where the straight line between two points that are not level runs in x; exact at the lower one.
 double x_at(Point upper, Point lower, std::int32_t y);
 
 /// Memory is kept between uses.
 struct TrapezoidList {
   std::vector<TrapezoidRecord> records;
-  std::vector<std::uint8_t> sizes;  // by record
 
   std::size_t size() const { return records.size(); }
-  void cut(std::size_t count) {
-    records.resize(count);
-    sizes.resize(count);
-  }
+  void cut(std::size_t count) { records.resize(count); }
   /// Unless it is without height, or beyond `view`.
   void append(const TrapezoidRecord& trapezoid, const Box& view);
   /// A triangle: its parts above and below the level of the middle vertex.

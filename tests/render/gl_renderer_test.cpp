@@ -228,6 +228,58 @@ TEST_P(GlRendererTest, SumsTensOfThousandsOfTrapezoidsInAPixelLikeTheReference) 
   }
 }
 
+// More than 32 bits would hold if all were summed up before any are read back.
+TEST_P(GlRendererTest, StacksTensOfThousandsOfTrapezoids) {
+  SampleMesh mesh;
+  for (int i = 0; i < 40'000; ++i) mesh.add_box(3, 2, 9, 13);
+  expect_like_reference(mesh, {0, 0, 1, 16, 16}, "whole pixels");
+  expect_like_reference(mesh, {0, 0, 4, 16, 16}, "parts of pixels");
+}
+
+TEST_P(GlRendererTest, DrawsTheSameBytesInWhateverOrder) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const SampleMesh mesh = random_strips(random, {-500, -400, 9000, 8000}, 3000);
+  std::vector<TrapezoidRange> ranges;
+  for (std::uint32_t i = 0; i < mesh.size(); ++i) ranges.push_back({i, 1});
+  const View view{0, 0, 30, 256, 256};
+  Coverage first;
+  renderer().draw(mesh.view(), ranges, view, first);
+  Coverage shuffled;
+  for (int i = 0; i < 5; ++i) {
+    std::shuffle(ranges.begin(), ranges.end(), random);
+    renderer().draw(mesh.view(), ranges, view, shuffled);
+    ASSERT_EQ(shuffled, first);
+  }
+}
+
+// Three pictures, the second one of more pixels than are drawn in one pass.
+TEST_P(GlRendererTest, DrawsSeveralAndLargePicturesLikeTheReference) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const SampleMesh mesh = random_strips(random, {-50, -40, 9000, 8000}, 2000);
+  const TrapezoidRange all = mesh.all();
+  const MeshPart part{mesh.view(), {&all, 1}};
+  Coverage small;
+  Coverage large;
+  Coverage narrow;
+  const CoverageTask tasks[] = {{{&part, 1}, {0, 0, 30, 256, 256}, &small},
+                                {{&part, 1}, {0, 0, 3.5, 2500, 2300}, &large},
+                                {{&part, 1}, {700, 90, 9, 33, 301}, &narrow}};
+  for (const bool together : {true, false}) {
+    renderer().set_company(together);
+    renderer().draw(tasks);
+    for (const CoverageTask& task : tasks) {
+      Coverage expected;
+      reference_.draw(task.parts, task.view, expected);
+      const Difference difference = compare_coverages(expected, *task.out);
+      EXPECT_TRUE(difference.is_within_bounds()) << together << ", " << difference;
+    }
+  }
+}
+
 TEST_P(GlRendererTest, IgnoresTrapezoidsWithoutHeightOrOutsideOfThePicture) {
   SampleMesh mesh;
   const std::uint32_t left = mesh.add_edge({0, 0}, {0, 64});
