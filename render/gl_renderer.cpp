@@ -33,11 +33,14 @@ GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
   throw std::runtime_error(std::string("the GL device rejects a shader: ") + log.data());
 }
 
-// Adds what the shader summed up to sums in pixels, and leaves zeros behind.
-void take_units(std::span<std::int32_t> units, std::span<float> pixels) {
+// Adds what the shader summed up to wider sums, and leaves zeros behind.
+void take_units(std::span<std::int32_t> units, std::span<std::int64_t> sums) {
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::exchange(units[i], 0);
+}
+
+void to_pixels(std::span<const std::int64_t> units, std::span<float> pixels) {
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    pixels[i] += static_cast<float>(units[i]) * (1.0f / gl_shader::kUnitsPerPixel);
-    units[i] = 0;
+    pixels[i] = static_cast<float>(units[i]) * (1.0f / gl_shader::kUnitsPerPixel);
   }
 }
 
@@ -300,7 +303,6 @@ void GlRenderer::set_band(const Band& band) {
 void GlRenderer::resolve(const Band& band) {
   const auto width = static_cast<std::size_t>(band.task->view.width);
   const std::span<std::int32_t> differences = differences_.subspan(band.place, band.pixels());
-  const float* sums = sums_.data();
   for (int row = 0; row < band.rows; ++row) {
     const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
     std::uint8_t* levels = band.task->out->row_begin(band.first_row + row);
@@ -308,10 +310,11 @@ void GlRenderer::resolve(const Band& band) {
       take_levels(of_row, gl_shader::kUnitsPerPixel, levels);
       continue;
     }
-    row_.assign(sums, sums + width);
-    take_units(of_row, row_);
+    const auto sums = std::span(sums_).subspan(static_cast<std::size_t>(row) * width, width);
+    take_units(of_row, sums);
+    row_.resize(width);
+    to_pixels(sums, row_);
     take_levels(row_, levels);
-    sums += width;
   }
   sums_.clear();
 }

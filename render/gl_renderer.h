@@ -106,7 +106,7 @@ class GlRenderer final : public CoverageRenderer {
   std::vector<Band> bands_;
   std::size_t used_ = 0;                 // pixels
   std::span<std::int32_t> differences_;  // mapped
-  std::vector<float> sums_;              // of earlier passes, of the first band; or empty
+  std::vector<std::int64_t> sums_;       // of earlier passes, of the first band; or empty
   std::vector<float> row_;
 };
 

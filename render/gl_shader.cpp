@@ -87,20 +87,26 @@ void add_row(Side side, int sign, float from_x, float to_x, int cells, float hei
   if (column < east_end) atomicAdd(differences[cells + column], sign * (whole - sum));
 }
 
+// From 0 to 1, the same for both sides of a trapezoid and wherever in the mesh it is.
+float rounding_of(ivec2 top_and_bottom, ivec2 north_west) {
+  uvec2 mixed = uvec2(top_and_bottom.x, north_west.x) * uvec2(2654435769u, 2246822519u);
+  return float(((mixed.x ^ mixed.y) * 3266489917u) >> 8) * (1.0 / 16777216.0);
+}
+
 void main() {
   if (gl_GlobalInvocationID.x >= 2u * count) return;
   uint index = indices[first + (gl_GlobalInvocationID.x >> 1)];
   bool is_right = (gl_GlobalInvocationID.x & 1u) != 0u;
   int sign = is_right ? -1 : 1;
   int texel = int(index) * 5;
-  dvec2 levels =
-      (dvec2(texelFetch(trapezoids, texel).xy) - origin.y) * pixels_per_cell - first_row;
+  ivec2 top_and_bottom = texelFetch(trapezoids, texel).xy;
+  dvec2 levels = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell - first_row;
   levels = dvec2(max(levels.x, 0.0LF), min(levels.y, double(size.y)));
   if (levels.x >= levels.y) return;
 
   double row = floor(levels.x);
   Side side = side_at(texel + (is_right ? 3 : 1), levels, row);
-  float rounding = float((index * 2654435769u) >> 8) * (1.0 / 16777216.0);
+  float rounding = rounding_of(top_and_bottom, texelFetch(trapezoids, texel + 1).xy);
   int cells = place + int(row) * size.x;
   float y = float(levels.x - row);
   float bottom = float(levels.y - row);

@@ -254,6 +254,24 @@ TEST_P(GlRendererTest, DrawsTheSameBytesInWhateverOrder) {
   }
 }
 
+TEST_P(GlRendererTest, DrawsTheSameBytesWhereverInTheMesh) {
+  SampleMesh alone;
+  SampleMesh behind_others;
+  for (int i = 0; i < 12'345; ++i) behind_others.add_box(-900, -i, -800, 40);
+  for (SampleMesh* mesh : {&alone, &behind_others}) {
+    for (int i = 0; i < 3000; ++i) mesh->add_box(i, i * 2, i + 7 * (i % 9 + 1), i * 2 + 3);
+  }
+  const View view{0, 0, 23.7, 256, 256};
+  const TrapezoidRange all = alone.all();
+  Coverage expected;
+  renderer().draw(alone.view(), {&all, 1}, view, expected);
+  const TrapezoidRange last{12'345, 3000};
+  Coverage coverage;
+  renderer().draw(behind_others.view(), {&last, 1}, view, coverage);
+  EXPECT_EQ(coverage, expected);
+  EXPECT_FALSE(expected.is_all(0));
+}
+
 // Three pictures, the second one of more pixels than are drawn in one pass.
 TEST_P(GlRendererTest, DrawsSeveralAndLargePicturesLikeTheReference) {
   const unsigned seed = std::random_device{}();
