@@ -14,6 +14,8 @@ struct Operations {
   GeneralizationOptions generalization;
   std::uint32_t seed = 0;             // of the order of removals, and of tolerances
   double greatest_tolerance = 65536;  // cells
+  // Whether the invariants are checked after every step; else after a few, which is much faster.
+  bool checks_each_step = true;
 };
 
 /// Builds the graph of the rings, removes corners in any order and takes that back, adapts it to

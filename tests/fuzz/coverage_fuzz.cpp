@@ -18,6 +18,7 @@
 #include "core/gap_closing.h"
 #include "core/history.h"
 #include "core/regions.h"
+#include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {
@@ -28,12 +29,15 @@ using fuzzing::require;
 constexpr std::int16_t kEndOfRing = 0x7fff;
 constexpr std::size_t kMaxPoints = 300;  // the checks are slower than what they check
 constexpr std::size_t kMaxFeatures = 12;
+constexpr int kJumps = 8;
+constexpr int kFewJumps = 2;  // of most inputs
 
 struct Input {
   CoverageMode mode = CoverageMode::automatic;
   double close_gaps = 0;
   int scale = 1;
   std::uint8_t seed = 0;
+  int jumps = kJumps;
   std::vector<Rings> features;
 };
 
@@ -62,6 +66,7 @@ Input input_from(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<double, 4> kGaps = {0, 0.05, 1, kWidestGap};
   input.close_gaps = kGaps[data[0] >> 2 & 3];
   input.seed = data[1];
+  input.jumps = fuzzing::is_one_in(8, data, size) ? kJumps : kFewJumps;
   input.features = features_from(data + 2, size - 2, input.scale);
   for (Rings& rings : input.features) clean_rings(rings);
   return input;
@@ -98,7 +103,7 @@ void check_tolerances(const TrapezoidalGraph& original, const Input& input) {
   const std::size_t holes = count_holes(original);
   AdaptableGraph adaptable(original);
   std::uint32_t random = input.seed;
-  for (int jump = 0; jump < 8; ++jump) {
+  for (int jump = 0; jump < input.jumps; ++jump) {
     random = random * 1664525u + 1013904223u;
     const double share = static_cast<double>(random >> 20) / 4096;
     adaptable.adapt_to(input.scale * share * (1 << (random >> 8 & 15)));
