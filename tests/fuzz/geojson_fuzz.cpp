@@ -131,7 +131,7 @@ void check(std::uint8_t flags, std::string_view text, std::uint32_t hash) {
   operations.generalization.weights = static_cast<WeightRule>((flags >> 1) % 3);
   operations.seed = flags;
   operations.greatest_tolerance = static_cast<double>(1 << 30);
-  operations.checks_each_step = hash % 8 == 0;
+  operations.checks = fuzzing::checks_of(hash / 2);
   expect_words([&operations] { check_features(operations); });
   if (hash % 2 == 0) expect_words([] { check_loading(); });
 }

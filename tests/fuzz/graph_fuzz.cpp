@@ -38,7 +38,7 @@ void check(const std::uint8_t* data, std::size_t size) {
   operations.generalization.weights = static_cast<WeightRule>((data[0] >> 2) % 3);
   operations.seed = data[1];
   operations.greatest_tolerance *= scale;
-  operations.checks_each_step = fuzzing::is_one_in(8, data, size);
+  operations.checks = fuzzing::checks_of(fuzzing::hash_of(data, size));
   Rings rings = rings_from(data + 2, size - 2, scale);
   fuzzing::check_operators(rings, operations);
 }
