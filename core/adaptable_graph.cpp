@@ -151,15 +151,17 @@ void PriorityStack::enqueue(const Candidate& candidate) {
 std::optional<double> PriorityStack::remove_next([[maybe_unused]] const TrapezoidalGraph& graph,
                                                  EditLog& log) {
   assert(&graph == graph_);
-  while (const auto candidate = next_candidate()) {
-    const bool has_gone = is_region(candidate->corner)
-                              ? remove_region(region_of(candidate->corner), log)
-                              : remove_corner(candidate->corner, log);
-    if (!has_gone) continue;
-    ++counts_.removals;
-    counts_.touched += log.touched_nodes().size();
-    return epsilon_;
-  }
+  do {
+    while (const auto candidate = next_candidate()) {
+      const bool has_gone = is_region(candidate->corner)
+                                ? remove_region(region_of(candidate->corner), log)
+                                : remove_corner(candidate->corner, log);
+      if (!has_gone) continue;
+      ++counts_.removals;
+      counts_.touched += log.touched_nodes().size();
+      return epsilon_;
+    }
+  } while (has_blocked_ && enqueue_anchors());
   return std::nullopt;
 }
 
@@ -208,13 +210,32 @@ bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
 /// A junction that became a corner is weighed where it stands each time that its turn comes.
 bool PriorityStack::is_to_wait(CornerId c) {
   if (!graph_->is_coverage() || !is_dissolved_[c.value]) return false;
-  const auto at = [this](CornerId corner) { return graph_->point(graph_->corner(corner).vertex); };
-  const Corner& corner = graph_->corner(c);
-  weights_[c] = std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
+  weights_[c] = weight_in_place(c);
   if (weights_[c] <= epsilon_) return false;
   state_[c] = State::queued;
-  enqueue({weights_[c], corner.vertex, c});
+  enqueue({weights_[c], graph_->corner(c).vertex, c});
   return true;
+}
+
+double PriorityStack::weight_in_place(CornerId c) const {
+  const auto at = [this](CornerId corner) { return graph_->point(graph_->corner(corner).vertex); };
+  const Corner& corner = graph_->corner(c);
+  return std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
+}
+
+/// Gives a weight to the corners of rings that are left and have none; false if there are none.
+bool PriorityStack::enqueue_anchors() {
+  bool has_any = false;
+  for (std::size_t i = 0; i < graph_->corners().size(); ++i) {
+    const CornerId c(i);
+    const Corner& corner = graph_->corner(c);
+    if (!corner.is_alive() || corner.is_end() || std::isfinite(weights_[c])) continue;
+    weights_[c] = weight_in_place(c);
+    state_[c] = State::queued;
+    enqueue({weights_[c], corner.vertex, c});
+    has_any = true;
+  }
+  return has_any;
 }
 
 bool PriorityStack::remove_region(RegionId region, EditLog& log) {

@@ -8,6 +8,11 @@
 // sequence of removals, and the graph at a tolerance is a prefix of it: its state depends on the
 // tolerance only, never on what was asked before.
 //
+// The two vertices of a ring without a weight, between which all others are weighed, go with its
+// last triangle. Where rings hook into each other so that all of finite weight are blocked, these
+// two are weighed as well: an innermost ring has two vertices whose triangle is empty, wherever
+// they are, so that in the end nothing is left.
+//
 // In a coverage, arcs are weighed each by itself, so that a border is the same whichever side asks,
 // and regions wait in the stack as well (see region_borders.h).
 //
@@ -94,6 +99,8 @@ class PriorityStack {
   bool is_to_wait(CornerId corner);
   bool remove_corner(CornerId corner, EditLog& log);
   void requeue_region(RegionId region, double weight);
+  double weight_in_place(CornerId c) const;
+  bool enqueue_anchors();
   void wait_for(CornerId corner, VertexId blocker);
   void retry_waiting(VertexId gone);
   void retry_if_blocked(CornerId corner);

@@ -123,6 +123,29 @@ TEST(AdaptableGraph, FastRemovalKeepsTheLinksWhole) {
   }
 }
 
+TEST(AdaptableGraph, RingsThatHookIntoEachOtherGoInTheEnd) {
+  // Each has a corner in the bay of the other, so that all four of finite weight are blocked.
+  const auto graph = graph_of(
+      rings_from_text("3 0, 15 10, 0 16394, 2580 0; 5 3847, -256 -1, 2815 -32512, -2816 -2"));
+  ASSERT_TRUE(graph);
+  AdaptableGraph adaptable(*graph);
+  adaptable.adapt_to(kAll);
+  EXPECT_TRUE(adaptable.graph().inside_nodes().empty());
+  adaptable.adapt_to(0);
+  EXPECT_EQ(adaptable.graph(), *graph);
+}
+
+TEST(AdaptableGraph, NothingIsLeftInTheEnd) {
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    auto graph = graph_of(random_shape(seed));
+    if (!graph) continue;
+    AdaptableGraph adaptable(*graph);
+    adaptable.adapt_to(kAll);
+    EXPECT_TRUE(adaptable.graph().inside_nodes().empty());
+  }
+}
+
 /// Douglas-Peucker written the plain way, on one ring with the anchors of the weights: the
 /// uppermost point and the farthest from it.
 class PlainDouglasPeucker {

@@ -9,16 +9,24 @@
 
 namespace trapeze::fuzzing {
 
+/// What is checked of a graph, beside that it can be built: all, after every step, or one of the
+/// parts, each of which takes about as long as building.
+enum class Checks : std::uint8_t { all, any_order, tolerances, history };
+
+/// All of one input in eight, and of the others one part, by the hash of the input.
+Checks checks_of(std::uint32_t hash);
+
 /// What is done to a graph.
 struct Operations {
   GeneralizationOptions generalization;
   std::uint32_t seed = 0;             // of the order of removals, and of tolerances
   double greatest_tolerance = 65536;  // cells
+  Checks checks = Checks::all;
 };
 
 /// Builds the graph of the rings, removes corners in any order and takes that back, adapts it to
-/// tolerances up and down, and records its history. Ends the program if an invariant is broken. The
-/// rings, of no more than some hundred points, are used as scratch memory.
+/// tolerances up and down, and records its history, as far as asked for. Ends the program if an
+/// invariant is broken. The rings, of no more than some hundred points, are used as scratch memory.
 void check_operators(Rings& rings, const Operations& operations);
 
 }  // namespace trapeze::fuzzing

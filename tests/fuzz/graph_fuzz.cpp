@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "tests/fuzz/check_operators.h"
+#include "tests/fuzz/input_share.h"
 
 namespace trapeze {
 namespace {
@@ -37,6 +38,7 @@ void check(const std::uint8_t* data, std::size_t size) {
   operations.generalization.weights = static_cast<WeightRule>((data[0] >> 2) % 3);
   operations.seed = data[1];
   operations.greatest_tolerance *= scale;
+  operations.checks = fuzzing::checks_of(fuzzing::hash_of(data, size));
   Rings rings = rings_from(data + 2, size - 2, scale);
   fuzzing::check_operators(rings, operations);
 }

@@ -160,5 +160,25 @@ TEST(NameOfSourceTest, HidesPasswordsAndNothingElse) {
             "/vsicurl/https://me:***@example.org/a.fgb");
 }
 
+TEST(NameOfSourceTest, HidesAllOfAPasswordOfAnyCharacters) {
+  EXPECT_EQ(name_of_source("PG:password='se cret"), "PG:password=***");
+  EXPECT_EQ(name_of_source("PG:password='a\\\\' user='me'"), "PG:password=*** user='me'");
+  EXPECT_EQ(name_of_source("PG:password='' host=db"), "PG:password=*** host=db");
+  EXPECT_EQ(name_of_source("PG:password=password=a password=b"), "PG:password=*** password=***");
+  EXPECT_EQ(name_of_source("PG:password= "), "PG:password= ");
+  EXPECT_EQ(name_of_source("password"), "password");
+  EXPECT_EQ(name_of_source("postgresql://me:se@cret@db/maps"), "postgresql://me:***@db/maps");
+  EXPECT_EQ(name_of_source("postgresql://me:@db/maps"), "postgresql://me:***@db/maps");
+  EXPECT_EQ(name_of_source("postgresql://me@db:5432/maps"), "postgresql://me@db:5432/maps");
+}
+
+TEST(NameOfSourceTest, APasswordMayBeOfAnyLength) {
+  const std::string secret(1'000'000, 'a');
+  EXPECT_EQ(name_of_source("PG:password='" + secret + "'"), "PG:password=***");
+  EXPECT_EQ(name_of_source("PG:password=" + secret), "PG:password=***");
+  EXPECT_EQ(name_of_source("postgresql://me:" + secret + "@db"), "postgresql://me:***@db");
+  EXPECT_EQ(name_of_source("postgresql://" + secret), "postgresql://" + secret);
+}
+
 }  // namespace
 }  // namespace trapeze
