@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -20,8 +19,8 @@ GLsizeiptr bytes_of(std::size_t elements) {
   return static_cast<GLsizeiptr>(elements * sizeof(Element));
 }
 
-GLuint compile(const GlFunctions& gl, GLenum type, const char* source) {
-  const GLuint shader = gl.CreateShader(type);
+GLuint compile(const GlFunctions& gl, const char* source) {
+  const GLuint shader = gl.CreateShader(GL_COMPUTE_SHADER);
   gl.ShaderSource(shader, 1, &source, nullptr);
   gl.CompileShader(shader);
   GLint compiled = GL_FALSE;
@@ -50,8 +49,6 @@ std::string_view gl_error_name(GLenum error) {
       return "out of memory";
     case GL_INVALID_OPERATION:
       return "invalid operation";
-    case GL_INVALID_FRAMEBUFFER_OPERATION:
-      return "invalid framebuffer operation";
     case GL_CONTEXT_LOST:
       return "context lost";
     default:
@@ -109,7 +106,7 @@ std::string_view GlRenderer::name() const {
 }
 
 GlRenderer::Program GlRenderer::make_program(const std::string& source) {
-  const GLuint shader = compile(gl_, GL_COMPUTE_SHADER, source.c_str());
+  const GLuint shader = compile(gl_, source.c_str());
   Program program;
   program.name = gl_.CreateProgram();
   gl_.AttachShader(program.name, shader);
@@ -189,7 +186,7 @@ void GlRenderer::draw_band(Band band, DrawTimes& times) {
         const std::uint32_t first = range.first % store_->chunk_size();
         const std::uint32_t count = std::min(
             {range.count, store_->chunk_size() - first, gl_shader::kMostTrapezoids - in_pass});
-        choose(part.mesh, number, first, count);
+        choose(part.mesh, number, first, count, times);
         in_pass += count;
         range.first += count;
         range.count -= count;
@@ -199,10 +196,11 @@ void GlRenderer::draw_band(Band band, DrawTimes& times) {
 }
 
 void GlRenderer::choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first,
-                        std::uint32_t count) {
+                        std::uint32_t count, DrawTimes& times) {
   const std::size_t band = bands_.size() - 1;
   if (batches_.empty() || batches_.back().band != band || batches_.back().mesh_id != mesh.id ||
       batches_.back().number != number) {
+    const Stopwatch stopwatch(times.draw_ms);  // the chunk may have to be uploaded
     batches_.push_back(
         {band, mesh.id, number, store_->chunk(gl_, mesh, number), indices_.size(), 0});
   }

@@ -80,7 +80,8 @@ class GlRenderer final : public CoverageRenderer {
   void delete_objects() noexcept;
   void draw_task(const CoverageTask& task, DrawTimes& times);
   void draw_band(Band band, DrawTimes& times);
-  void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count);
+  void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count,
+              DrawTimes& times);
   void run_pass(DrawTimes& times);
   void unmap();
   void finish_pass(DrawTimes& times);
