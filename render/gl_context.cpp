@@ -152,7 +152,7 @@ EGLDisplay display_of(const ContextCandidate& candidate) {
   return get_display(EGL_PLATFORM_DEVICE_EXT, devices[index], nullptr);
 }
 
-// A context of EGL, without any surface: the renderer draws into its own framebuffers.
+// A context of EGL, without any surface: the renderer draws into buffers of its own.
 class EglContext final : public GlContext {
  public:
   explicit EglContext(const ContextCandidate& candidate) : display_(display_of(candidate)) {

@@ -1,10 +1,10 @@
 #include "render/gl_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <utility>
 
+#include "render/gl_program.h"
 #include "render/gl_shader.h"
 #include "render/stopwatch.h"
 
@@ -17,19 +17,6 @@ constexpr std::size_t kMostPixels = std::size_t{1} << 22;
 template <class Element>
 GLsizeiptr bytes_of(std::size_t elements) {
   return static_cast<GLsizeiptr>(elements * sizeof(Element));
-}
-
-GLuint compile(const GlFunctions& gl, const char* source) {
-  const GLuint shader = gl.CreateShader(GL_COMPUTE_SHADER);
-  gl.ShaderSource(shader, 1, &source, nullptr);
-  gl.CompileShader(shader);
-  GLint compiled = GL_FALSE;
-  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-  if (compiled == GL_TRUE) return shader;
-  std::array<char, 1024> log{};
-  gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  gl.DeleteShader(shader);
-  throw std::runtime_error(std::string("the GL device rejects a shader: ") + log.data());
 }
 
 // Adds what the shader summed up to wider sums, and leaves zeros behind.
@@ -81,7 +68,7 @@ GlRenderer::GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMes
     throw std::runtime_error("the GL device has no room for a row of a picture");
   }
   try {
-    program_ = make_program(gl_shader::source());
+    program_ = make_program();
     gl_.GenBuffers(1, &index_buffer_);
     gl_.GenBuffers(1, &differences_buffer_);
     throw_on_gl_error(gl_, "setting the renderer up");
@@ -105,21 +92,9 @@ std::string_view GlRenderer::name() const {
   return context_->info().candidate.path == ContextPath::osmesa ? "osmesa" : "egl";
 }
 
-GlRenderer::Program GlRenderer::make_program(const std::string& source) {
-  const GLuint shader = compile(gl_, source.c_str());
+GlRenderer::Program GlRenderer::make_program() {
   Program program;
-  program.name = gl_.CreateProgram();
-  gl_.AttachShader(program.name, shader);
-  gl_.LinkProgram(program.name);
-  gl_.DeleteShader(shader);
-  GLint linked = GL_FALSE;
-  gl_.GetProgramiv(program.name, GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) {
-    std::array<char, 1024> log{};
-    gl_.GetProgramInfoLog(program.name, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    gl_.DeleteProgram(program.name);
-    throw std::runtime_error(std::string("the GL device rejects the program: ") + log.data());
-  }
+  program.name = make_compute_program(gl_, gl_shader::source());
   const auto location = [&](const char* name) {
     return gl_.GetUniformLocation(program.name, name);
   };

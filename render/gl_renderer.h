@@ -9,9 +9,9 @@
 // time: it pays little for a pass, and the differences of one picture stay in its cache.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,7 +34,7 @@ class GlRenderer final : public CoverageRenderer {
   using CoverageRenderer::draw;
   DrawTimes draw(std::span<const CoverageTask> tasks) override;
   bool gains_by_company() const override { return gains_by_company_; }
-  /// Draws tasks together, or one at a time, whatever suits the device.
+  /// Has tasks drawn together, or one at a time, instead of as it suits the device.
   void set_company(bool gains) { gains_by_company_ = gains; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
@@ -76,7 +76,7 @@ class GlRenderer final : public CoverageRenderer {
     std::size_t count = 0;
   };
 
-  Program make_program(const std::string& source);
+  Program make_program();
   void delete_objects() noexcept;
   void draw_task(const CoverageTask& task, DrawTimes& times);
   void draw_band(Band band, DrawTimes& times);

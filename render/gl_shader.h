@@ -4,12 +4,13 @@
 // is summed up along the rows afterwards. So only the pixels that a side runs through are touched,
 // and their eastern neighbours, however large the area between two sides.
 //
-// An invocation takes a trapezoid from row to row. It makes the integers of the trapezoid relative
-// to the picture and cuts them to it in double precision, integrates the area east of each side in
-// closed form, and adds it to integers, in units of 1 / kUnitsPerPixel: sums of integers are the
-// same in whatever order they come about. What is left of a unit is rounded up or down by a share
-// that differs from trapezoid to trapezoid, so that thousands of them in one pixel are not all
-// rounded to the same side.
+// An invocation takes one side of a trapezoid from row to row. It makes the integers of the side
+// relative to the picture and cuts them to it in double precision, integrates the area east of it
+// in closed form, and adds that to integers, in units of 1 / kUnitsPerPixel: sums of integers are
+// the same in whatever order they come about. What is left of a unit is rounded up or down by a
+// share that differs from trapezoid to trapezoid, so that thousands of them in one pixel are not
+// all rounded one way; it is the same for both sides, so that east of a trapezoid nothing is left
+// over.
 #pragma once
 
 #include <string>
@@ -22,7 +23,7 @@ constexpr int kUnitsPerPixel = 1 << 17;
 /// Trapezoids of which no sum of differences leaves 32 bits.
 constexpr unsigned kMostTrapezoids = (1u << 14) - 1;
 
-/// Invocations of a group.
+/// Invocations of a group; a trapezoid takes two.
 constexpr unsigned kGroup = 64;
 
 /// Where the shader finds its storage buffers: indices of trapezoids, and the differences.

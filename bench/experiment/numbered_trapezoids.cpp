@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
-#include <string>
+
+#include "render/gl_program.h"
 
 namespace trapeze::experiment {
 namespace {
@@ -31,7 +32,8 @@ NumberedTrapezoids::NumberedTrapezoids(Screen& screen, std::span<const Point> ve
     : screen_(screen), trapezoids_(screen) {
   const CurrentContext current(screen.context());
   const GlFunctions& gl = screen.context().gl();
-  make_program();
+  program_ = make_compute_program(gl, kShader);
+  count_location_ = gl.GetUniformLocation(program_, "count");
   gl.GenBuffers(1, &vertices_);
   gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, vertices_);
   gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(vertices.size_bytes()),
@@ -45,21 +47,6 @@ NumberedTrapezoids::~NumberedTrapezoids() {
   gl.DeleteBuffers(1, &vertices_);
   gl.DeleteBuffers(1, &numbers_);
   gl.DeleteProgram(program_);
-}
-
-void NumberedTrapezoids::make_program() {
-  const GlFunctions& gl = screen_.context().gl();
-  const GLuint shader = gl.CreateShader(GL_COMPUTE_SHADER);
-  gl.ShaderSource(shader, 1, &kShader, nullptr);
-  gl.CompileShader(shader);
-  program_ = gl.CreateProgram();
-  gl.AttachShader(program_, shader);
-  gl.LinkProgram(program_);
-  gl.DeleteShader(shader);
-  GLint linked = GL_FALSE;
-  gl.GetProgramiv(program_, GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) throw std::runtime_error("the device rejects the program that looks up");
-  count_location_ = gl.GetUniformLocation(program_, "count");
 }
 
 void NumberedTrapezoids::send(std::span<const VertexNumbers> numbers) {

@@ -39,8 +39,6 @@ class NumberedTrapezoids {
   }
 
  private:
-  void make_program();
-
   Screen& screen_;
   DeviceTrapezoids trapezoids_;
   GLuint program_ = 0;

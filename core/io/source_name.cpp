@@ -9,6 +9,7 @@ namespace {
 constexpr std::string_view kWord = "password";
 constexpr std::string_view kMask = "***";
 constexpr std::string_view kSpaces = " \t\n\v\f\r";
+constexpr std::string_view kEndsOfValue = " \t\n\v\f\r&";
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -28,7 +29,7 @@ std::size_t begin_of_value(std::string_view text, std::size_t at) {
 /// A quote that is not closed reaches to the end.
 std::size_t end_of_value(std::string_view text, std::size_t begin) {
   if (text[begin] != '\'') {
-    return std::min(text.find_first_of(" \t\n\v\f\r&", begin), text.size());
+    return std::min(text.find_first_of(kEndsOfValue, begin), text.size());
   }
   for (std::size_t i = begin + 1; i < text.size(); ++i) {
     if (text[i] == '\'') return i + 1;

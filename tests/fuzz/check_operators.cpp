@@ -15,8 +15,6 @@ namespace trapeze::fuzzing {
 namespace {
 
 constexpr int kRemovals = 12;
-constexpr int kJumps = 8;
-constexpr int kFewJumps = 2;
 
 class Random {
  public:
@@ -87,7 +85,7 @@ void check_any_order(const TrapezoidalGraph& original, bool after_every_step, Ra
 void check_tolerances(const TrapezoidalGraph& original, const Operations& operations,
                       Random& random) {
   AdaptableGraph adaptable(original, operations.generalization);
-  const int jumps = operations.checks == Checks::all ? kJumps : kFewJumps;
+  const int jumps = jumps_of(operations.checks);
   for (int jump = 0; jump < jumps; ++jump) {
     const double share = static_cast<double>(random.next() % 4096) / 4096;
     adaptable.adapt_to(operations.greatest_tolerance * share / (1 << (random.next() % 12)));
@@ -103,10 +101,6 @@ void check_tolerances(const TrapezoidalGraph& original, const Operations& operat
 
 }  // namespace
 
-Checks checks_of(std::uint32_t hash) {
-  return hash % 8 == 0 ? Checks::all : static_cast<Checks>(1 + hash / 8 % 3);
-}
-
 void check_operators(Rings& rings, const Operations& operations) {
   GraphBuilder builder;
   TrapezoidalGraph graph;
@@ -114,13 +108,11 @@ void check_operators(Rings& rings, const Operations& operations) {
   require(outcome.failure.empty(), outcome.failure);
   if (!outcome.built) return;
   require_sound(graph);
-  const auto has = [&operations](Checks part) {
-    return operations.checks == Checks::all || operations.checks == part;
-  };
   Random random(operations.seed);
-  if (has(Checks::any_order)) check_any_order(graph, operations.checks == Checks::all, random);
-  if (has(Checks::tolerances)) check_tolerances(graph, operations, random);
-  if (!has(Checks::history)) return;
+  if (is_made(operations.checks, Checks::rebuilding))
+    check_any_order(graph, operations.checks == Checks::all, random);
+  if (is_made(operations.checks, Checks::tolerances)) check_tolerances(graph, operations, random);
+  if (!is_made(operations.checks, Checks::history)) return;
   History history;
   HistoryRecorder().record(graph, operations.generalization, history);
 }

@@ -6,15 +6,9 @@
 
 #include "core/adaptable_graph.h"
 #include "core/rings.h"
+#include "tests/fuzz/input_share.h"
 
 namespace trapeze::fuzzing {
-
-/// What is checked of a graph, beside that it can be built: all, after every step, or one of the
-/// parts, each of which takes about as long as building.
-enum class Checks : std::uint8_t { all, any_order, tolerances, history };
-
-/// All of one input in eight, and of the others one part, by the hash of the input.
-Checks checks_of(std::uint32_t hash);
 
 /// What is done to a graph.
 struct Operations {

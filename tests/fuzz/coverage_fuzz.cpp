@@ -24,16 +24,12 @@
 namespace trapeze {
 namespace {
 
+using fuzzing::Checks;
 using fuzzing::require;
 
 constexpr std::int16_t kEndOfRing = 0x7fff;
 constexpr std::size_t kMaxPoints = 300;  // the checks are slower than what they check
 constexpr std::size_t kMaxFeatures = 12;
-constexpr int kJumps = 8;
-constexpr int kFewJumps = 2;
-
-/// What is checked of a coverage: all of one input in eight, and of the others one part.
-enum class Checks : std::uint8_t { all, map, tolerances, history };
 
 struct Input {
   CoverageMode mode = CoverageMode::automatic;
@@ -41,8 +37,6 @@ struct Input {
   int scale = 1;
   std::uint8_t seed = 0;
   Checks checks = Checks::all;
-
-  bool has(Checks part) const { return checks == Checks::all || checks == part; }
   std::vector<Rings> features;
 };
 
@@ -71,8 +65,7 @@ Input input_from(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<double, 4> kGaps = {0, 0.05, 1, kWidestGap};
   input.close_gaps = kGaps[data[0] >> 2 & 3];
   input.seed = data[1];
-  const std::uint32_t hash = fuzzing::hash_of(data, size);
-  input.checks = hash % 8 == 0 ? Checks::all : static_cast<Checks>(1 + hash / 8 % 3);
+  input.checks = fuzzing::checks_of(fuzzing::hash_of(data, size));
   input.features = features_from(data + 2, size - 2, input.scale);
   for (Rings& rings : input.features) clean_rings(rings);
   return input;
@@ -109,7 +102,7 @@ void check_tolerances(const TrapezoidalGraph& original, const Input& input) {
   const std::size_t holes = count_holes(original);
   AdaptableGraph adaptable(original);
   std::uint32_t random = input.seed;
-  const int jumps = input.checks == Checks::all ? kJumps : kFewJumps;
+  const int jumps = fuzzing::jumps_of(input.checks);
   for (int jump = 0; jump < jumps; ++jump) {
     random = random * 1664525u + 1013904223u;
     const double share = static_cast<double>(random >> 20) / 4096;
@@ -139,9 +132,9 @@ void check_group(const std::vector<std::uint32_t>& group, const Input& input) {
           "a feature is lost, or there twice");
   if (assembly.together.empty()) return;
   require_sound(graph);
-  if (input.has(Checks::map)) require_rebuilt(graph);
-  if (input.has(Checks::tolerances)) check_tolerances(graph, input);
-  if (!input.has(Checks::history)) return;
+  if (is_made(input.checks, Checks::rebuilding)) require_rebuilt(graph);
+  if (is_made(input.checks, Checks::tolerances)) check_tolerances(graph, input);
+  if (!is_made(input.checks, Checks::history)) return;
   History history;
   HistoryRecorder().record(graph, rows, {}, history);
 }
