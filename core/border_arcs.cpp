@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/boundary_walk.h"
+
 namespace trapeze {
 
 Spoke spoke_of(const TrapezoidalGraph& graph, VertexId v, EdgeId e, RegionId left, RegionId right) {
@@ -95,25 +97,10 @@ void BorderArcs::pair_edges(VertexId v, const Regions& regions, const Trapezoida
 
 void BorderArcs::walk(VertexId start, EdgeId first, TrapezoidalGraph& graph) {
   auto& corners = graph.corners_;
-  VertexId v = start;
-  EdgeId e = first;
-  CornerId last;
-  do {
-    const CornerId c(e.value);
-    corners[c].vertex = v;
-    corners[c].edge = e;
-    corners[c].prev = last;
-    if (!last.is_none()) corners[last].next = c;
-    last = c;
-    v = boundary_->edges[e].upper == v ? boundary_->edges[e].lower : boundary_->edges[e].upper;
-    e = partner(v, e);
-  } while (!e.is_none() && e != first);
-  if (e.is_none()) {
-    corners[last].next = corners.push_back(Corner{v, {}, last, {}});
-  } else {
-    corners[last].next = CornerId(first.value);
-    corners[CornerId(first.value)].prev = last;
-  }
+  const BoundaryWalk walked = walk_boundary(
+      *boundary_, start, first, [this](VertexId v, EdgeId e) { return partner(v, e); }, corners);
+  if (walked.is_loop) return;
+  corners[walked.last].next = corners.push_back(Corner{walked.end, {}, walked.last, {}});
 }
 
 }  // namespace trapeze

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/boundary_walk.h"
+
 namespace trapeze {
 
 void BoundaryLoops::take_rings(const Rings& rings, const Boundary& boundary,
@@ -28,7 +30,11 @@ void BoundaryLoops::trace(const Boundary& boundary, TrapezoidalGraph& graph) {
   }
   graph.corners_.assign(count, Corner{});
   for (std::size_t e = 0; e < count; ++e) {
-    if (graph.corners_[CornerId(e)].vertex.is_none()) walk(boundary, graph, EdgeId(e));
+    const EdgeId first(e);
+    if (!graph.corners_[CornerId(e)].vertex.is_none()) continue;
+    walk_boundary(
+        boundary, boundary.edges[first].upper, first,
+        [this](VertexId v, EdgeId at) { return partner(v, at); }, graph.corners_);
   }
   if (boundary.has_touches) cut_into_simple_loops(graph);
 }
@@ -70,25 +76,6 @@ void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph&
 
 EdgeId BoundaryLoops::partner(VertexId v, EdgeId e) const {
   return partner_[2 * e.value + (boundary_->edges[e].lower == v)];
-}
-
-void BoundaryLoops::walk(const Boundary& boundary, TrapezoidalGraph& graph, EdgeId first) {
-  auto& corners = graph.corners_;
-  VertexId v = boundary.edges[first].upper;
-  EdgeId e = first;
-  CornerId last;
-  do {
-    const CornerId c(e.value);
-    corners[c].vertex = v;
-    corners[c].edge = e;
-    corners[c].prev = last;
-    if (!last.is_none()) corners[last].next = c;
-    last = c;
-    v = boundary.edges[e].upper == v ? boundary.edges[e].lower : boundary.edges[e].upper;
-    e = partner(v, e);
-  } while (e != first);
-  corners[last].next = CornerId(first.value);
-  corners[CornerId(first.value)].prev = last;
 }
 
 void BoundaryLoops::cut_into_simple_loops(TrapezoidalGraph& graph) {

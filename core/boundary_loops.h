@@ -27,7 +27,6 @@ class BoundaryLoops {
  private:
   EdgeId partner(VertexId v, EdgeId e) const;
   void pair_edges(const Boundary& boundary, const TrapezoidalGraph& graph, VertexId v);
-  void walk(const Boundary& boundary, TrapezoidalGraph& graph, EdgeId first);
   void cut_into_simple_loops(TrapezoidalGraph& graph);
   static void close_loop(TrapezoidalGraph& graph, const CornerId* begin, const CornerId* end);
 

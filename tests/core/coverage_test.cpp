@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <set>
-#include <tuple>
 
 #include "core/adaptable_graph.h"
 #include "core/check_graph.h"
 #include "core/coverage_builder.h"
 #include "core/history.h"
 #include "tests/core/coverage_shapes.h"
+#include "tests/core/drawn_trapezoids.h"
 
 namespace trapeze {
 namespace {
@@ -183,40 +182,6 @@ TEST(Coverage, StateDependsOnTheToleranceOnly) {
     wandering.adapt_to(0);
     EXPECT_EQ(wandering.graph(), c.graph);
   }
-}
-
-/// A drawn trapezoid: its row, its levels and its edges as coordinates.
-using Drawn = std::tuple<std::uint32_t, int, int, int, int, int, int, int, int, int, int>;
-
-Drawn drawn(std::uint32_t row, int top, int bottom, Point lu, Point ll, Point ru, Point rl) {
-  return {row, top, bottom, lu.x, lu.y, ll.x, ll.y, ru.x, ru.y, rl.x, rl.y};
-}
-
-std::multiset<Drawn> inside_of(const TrapezoidalGraph& g, const std::vector<std::uint32_t>& rows) {
-  std::multiset<Drawn> found;
-  for (const NodeId n : g.inside_nodes()) {
-    const Node& node = g.node(n);
-    const auto at = [&](Side s, Direction d) { return g.point(g.edge(node.edge[s]).end[d]); };
-    const int top = g.point(node.end[kUp]).y;
-    const int bottom = g.point(node.end[kDown]).y;
-    if (top == bottom) continue;
-    found.insert(drawn(rows[g.face(node) - 1], top, bottom, at(kLeft, kUp), at(kLeft, kDown),
-                       at(kRight, kUp), at(kRight, kDown)));
-  }
-  return found;
-}
-
-std::multiset<Drawn> alive_at(const History& h, Level level) {
-  std::multiset<Drawn> found;
-  for (std::size_t i = 0; i < h.trapezoids.size(); ++i) {
-    if (!h.lifespans[i].contains(level)) continue;
-    const MeshTrapezoid& t = h.trapezoids[i];
-    const auto at = [&](std::uint32_t v) { return h.vertices[v]; };
-    found.insert(drawn(h.rows[i], at(t.top).y, at(t.bottom).y, at(h.edges[t.left].upper),
-                       at(h.edges[t.left].lower), at(h.edges[t.right].upper),
-                       at(h.edges[t.right].lower)));
-  }
-  return found;
 }
 
 std::vector<std::uint32_t> rows_for(const TrapezoidalGraph& graph) {

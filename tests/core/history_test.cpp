@@ -5,50 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <tuple>
 
 #include "core/dust.h"
 #include "core/graph_builder.h"
 #include "core/layer_builder.h"
 #include "core/mesh_index.h"
+#include "tests/core/drawn_trapezoids.h"
 #include "tests/core/shapes.h"
 
 namespace trapeze {
 namespace {
 
-/// A drawn trapezoid: its levels and its edges as coordinates.
-using Drawn = std::tuple<int, int, int, int, int, int, int, int, int, int>;
-
-Drawn drawn(std::int32_t top, std::int32_t bottom, Point lu, Point ll, Point ru, Point rl) {
-  return {top, bottom, lu.x, lu.y, ll.x, ll.y, ru.x, ru.y, rl.x, rl.y};
-}
-
-std::multiset<Drawn> inside_of(const TrapezoidalGraph& g) {
-  std::multiset<Drawn> found;
-  for (const NodeId n : g.inside_nodes()) {
-    const Node& node = g.node(n);
-    const auto at = [&](Side s, Direction d) { return g.point(g.edge(node.edge[s]).end[d]); };
-    const std::int32_t top = g.point(node.end[kUp]).y;
-    const std::int32_t bottom = g.point(node.end[kDown]).y;
-    if (top == bottom) continue;  // no area
-    found.insert(
-        drawn(top, bottom, at(kLeft, kUp), at(kLeft, kDown), at(kRight, kUp), at(kRight, kDown)));
-  }
-  return found;
-}
-
-std::multiset<Drawn> alive_at(const History& h, Level level) {
-  std::multiset<Drawn> found;
-  for (std::size_t i = 0; i < h.trapezoids.size(); ++i) {
-    if (!h.lifespans[i].contains(level)) continue;
-    const MeshTrapezoid& t = h.trapezoids[i];
-    const auto at = [&](std::uint32_t v) { return h.vertices[v]; };
-    found.insert(drawn(at(t.top).y, at(t.bottom).y, at(h.edges[t.left].upper),
-                       at(h.edges[t.left].lower), at(h.edges[t.right].upper),
-                       at(h.edges[t.right].lower)));
-  }
-  return found;
-}
+/// Of the one feature.
+constexpr std::uint32_t kRow[] = {0};
 
 TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
   for (unsigned seed = 0; seed < 210; ++seed) {
@@ -65,7 +34,7 @@ TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
       recorder.record(graph, options, history);
       for (int level = 0; level <= kLastLevel; ++level) {
         adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph()))
+        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph(), kRow))
             << "level " << level;
       }
     }

@@ -1,5 +1,4 @@
 // Real coverages stay coverages at every zoom and at odd tolerances.
-#include <geos_c.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,24 +16,20 @@
 #include "core/clean_rings.h"
 #include "core/coverage_builder.h"
 #include "core/coverage_groups.h"
-#include "core/io/feature_source.h"
-#include "core/io/source_ring_reader.h"
 #include "core/polygons.h"
 #include "core/regions.h"
-#include "core/tolerance.h"
-#include "core/web_mercator.h"
+#include "tests/io/geos_validity.h"
+#include "tests/io/source_rings.h"
 
 namespace trapeze {
 namespace {
 
-constexpr double kTolerancePixels = 0.25;
+using testing::epsilon_of_zoom;
+using testing::GeosValidity;
+using testing::rings_of_source;
+
 // GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
 constexpr std::size_t kMaxHolesForGeos = 500;
-
-double epsilon_of_zoom(int zoom) {
-  const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / 256;
-  return epsilon_of_level(nearest_level(kTolerancePixels * cells_per_pixel));
-}
 
 /// Those of all zooms, and ten that are of none, in ascending order.
 std::vector<double> tolerances() {
@@ -46,52 +41,6 @@ std::vector<double> tolerances() {
   std::sort(epsilons.begin(), epsilons.end());
   return epsilons;
 }
-
-std::vector<Rings> rings_of_source(const std::string& path) {
-  FeatureSource source(path);
-  SourceRingReader reader(source);
-  std::vector<Rings> features;
-  for (SourceFeature next; source.next(next);) {
-    const OGRGeometry* geometry = next.feature->GetGeomFieldRef(next.layer->geometry_field);
-    if (geometry == nullptr || !has_polygons(*geometry)) continue;
-    features.push_back(reader.read(*geometry, next.layer_index).rings);
-    clean_rings(features.back());
-  }
-  return features;
-}
-
-class Geos {
- public:
-  Geos() : handle_(GEOS_init_r()) {}
-  ~Geos() { GEOS_finish_r(handle_); }
-  Geos(const Geos&) = delete;
-  Geos& operator=(const Geos&) = delete;
-
-  bool is_valid(const Rings& rings, std::size_t begin, std::size_t end) const {
-    std::vector<GEOSGeometry*> holes;
-    GEOSGeometry* shell = ring(rings[begin]);
-    for (std::size_t r = begin + 1; r < end; ++r) holes.push_back(ring(rings[r]));
-    GEOSGeometry* polygon =
-        GEOSGeom_createPolygon_r(handle_, shell, holes.data(), static_cast<unsigned>(holes.size()));
-    const bool is_valid = GEOSisValid_r(handle_, polygon) == 1;
-    GEOSGeom_destroy_r(handle_, polygon);
-    return is_valid;
-  }
-
- private:
-  GEOSGeometry* ring(std::span<const Point> points) const {
-    std::vector<double> xy;
-    for (std::size_t i = 0; i <= points.size(); ++i) {
-      const Point p = points[i % points.size()];
-      xy.insert(xy.end(), {static_cast<double>(p.x), static_cast<double>(p.y)});
-    }
-    return GEOSGeom_createLinearRing_r(
-        handle_, GEOSCoordSeq_copyFromBuffer_r(
-                     handle_, xy.data(), static_cast<unsigned>(points.size() + 1), false, false));
-  }
-
-  GEOSContextHandle_t handle_;
-};
 
 /// A directed edge of a ring.
 using Step = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::int32_t>;
@@ -117,7 +66,7 @@ class CoverageTrial {
       SCOPED_TRACE("tolerance " + std::to_string(epsilon));
       adaptable_.adapt_to(epsilon);
       judge(epsilon);
-      if (testing::Test::HasFatalFailure()) return;
+      if (::testing::Test::HasFatalFailure()) return;
     }
   }
 
@@ -157,7 +106,7 @@ class CoverageTrial {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const std::size_t begin = polygons.first_ring(i);
       if (polygons.ends[i] - begin > kMaxHolesForGeos) continue;
-      EXPECT_TRUE(geos_.is_valid(polygons.rings, begin, polygons.ends[i]));
+      EXPECT_EQ(geos_.complaint(polygons.rings, begin, polygons.ends[i]), "");
     }
   }
 
@@ -189,7 +138,7 @@ class CoverageTrial {
                                     vertices.begin());
   }
 
-  const Geos geos_;
+  const GeosValidity geos_;
   const std::size_t holes_;
   AdaptableGraph adaptable_;
 };
@@ -218,9 +167,12 @@ TEST_P(CoverageDataTest, StaysACoverageAtEveryTolerance) {
   std::string reason;
   const std::filesystem::path path = path_of(GetParam(), reason);
   if (path.empty()) GTEST_SKIP() << reason;
-  const std::vector<Rings> features = rings_of_source(path.string());
+  std::vector<Rings> features = rings_of_source(path.string());
   std::vector<const Rings*> pointers;
-  for (const Rings& rings : features) pointers.push_back(&rings);
+  for (Rings& rings : features) {
+    clean_rings(rings);
+    pointers.push_back(&rings);
+  }
   std::size_t grouped = 0;
   for (const auto& group : group_features(pointers, CoverageMode::automatic)) {
     std::vector<const Rings*> members;

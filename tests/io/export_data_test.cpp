@@ -11,8 +11,7 @@
 #include <ogrsf_frmts.h>
 
 #include "core/io/export_layer.h"
-#include "core/tolerance.h"
-#include "core/web_mercator.h"
+#include "tests/io/source_rings.h"
 #include "tests/io/temporary_folder.h"
 
 namespace trapeze {
@@ -44,8 +43,7 @@ TEST_P(ExportDataTest, EveryPolygonOfEveryFormatIsValidInDegreesAndInMetres) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const TemporaryFolder folder;
   ExportOptions options;
-  const double cells_per_pixel = static_cast<double>(TileId{GetParam().zoom, 0, 0}.side()) / 256;
-  options.epsilon = epsilon_of_level(nearest_level(0.25 * cells_per_pixel));
+  options.epsilon = testing::epsilon_of_zoom(GetParam().zoom);
   options.overwrite = true;
   for (const char* name : {"out.fgb", "out.gpkg", "out.geojson"}) {
     for (const ExportCrs crs : {ExportCrs::degrees, ExportCrs::web_mercator}) {

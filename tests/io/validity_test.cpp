@@ -1,6 +1,5 @@
 // What is left of real polygons is valid at every zoom, and hardly more than Douglas-Peucker
 // leaves.
-#include <geos_c.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,68 +19,22 @@
 #include "core/adaptable_graph.h"
 #include "core/check_graph.h"
 #include "core/graph_builder.h"
-#include "core/io/feature_source.h"
-#include "core/io/source_ring_reader.h"
 #include "core/polygons.h"
-#include "core/tolerance.h"
-#include "core/web_mercator.h"
+#include "tests/io/geos_validity.h"
+#include "tests/io/source_rings.h"
 
 namespace trapeze {
 namespace {
 
+using testing::epsilon_of_zoom;
+using testing::GeosValidity;
+using testing::rings_of_source;
+
 constexpr int kFinestZoom = 22;
-constexpr double kTolerancePixels = 0.25;
-constexpr double kPixelsPerTile = 256;
 // GEOS looks at every hole of a polygon together with every other: minutes for ten thousands.
 constexpr std::size_t kMaxHolesForGeos = 2000;
 // The share held by the topology test is looked at once there are enough vertices to speak of one.
 constexpr std::size_t kEnoughVertices = 1000;
-
-double epsilon_of_zoom(int zoom) {
-  const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
-  return epsilon_of_level(nearest_level(kTolerancePixels * cells_per_pixel));
-}
-
-/// One thread's use of GEOS.
-class Geos {
- public:
-  Geos() : handle_(GEOS_init_r()) {}
-  ~Geos() { GEOS_finish_r(handle_); }
-  Geos(const Geos&) = delete;
-  Geos& operator=(const Geos&) = delete;
-
-  /// Empty if the polygon of these rings is valid, otherwise why not.
-  std::string complaint(const Rings& rings, std::size_t begin, std::size_t end) const {
-    std::vector<GEOSGeometry*> holes;
-    GEOSGeometry* shell = ring(rings[begin]);
-    for (std::size_t r = begin + 1; r < end; ++r) holes.push_back(ring(rings[r]));
-    GEOSGeometry* polygon =
-        GEOSGeom_createPolygon_r(handle_, shell, holes.data(), static_cast<unsigned>(holes.size()));
-    std::string words;
-    if (GEOSisValid_r(handle_, polygon) != 1) {
-      char* reason = GEOSisValidReason_r(handle_, polygon);
-      words = reason;
-      GEOSFree_r(handle_, reason);
-    }
-    GEOSGeom_destroy_r(handle_, polygon);
-    return words;
-  }
-
- private:
-  /// Cells are whole numbers below 2^31: doubles hold them exactly.
-  GEOSGeometry* ring(std::span<const Point> points) const {
-    std::vector<double> xy;
-    for (std::size_t i = 0; i <= points.size(); ++i) {
-      const Point p = points[i % points.size()];
-      xy.insert(xy.end(), {static_cast<double>(p.x), static_cast<double>(p.y)});
-    }
-    return GEOSGeom_createLinearRing_r(
-        handle_, GEOSCoordSeq_copyFromBuffer_r(
-                     handle_, xy.data(), static_cast<unsigned>(points.size() + 1), false, false));
-  }
-
-  GEOSContextHandle_t handle_;
-};
 
 /// Of all features of a file at one zoom.
 struct Tally {
@@ -177,7 +130,7 @@ std::string complaint_of_graph(const Rings& rings, std::size_t begin, std::size_
 /// Takes one feature from its finest to its coarsest zoom and judges what it becomes.
 class FeatureTrial {
  public:
-  FeatureTrial(const Geos& geos, std::size_t feature) : geos_(geos), feature_(feature) {}
+  FeatureTrial(const GeosValidity& geos, std::size_t feature) : geos_(geos), feature_(feature) {}
 
   void run(Rings rings, Tallies& tallies) {
     TrapezoidalGraph graph;
@@ -236,33 +189,19 @@ class FeatureTrial {
     }
   }
 
-  const Geos& geos_;
+  const GeosValidity& geos_;
   const std::size_t feature_;
   bool has_begun_ = false;
   Rings left_;
   Tally judged_;
 };
 
-std::vector<Rings> rings_of_source(const std::string& path) {
-  FeatureSource source(path);
-  SourceRingReader reader(source);
-  std::vector<Rings> features;
-  for (SourceFeature next; source.next(next);) {
-    const OGRGeometry* geometry = next.feature->GetGeomFieldRef(next.layer->geometry_field);
-    if (geometry == nullptr || !has_polygons(*geometry)) continue;
-    const FeatureRings& feature = reader.read(*geometry, next.layer_index);
-    EXPECT_EQ(feature.failure, "") << "feature " << next.feature->GetFID();
-    features.push_back(feature.rings);
-  }
-  return features;
-}
-
 Tallies try_features(std::vector<Rings> features) {
   Tallies sum{};
   std::mutex mutex;
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
-    const Geos geos;
+    const GeosValidity geos;
     Tallies tallies{};
     for (std::size_t i = next++; i < features.size(); i = next++) {
       FeatureTrial(geos, i).run(std::move(features[i]), tallies);
