@@ -254,8 +254,8 @@ A pixel is 0.28 mm (OGC), and the scale is true at the latitude of the map's mid
 is up to the seed, always to a vertex in view. Contestants take turns run by run; each view counts with
 the run of its median total, of two the faster. There are ${report.runs} runs at most, and as many for all: one that would
 take those of a map to more than ${count(report.seconds_of_runs)} seconds is not begun. *Processor time* is that of all threads, the device's among them: what
-other programs on the machine disturb least. *Read back* adds up
-along rows what drawing left, and turns it into 8 bits in memory.
+other programs on the machine disturb least. *Read back* adds up along rows what
+drawing left, and turns it into 8 bits in memory.
 
 ## Results
 

@@ -38,10 +38,20 @@ struct Sent {
   std::size_t bytes;
 };
 
+/// libFuzzer looks at the clock by SIGALRM every few seconds. Calls that it interrupts are to go
+/// on: without this they fail with EINTR, which looks as if the server had hung up.
+void go_on_after_alarms() {
+  struct sigaction action {};
+  require(sigaction(SIGALRM, nullptr, &action) == 0, "no signals");
+  action.sa_flags |= SA_RESTART;
+  require(sigaction(SIGALRM, &action, nullptr) == 0, "no signals");
+}
+
 /// A server that answers everything with a few words, and what it has sent.
 class FuzzedServer {
  public:
   FuzzedServer() {
+    go_on_after_alarms();
     spdlog::set_level(spdlog::level::off);
     thread_ = std::thread([this] { server_->run(); });
   }
@@ -107,15 +117,6 @@ sockaddr_in loopback(std::uint32_t host, std::uint16_t port) {
   return address;
 }
 
-/// libFuzzer looks at the clock by SIGALRM every few seconds. Calls that it interrupts are to go
-/// on: without this they fail with EINTR, which looks as if the server had hung up.
-void go_on_after_alarms() {
-  struct sigaction action {};
-  require(sigaction(SIGALRM, nullptr, &action) == 0, "no signals");
-  action.sa_flags |= SA_RESTART;
-  require(sigaction(SIGALRM, &action, nullptr) == 0, "no signals");
-}
-
 /// A connection from one of many addresses in turn: a port rests for a minute when its connection
 /// has ended, and one address has too few for thousands a second.
 int connect_to(std::uint16_t port) {
@@ -168,8 +169,6 @@ void take_answer(const Sent& sent, std::string_view& received) {
 }
 
 void check(std::string_view bytes) {
-  static std::once_flag first;
-  std::call_once(first, go_on_after_alarms);
   static FuzzedServer server;
   const std::string all = exchange_bytes(server.port(), bytes.substr(0, kMaxInput));
   std::string_view received = all;
