@@ -79,6 +79,9 @@ function make_map() {
     maxBounds: [[-MAX_LATITUDE, -1e6], [MAX_LATITUDE, 1e6]],
     maxBoundsViscosity: 1,
     worldCopyJump: true,
+    // Old tiles show through new ones that fade in, and where frames come late (a tile fades for
+    // 200 ms, Leaflet looks after 250) they never go.
+    fadeAnimation: false,
     wheelPxPerZoomLevel: 120, // one notch of a mouse wheel is one zoom
   });
   L.control.scale({ position: "bottomleft", imperial: false }).addTo(map);
@@ -150,6 +153,8 @@ class Viewer {
   constructor(catalog) {
     this.layers_ = usable_layers(catalog);
     const view = parse_hash(location.hash);
+    this.named_ = {};
+    this.take_view_(view);
     this.map_ = make_map();
     this.go_to_(view.place);
     this.make_map_layers_();
@@ -157,11 +162,11 @@ class Viewer {
     show_attribution(this.map_, this.layers_);
     show_about(catalog, this.layers_);
 
-    this.show_view_(view).then(() => {
-      this.map_.on("moveend", () => this.write_address_());
-      window.addEventListener("hashchange", () => this.read_address_());
-      this.write_address_();
-    });
+    this.map_.on("moveend", () => this.write_address_());
+    this.map_.on("zoomanim zoomend", ({ type }) => (this.is_zooming_ = type === "zoomanim"));
+    // As it was typed: by now location may say again what write_address_ wrote.
+    window.addEventListener("hashchange", ({ newURL }) => this.read_address_(new URL(newURL).hash));
+    this.show_view_(view);
   }
 
   // ---- made once
@@ -220,6 +225,14 @@ class Viewer {
     const named = await this.load_named_style_(view.shared);
     if (this.view_ !== view) return;
     this.named_ = named;
+    this.take_view_(view);
+    this.show_usual_();
+    this.states_.forEach((_, i) => this.prove_style_(i));
+    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
+    else this.features_.hide();
+  }
+
+  take_view_(view) {
     this.shared_ = view.shared;
     this.compare_ = view.compare;
     this.against_ = view.against ?? "full";
@@ -235,10 +248,6 @@ class Viewer {
         usual: new Map(), // what holds where the style says nothing
       };
     });
-    this.show_usual_();
-    this.states_.forEach((_, i) => this.prove_style_(i));
-    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
-    else this.features_.hide();
   }
 
   /** The panel, after what is usual may have changed. */
@@ -436,11 +445,15 @@ class Viewer {
 
   // ---- the address
 
-  async read_address_() {
-    const view = parse_hash(location.hash);
+  async read_address_(hash) {
+    const view = parse_hash(hash);
     await this.show_view_(view);
+    if (!view.place) return;
     // Moving writes the address: of this view, unless another has come meanwhile.
-    if (view.place && this.view_ === view) this.go_to_(view.place);
+    const go = () => this.view_ === view && this.go_to_(view.place);
+    // Leaflet takes no other place while it zooms.
+    if (this.is_zooming_) this.map_.once("zoomend", go);
+    else go();
   }
 
   /** Says only what differs from the defaults, and makes no step in the history. */

@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import {
-  PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour, save_screenshot,
-  shown_tiles, start_browser_and_server, tiles_drawn,
+  DESKTOP, PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour,
+  save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 // Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
@@ -12,8 +12,10 @@ const FAILED_RESOURCE = /^Failed to load resource/;
 
 const { browser, server } = await start_browser_and_server();
 
-async function open(hash = "", options = undefined) {
+/** `before` prepares the page that is about to be loaded. */
+async function open(hash = "", options = undefined, before = async () => {}) {
   const { page, seen } = await new_page(browser, options);
+  await before(page);
   await page.goto(server.base + hash);
   await tiles_drawn(page);
   return { page, seen };
@@ -121,13 +123,69 @@ test("a layer can be switched off and coloured, and the address keeps it", async
   await page.context().close();
 });
 
+/** Until there are no tiles but of the layer lake at `zoom`. */
+function only_lake_at(page, zoom) {
+  // Leaflet keeps tiles of the zoom before until a moment after the new ones have come.
+  return page.waitForFunction((part) =>
+    [...document.querySelectorAll("img.leaflet-tile")].every((tile) => tile.src.includes(part)),
+  `/lake/${zoom}/`);
+}
+
 test("typing another address moves the map and switches layers", async () => {
   const { page, seen } = await open("#5/46/10");
   await page.evaluate(() => (location.hash = "#8/45/6&on=lake"));
-  // Leaflet keeps tiles of the zoom before until a moment after the new ones have come.
-  await page.waitForFunction(() =>
-    [...document.querySelectorAll("img.leaflet-tile")].every((tile) => tile.src.includes("/lake/8/")));
+  await only_lake_at(page, 8);
   await tiles_drawn(page);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("tiles of another zoom go, however late frames come", async () => {
+  const { page, seen } = await open("#5/46/10", DESKTOP, (page) => page.addInitScript(() => {
+    const next_frame = requestAnimationFrame;
+    window.requestAnimationFrame = (draw) => setTimeout(() => next_frame(draw), 300);
+    window.cancelAnimationFrame = clearTimeout;
+  }));
+  await page.evaluate(() => (location.hash = "#8/45/6&on=lake"));
+  await only_lake_at(page, 8);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("of addresses typed one upon the other the last one holds", async () => {
+  const { page, seen } = await open("#5/46/10");
+  await page.evaluate(async () => {
+    location.hash = "#8/45/6&on=lake";
+    while (!document.querySelector(".leaflet-zoom-anim")) {
+      await new Promise((resolve) => setTimeout(resolve));
+    }
+    location.hash = "#7/47/8&on=lake";
+    // As an answer of the server does that comes just then.
+    history.replaceState(null, "", "#5/46/10");
+  });
+  await only_lake_at(page, 7);
+  await map_at_rest(page);
+  assert.equal(await hash_of(page), "#7/47.000/8.000&on=lake");
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("an address typed while the page waits for a style is not lost", async () => {
+  let answer_style;
+  const is_typed = new Promise((resolve) => (answer_style = resolve));
+  const { page, seen } = await new_page(browser);
+  await page.route("**/styles/night", async (route) => {
+    await is_typed;
+    await route.continue();
+  });
+  await page.goto(`${server.base}#5/46/10&style=night`);
+  await page.waitForSelector("#layers .name");
+  await page.evaluate(() => (location.hash = "#8/45/6&on=lake"));
+  await only_lake_at(page, 8);
+  answer_style();
+  await map_at_rest(page);
+  await tiles_drawn(page);
+  assert.equal(await hash_of(page), "#8/45.0000/6.0000&on=lake");
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
