@@ -232,6 +232,7 @@ class Viewer {
     else this.features_.hide();
   }
 
+  /** What `view` says is the state from now on; nothing is drawn of it yet. */
   take_view_(view) {
     this.shared_ = view.shared;
     this.compare_ = view.compare;
