@@ -154,7 +154,6 @@ class Viewer {
     this.layers_ = usable_layers(catalog);
     const view = parse_hash(location.hash);
     this.named_ = {};
-    this.take_view_(view);
     this.map_ = make_map();
     this.go_to_(view.place);
     this.make_map_layers_();
@@ -219,21 +218,9 @@ class Viewer {
 
   // ---- what is shown
 
-  /** Everything but the place. */
+  /** Everything but the place; nothing new is drawn before its named style has come. */
   async show_view_(view) {
     this.view_ = view;
-    const named = await this.load_named_style_(view.shared);
-    if (this.view_ !== view) return;
-    this.named_ = named;
-    this.take_view_(view);
-    this.show_usual_();
-    this.states_.forEach((_, i) => this.prove_style_(i));
-    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
-    else this.features_.hide();
-  }
-
-  /** What `view` says is the state from now on; nothing is drawn of it yet. */
-  take_view_(view) {
     this.shared_ = view.shared;
     this.compare_ = view.compare;
     this.against_ = view.against ?? "full";
@@ -249,6 +236,13 @@ class Viewer {
         usual: new Map(), // what holds where the style says nothing
       };
     });
+    const named = await this.load_named_style_(view.shared);
+    if (this.view_ !== view) return;
+    this.named_ = named;
+    this.show_usual_();
+    this.states_.forEach((_, i) => this.prove_style_(i));
+    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
+    else this.features_.hide();
   }
 
   /** The panel, after what is usual may have changed. */

@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import {
-  DESKTOP, PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour,
-  save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
+  PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, pixels_of_colour, save_screenshot,
+  shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 // Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
@@ -12,10 +12,8 @@ const FAILED_RESOURCE = /^Failed to load resource/;
 
 const { browser, server } = await start_browser_and_server();
 
-/** `before` prepares the page that is about to be loaded. */
-async function open(hash = "", options = undefined, before = async () => {}) {
+async function open(hash = "", options = undefined) {
   const { page, seen } = await new_page(browser, options);
-  await before(page);
   await page.goto(server.base + hash);
   await tiles_drawn(page);
   return { page, seen };
@@ -141,11 +139,14 @@ test("typing another address moves the map and switches layers", async () => {
 });
 
 test("tiles of another zoom go, however late frames come", async () => {
-  const { page, seen } = await open("#5/46/10", DESKTOP, (page) => page.addInitScript(() => {
+  const { page, seen } = await new_page(browser);
+  await page.addInitScript(() => {
     const next_frame = requestAnimationFrame;
     window.requestAnimationFrame = (draw) => setTimeout(() => next_frame(draw), 300);
     window.cancelAnimationFrame = clearTimeout;
-  }));
+  });
+  await page.goto(`${server.base}#5/46/10`);
+  await tiles_drawn(page);
   await page.evaluate(() => (location.hash = "#8/45/6&on=lake"));
   await only_lake_at(page, 8);
   assert_nothing_went_wrong(server, seen);
