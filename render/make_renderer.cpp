@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "render/gl_context.h"
-#include "render/gl_mesh_store.h"
-#include "render/gl_renderer.h"
-#include "render/software_renderer.h"
+#include "render/gl/gl_context.h"
+#include "render/gl/gl_mesh_store.h"
+#include "render/gl/gl_renderer.h"
+#include "render/software/software_renderer.h"
 
 namespace trapeze {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "render/coverage.h"
+#include "render/coverage/coverage.h"
 
 namespace trapeze {
 

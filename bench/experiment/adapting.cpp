@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "bench/experiment/cpu_clock.h"
-#include "core/graph_builder.h"
-#include "render/stopwatch.h"
+#include "core/sweep/graph_builder.h"
+#include "render/coverage/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {

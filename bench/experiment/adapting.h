@@ -13,7 +13,7 @@
 
 #include "bench/experiment/contestant.h"
 #include "bench/experiment/numbered_trapezoids.h"
-#include "core/adaptable_graph.h"
+#include "core/adapt/adaptable_graph.h"
 
 namespace trapeze::experiment {
 

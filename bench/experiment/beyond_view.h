@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "core/grid.h"
-#include "core/rings.h"
+#include "core/grid/grid.h"
+#include "core/grid/rings.h"
 
 namespace trapeze::experiment {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/farthest_vertex.h"
+#include "core/adapt/farthest_vertex.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/rings.h"
+#include "core/grid/rings.h"
 
 namespace trapeze::experiment {
 

@@ -10,7 +10,7 @@
 
 #include "bench/experiment/map_data.h"
 #include "bench/experiment/screen.h"
-#include "core/topology_test.h"
+#include "core/graph/topological_consistency.h"
 
 namespace trapeze::experiment {
 

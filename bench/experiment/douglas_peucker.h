@@ -3,7 +3,7 @@
 
 #include "bench/experiment/chains.h"
 #include "bench/experiment/map_data.h"
-#include "core/farthest_vertex.h"
+#include "core/adapt/farthest_vertex.h"
 
 namespace trapeze::experiment {
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "bench/experiment/trip.h"
-#include "render/compose.h"
-#include "render/debug_marks.h"
-#include "render/png.h"
+#include "render/picture/compose.h"
+#include "render/picture/debug_marks.h"
+#include "render/picture/png.h"
 
 namespace trapeze::experiment {
 namespace {

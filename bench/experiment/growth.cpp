@@ -6,13 +6,13 @@
 #include <optional>
 #include <utility>
 
+#include "bench/core/polygon_families.h"
 #include "bench/experiment/race.h"
-#include "bench/polygon_families.h"
-#include "core/adaptable_graph.h"
-#include "core/graph_builder.h"
-#include "core/layer_builder.h"
-#include "core/tolerance.h"
-#include "render/stopwatch.h"
+#include "core/adapt/adaptable_graph.h"
+#include "core/grid/tolerance.h"
+#include "core/layer/layer_builder.h"
+#include "core/sweep/graph_builder.h"
+#include "render/coverage/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -1,7 +1,7 @@
 #include "bench/experiment/lifespans.h"
 
 #include "bench/experiment/cpu_clock.h"
-#include "render/stopwatch.h"
+#include "render/coverage/stopwatch.h"
 
 namespace trapeze::experiment {
 

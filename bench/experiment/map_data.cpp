@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/source_rings.h"
-#include "core/graph_builder.h"
-#include "core/layer_builder.h"
-#include "core/polygons.h"
+#include "bench/core/source_rings.h"
+#include "core/borders/polygons.h"
+#include "core/layer/layer_builder.h"
+#include "core/sweep/graph_builder.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "core/adaptable_graph.h"
-#include "core/grid.h"
-#include "core/layer.h"
-#include "core/rings.h"
+#include "core/adapt/adaptable_graph.h"
+#include "core/grid/grid.h"
+#include "core/grid/rings.h"
+#include "core/layer/layer.h"
 
 namespace trapeze::experiment {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "render/gl_program.h"
+#include "render/gl/gl_program.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/experiment/trapezoid_list.h"
-#include "core/graph_builder.h"
-#include "core/rings.h"
+#include "core/grid/rings.h"
+#include "core/sweep/graph_builder.h"
 
 namespace trapeze::experiment {
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "bench/experiment/resimplifying.h"
-#include "core/farthest_vertex.h"
-#include "core/graph_builder.h"
-#include "core/polygons.h"
+#include "core/adapt/farthest_vertex.h"
+#include "core/borders/polygons.h"
+#include "core/sweep/graph_builder.h"
 
 namespace trapeze::experiment {
 namespace {

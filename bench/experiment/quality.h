@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/experiment/contestant.h"
-#include "core/rings.h"
+#include "core/grid/rings.h"
 
 namespace trapeze::experiment {
 

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "render/stopwatch.h"
+#include "render/coverage/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -5,7 +5,7 @@
 #include "bench/experiment/blg_tree.h"
 #include "bench/experiment/cpu_clock.h"
 #include "bench/experiment/douglas_peucker.h"
-#include "render/stopwatch.h"
+#include "render/coverage/stopwatch.h"
 
 namespace trapeze::experiment {
 

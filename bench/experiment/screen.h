@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "bench/experiment/trapezoid_list.h"
-#include "core/trapezoid_mesh.h"
-#include "render/coverage.h"
-#include "render/gl_context.h"
-#include "render/gl_mesh_store.h"
-#include "render/gl_renderer.h"
+#include "core/mesh/trapezoid_mesh.h"
+#include "render/coverage/coverage.h"
+#include "render/gl/gl_context.h"
+#include "render/gl/gl_mesh_store.h"
+#include "render/gl/gl_renderer.h"
 
 namespace trapeze::experiment {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/rings.h"
+#include "core/grid/rings.h"
 
 namespace trapeze::experiment {
 

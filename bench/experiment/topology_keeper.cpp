@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/farthest_vertex.h"
+#include "core/adapt/farthest_vertex.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -1,12 +1,12 @@
-// Trapezoids as the device keeps them (see render/gl_mesh_store.h).
+// Trapezoids as the device keeps them (see render/gl/gl_mesh_store.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "core/grid.h"
-#include "render/gl_mesh_store.h"
+#include "core/grid/grid.h"
+#include "render/gl/gl_mesh_store.h"
 
 namespace trapeze::experiment {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "bench/experiment/trapezoid_list.h"
-#include "core/rings.h"
+#include "core/grid/rings.h"
 
 namespace trapeze::experiment {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "core/tolerance.h"
-#include "core/web_mercator.h"
+#include "core/grid/tolerance.h"
+#include "core/grid/web_mercator.h"
 
 namespace trapeze::experiment {
 namespace {

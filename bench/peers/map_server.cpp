@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "bench/http_load.h"
-#include "core/web_mercator.h"
+#include "bench/measure/http_load.h"
+#include "core/grid/web_mercator.h"
 
 namespace trapeze {
 namespace {

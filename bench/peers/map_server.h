@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/child_process.h"
-#include "bench/trapeze_server.h"
-#include "bench/trip.h"
+#include "bench/measure/child_process.h"
+#include "bench/measure/trip.h"
+#include "bench/server/trapeze_server.h"
 
 namespace trapeze {
 

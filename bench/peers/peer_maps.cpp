@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bench/child_process.h"
+#include "bench/measure/child_process.h"
 
 namespace trapeze {
 namespace {

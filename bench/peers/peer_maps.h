@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bench/trip.h"
+#include "bench/measure/trip.h"
 
 namespace trapeze {
 

@@ -21,15 +21,15 @@
 #include <string>
 #include <vector>
 
-#include "bench/child_process.h"
-#include "bench/figures.h"
-#include "bench/http_load.h"
+#include "bench/measure/child_process.h"
+#include "bench/measure/figures.h"
+#include "bench/measure/http_load.h"
+#include "bench/measure/run_program.h"
+#include "bench/measure/trip.h"
 #include "bench/peers/map_server.h"
 #include "bench/peers/peer_maps.h"
 #include "bench/peers/side_by_side.h"
-#include "bench/run_program.h"
-#include "bench/trapeze_server.h"
-#include "bench/trip.h"
+#include "bench/server/trapeze_server.h"
 
 namespace trapeze {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "render/coverage.h"
-#include "render/png.h"
+#include "render/coverage/coverage.h"
+#include "render/picture/png.h"
 
 namespace trapeze {
 namespace {

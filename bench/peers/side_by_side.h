@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/compose.h"
+#include "render/picture/compose.h"
 
 namespace trapeze {
 

@@ -1,4 +1,4 @@
-#include "bench/child_process.h"
+#include "bench/measure/child_process.h"
 
 #include <gtest/gtest.h>
 #include <sys/types.h>

@@ -1,4 +1,4 @@
-#include "bench/figures.h"
+#include "bench/measure/figures.h"
 
 #include <gtest/gtest.h>
 

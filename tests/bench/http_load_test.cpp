@@ -1,4 +1,4 @@
-#include "bench/http_load.h"
+#include "bench/measure/http_load.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "bench/trip.h"
+#include "bench/measure/trip.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bench/polygon_families.h"
-#include "tests/core/ring_text.h"
-#include "tests/core/shapes.h"
+#include "bench/core/polygon_families.h"
+#include "tests/core/shapes/ring_text.h"
+#include "tests/core/shapes/shapes.h"
 
 namespace trapeze::experiment {
 namespace {

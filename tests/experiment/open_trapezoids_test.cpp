@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 
-#include "bench/polygon_families.h"
-#include "core/clean_rings.h"
-#include "core/graph_builder.h"
-#include "tests/core/ring_text.h"
-#include "tests/core/shapes.h"
+#include "bench/core/polygon_families.h"
+#include "core/sweep/clean_rings.h"
+#include "core/sweep/graph_builder.h"
+#include "tests/core/shapes/ring_text.h"
+#include "tests/core/shapes/shapes.h"
 #include "tests/experiment/sample_map.h"
 
 namespace trapeze::experiment {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/experiment/trip.h"
-#include "tests/core/ring_text.h"
+#include "tests/core/shapes/ring_text.h"
 #include "tests/experiment/sample_map.h"
 
 namespace trapeze::experiment {

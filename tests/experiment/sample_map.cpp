@@ -1,7 +1,7 @@
 #include "tests/experiment/sample_map.h"
 
-#include "bench/polygon_families.h"
-#include "tests/core/shapes.h"
+#include "bench/core/polygon_families.h"
+#include "tests/core/shapes/shapes.h"
 
 namespace trapeze::experiment {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "bench/experiment/blg_tree.h"
 #include "bench/experiment/douglas_peucker.h"
-#include "core/vertex_weight.h"
+#include "core/adapt/vertex_weight.h"
 #include "tests/experiment/sample_map.h"
 
 namespace trapeze::experiment {

@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bench/core/polygon_families.h"
 #include "bench/experiment/quality.h"
 #include "bench/experiment/resimplifying.h"
-#include "bench/polygon_families.h"
-#include "tests/core/ring_text.h"
+#include "tests/core/shapes/ring_text.h"
 #include "tests/experiment/sample_map.h"
 
 namespace trapeze::experiment {

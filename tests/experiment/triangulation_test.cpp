@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/graph_builder.h"
+#include "core/sweep/graph_builder.h"
 #include "tests/experiment/sample_map.h"
 
 namespace trapeze::experiment {

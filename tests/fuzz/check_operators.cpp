@@ -3,12 +3,12 @@
 #include <limits>
 #include <string>
 
-#include "core/check_graph.h"
-#include "core/edit_log.h"
-#include "core/generalization.h"
-#include "core/graph_builder.h"
-#include "core/history.h"
-#include "core/topology_test.h"
+#include "core/adapt/history.h"
+#include "core/graph/check_graph.h"
+#include "core/graph/edit_log.h"
+#include "core/graph/generalization.h"
+#include "core/graph/topological_consistency.h"
+#include "core/sweep/graph_builder.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze::fuzzing {

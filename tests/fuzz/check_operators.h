@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "core/adaptable_graph.h"
-#include "core/rings.h"
+#include "core/adapt/adaptable_graph.h"
+#include "core/grid/rings.h"
 #include "tests/fuzz/input_share.h"
 
 namespace trapeze::fuzzing {

@@ -10,10 +10,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/io/source_name.h"
-#include "server/config.h"
-#include "server/config_print.h"
-#include "server/config_settings.h"
+#include "core/io/source/source_name.h"
+#include "server/config/config.h"
+#include "server/config/config_print.h"
+#include "server/config/config_settings.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {

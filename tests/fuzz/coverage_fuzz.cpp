@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "core/adaptable_graph.h"
-#include "core/check_graph.h"
-#include "core/clean_rings.h"
-#include "core/coverage_groups.h"
-#include "core/gap_closing.h"
-#include "core/history.h"
-#include "core/regions.h"
+#include "core/adapt/adaptable_graph.h"
+#include "core/adapt/history.h"
+#include "core/borders/coverage_groups.h"
+#include "core/borders/gap_closing.h"
+#include "core/borders/regions.h"
+#include "core/graph/check_graph.h"
+#include "core/sweep/clean_rings.h"
 #include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"
 

@@ -16,9 +16,9 @@
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 
-#include "core/io/feature_source.h"
-#include "core/io/load_layer.h"
-#include "core/io/source_ring_reader.h"
+#include "core/io/load/load_layer.h"
+#include "core/io/source/feature_source.h"
+#include "core/io/source/source_ring_reader.h"
 #include "tests/fuzz/check_operators.h"
 #include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"

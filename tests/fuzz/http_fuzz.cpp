@@ -22,7 +22,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "server/http_server.h"
+#include "server/http/http_server.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/feature_table.h"
-#include "server/filter.h"
-#include "server/style_parameters.h"
+#include "core/layer/feature_table.h"
+#include "server/styles/filter.h"
+#include "server/styles/style_parameters.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "render/png.h"
+#include "render/picture/png.h"
 #include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"
 

@@ -26,11 +26,11 @@
 
 #include <unistd.h>
 
-#include "core/io/checksum.h"
-#include "core/io/prepared_file.h"
-#include "core/io/prepared_layer.h"
-#include "core/layer_builder.h"
-#include "render/software_renderer.h"
+#include "core/io/prepared/checksum.h"
+#include "core/io/prepared/prepared_file.h"
+#include "core/io/prepared/prepared_layer.h"
+#include "core/layer/layer_builder.h"
+#include "render/software/software_renderer.h"
 #include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"
 

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "server/client_address.h"
-#include "server/http_message.h"
-#include "server/style_book.h"
-#include "server/style_document.h"
-#include "server/tile_plan.h"
-#include "server/tile_request.h"
-#include "server/url.h"
+#include "server/base/url.h"
+#include "server/http/client_address.h"
+#include "server/http/http_message.h"
+#include "server/styles/style_book.h"
+#include "server/styles/style_document.h"
+#include "server/tiles/tile_plan.h"
+#include "server/tiles/tile_request.h"
 #include "tests/fuzz/require.h"
 #include "tests/fuzz/sample_layers.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/layer_builder.h"
+#include "core/layer/layer_builder.h"
 
 namespace trapeze::fuzzing {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "server/dataset.h"
+#include "server/data/dataset.h"
 
 namespace trapeze::fuzzing {
 

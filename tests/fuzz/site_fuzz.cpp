@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "render/png.h"
-#include "render/software_renderer.h"
-#include "server/access_log.h"
-#include "server/site.h"
-#include "server/style_document.h"
+#include "render/picture/png.h"
+#include "render/software/software_renderer.h"
+#include "server/service/access_log.h"
+#include "server/service/site.h"
+#include "server/styles/style_document.h"
 #include "tests/fuzz/require.h"
 #include "tests/fuzz/sample_layers.h"
 

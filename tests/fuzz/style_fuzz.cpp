@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "server/style_book.h"
-#include "server/style_document.h"
-#include "server/style_parameters.h"
-#include "server/url.h"
+#include "server/base/url.h"
+#include "server/styles/style_book.h"
+#include "server/styles/style_document.h"
+#include "server/styles/style_parameters.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "render/software_renderer.h"
+#include "render/software/software_renderer.h"
 #include "tests/pictures/real_layers.h"
 #include "tests/pictures/shared_gl.h"
 #include "tests/render/compare_renderers.h"

@@ -6,8 +6,8 @@
 #include <map>
 #include <random>
 
-#include "core/io/load_layer.h"
-#include "core/tolerance.h"
+#include "core/grid/tolerance.h"
+#include "core/io/load/load_layer.h"
 
 namespace trapeze::testing {
 namespace {

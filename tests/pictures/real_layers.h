@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/layer.h"
-#include "core/web_mercator.h"
-#include "render/coverage.h"
+#include "core/grid/web_mercator.h"
+#include "core/layer/layer.h"
+#include "render/coverage/coverage.h"
 #include "tests/pictures/true_picture.h"
 
 namespace trapeze::testing {

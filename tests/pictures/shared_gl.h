@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "render/coverage.h"
+#include "render/coverage/coverage.h"
 
 namespace trapeze::testing {
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "render/software_renderer.h"
+#include "render/software/software_renderer.h"
 #include "tests/pictures/real_layers.h"
 
 namespace trapeze::testing {

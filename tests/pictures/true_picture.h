@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/layer.h"
-#include "core/rings.h"
-#include "render/coverage.h"
+#include "core/grid/grid.h"
+#include "core/grid/rings.h"
+#include "core/layer/layer.h"
+#include "render/coverage/coverage.h"
 
 namespace trapeze::testing {
 

@@ -5,7 +5,7 @@
 #include <iosfwd>
 #include <span>
 
-#include "render/coverage.h"
+#include "render/coverage/coverage.h"
 
 namespace trapeze::testing {
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "core/trapezoid_mesh.h"
+#include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze::testing {
 

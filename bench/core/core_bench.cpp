@@ -1,0 +1,235 @@
+// What the core costs for each vertex, on polygons like those of maps and on hard ones of growing
+// size, and whether it grows faster than it may.
+//
+//   core_bench                                     everything, some minutes
+//   core_bench --benchmark_filter=buildings        a part
+//   TRAPEZE_DATA=folder core_bench                 the FlatGeobuf files of the folder as well
+//
+// Sweep: sorting the vertices and the plane sweep. Build: the same from rings as they are read,
+// with cleaning, noding where it is needed, and the loops. Weights: Douglas-Peucker. History: Build
+// and all versions for all tolerances, which is all that is done for a polygon before it is drawn.
+//
+// Every figure is measured three times; "min" is the one to read on a machine that does other
+// things too. The table at the end compares the families at their smallest and their largest.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/core/polygon_families.h"
+#include "bench/core/source_rings.h"
+#include "core/adapt/history.h"
+#include "core/adapt/vertex_weight.h"
+#include "core/sweep/boundary.h"
+#include "core/sweep/graph_builder.h"
+#include "core/sweep/trapezoidation.h"
+
+namespace trapeze {
+namespace {
+
+using Polygons = std::vector<Rings>;
+
+constexpr const char* kPerVertex = "ns_per_vertex";
+
+std::size_t vertices_of(const Polygons& polygons) {
+  std::size_t count = 0;
+  for (const Rings& rings : polygons) count += rings.points.size();
+  return count;
+}
+
+void count_vertices(benchmark::State& state, std::size_t vertices) {
+  const double billions =
+      1e-9 * static_cast<double>(vertices) * static_cast<double>(state.iterations());
+  state.counters["vertices"] = static_cast<double>(vertices);
+  state.counters[kPerVertex] =
+      benchmark::Counter(billions, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void sweep(benchmark::State& state, const Polygons& polygons) {
+  Boundary boundary;
+  Trapezoidation trapezoidation;
+  TrapezoidalGraph graph;
+  for (auto _ : state) {
+    for (const Rings& rings : polygons) {
+      boundary.assign(rings);
+      if (!trapezoidation.build(boundary, graph))
+        return state.SkipWithError("a polygon crosses itself");
+    }
+  }
+  count_vertices(state, vertices_of(polygons));
+}
+
+void build(benchmark::State& state, Polygons& polygons) {
+  GraphBuilder builder;
+  TrapezoidalGraph graph;
+  for (auto _ : state) {
+    for (Rings& rings : polygons) benchmark::DoNotOptimize(builder.build(rings, graph));
+  }
+  count_vertices(state, vertices_of(polygons));
+}
+
+void weigh(benchmark::State& state, const Polygons& polygons) {
+  VertexWeights weights;
+  for (auto _ : state) {
+    for (const Rings& rings : polygons) {
+      for (std::size_t i = 0; i < rings.size(); ++i) {
+        benchmark::DoNotOptimize(weights.weigh(rings[i], WeightRule::douglas_peucker));
+      }
+    }
+  }
+  count_vertices(state, vertices_of(polygons));
+}
+
+void record_history(benchmark::State& state, Polygons& polygons) {
+  GraphBuilder builder;
+  TrapezoidalGraph graph;
+  HistoryRecorder recorder;
+  History history;
+  for (auto _ : state) {
+    history.vertices.clear();
+    history.edges.clear();
+    history.trapezoids.clear();
+    history.lifespans.clear();
+    history.grains.clear();
+    for (Rings& rings : polygons) {
+      if (builder.build(rings, graph).built) recorder.record(graph, {}, history);
+    }
+  }
+  const std::size_t vertices = vertices_of(polygons);
+  count_vertices(state, vertices);
+  state.counters["versions_per_vertex"] =
+      static_cast<double>(history.trapezoids.size()) / static_cast<double>(vertices);
+}
+
+/// The polygons that were asked for last: repetitions follow each other.
+Polygons& remembered(const std::string& name, const std::function<Polygons()>& make) {
+  static std::string last;
+  static Polygons polygons;
+  if (last != name) {
+    polygons.clear();
+    polygons = make();
+    last = name;
+  }
+  return polygons;
+}
+
+double smallest(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+void add(const std::string& stage, void (*run)(benchmark::State&, Polygons&),
+         const std::string& name, const std::function<Polygons()>& make) {
+  benchmark::RegisterBenchmark((stage + "/" + name).c_str(),
+                               [=](benchmark::State& state) { run(state, remembered(name, make)); })
+      ->Unit(benchmark::kMillisecond)
+      ->MinTime(0.1)
+      ->Repetitions(3)
+      ->ComputeStatistics("min", smallest)
+      ->DisplayAggregatesOnly();
+}
+
+void add_stages(const std::string& name, const std::function<Polygons()>& make) {
+  add(
+      "Sweep", [](benchmark::State& s, Polygons& p) { sweep(s, p); }, name, make);
+  add("Build", build, name, make);
+  add(
+      "Weights", [](benchmark::State& s, Polygons& p) { weigh(s, p); }, name, make);
+  add("History", record_history, name, make);
+}
+
+Polygons buildings() {
+  Polygons polygons;
+  for (std::uint32_t seed = 0; seed < 5000; ++seed) polygons.push_back(building(seed));
+  return polygons;
+}
+
+void add_families() {
+  for (const PolygonFamily& family : kPolygonFamilies) {
+    for (std::size_t n = 1000; n <= 1000000; n *= 10) {
+      const std::string name = std::string(family.name) + "/" + std::to_string(n);
+      add_stages(name, [&family, n] { return Polygons{family.make(n)}; });
+    }
+  }
+}
+
+void add_files() {
+  const char* folder = std::getenv("TRAPEZE_DATA");
+  if (folder == nullptr) {
+    std::fprintf(stderr, "TRAPEZE_DATA is not set: no real polygons are measured\n");
+    return;
+  }
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".fgb") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    const std::string path = file.string();
+    const std::string name = file.stem().string();
+    const auto make = [path] { return read_source_rings(path); };
+    add("Build", build, name, make);
+    add("History", record_history, name, make);
+  }
+}
+
+/// The usual table, and behind it how the time per vertex grows in each family.
+class GrowthReporter : public benchmark::ConsoleReporter {
+ public:
+  GrowthReporter() : ConsoleReporter(OO_Tabular) {}
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (run.error_occurred || run.aggregate_name != "min") continue;
+      const std::string name = run.run_name.function_name;
+      const std::size_t slash = name.rfind('/');
+      if (slash == name.find('/')) continue;  // no size: not a family
+      const double n = std::stod(name.substr(slash + 1));
+      figures_[name.substr(0, slash)][n] = run.counters.at(kPerVertex).value;
+    }
+  }
+
+  void Finalize() override {
+    ConsoleReporter::Finalize();
+    // From 10^3 to 10^6 vertices log n doubles, and each step through a tree of all edges costs up
+    // to ten times more once the tree has outgrown the cache. What grows with n grows by 500 beyond
+    // log n, what grows with its root by 16.
+    constexpr double kAllowed = 12;
+    std::printf(
+        "\nns per vertex at the smallest and the largest size; \"growth\" is beyond log n\n");
+    for (const auto& [name, by_size] : figures_) {
+      if (by_size.size() < 2) continue;
+      const auto [small, at_small] = *by_size.begin();
+      const auto [large, at_large] = *by_size.rbegin();
+      const double growth = at_large / at_small / (std::log(large) / std::log(small));
+      std::printf("%-24s %9.0f %9.0f   growth %6.1f%s\n", name.c_str(), at_small, at_large, growth,
+                  growth > kAllowed ? "   TOO FAST" : "");
+    }
+  }
+
+ private:
+  std::map<std::string, std::map<double, double>> figures_;
+};
+
+}  // namespace
+}  // namespace trapeze
+
+int main(int argc, char** argv) {
+  trapeze::add_stages("buildings", trapeze::buildings);
+  trapeze::add_families();
+  trapeze::add_files();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  trapeze::GrowthReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return 0;
+}

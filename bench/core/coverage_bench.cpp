@@ -1,0 +1,287 @@
+// What it takes that neighbours share their borders: layers with coverage off and auto, in turns.
+//
+//   TRAPEZE_DATA=folder coverage_bench
+//
+// Building from the file to the layer, on one core and on all; the memory of graphs and of layers;
+// tiles of zooms 0 to 14 that random vertices lie in, selected and drawn; the vertices that are
+// left at each zoom, beside those that mapshaper leaves at the same tolerance. Of what was measured
+// several times the shortest counts, and of tiles the processor time: others who use the machine
+// disturb these least.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/core/coverage_vertices.h"
+#include "bench/core/source_rings.h"
+#include "bench/measure/figures.h"
+#include "bench/measure/run_program.h"
+#include "bench/measure/trip.h"
+#include "bench/server/trapeze_server.h"
+#include "core/borders/coverage_groups.h"
+#include "core/grid/tolerance.h"
+#include "core/io/load/load_layer.h"
+#include "core/sweep/clean_rings.h"
+#include "core/sweep/graph_builder.h"
+#include "render/make_renderer.h"
+
+namespace trapeze {
+namespace {
+
+constexpr int kLastZoom = 14;
+constexpr double kTolerance = 0.25;  // pixels, as requests have it if they do not say
+constexpr double kNoGaps = 0;        // that are closed
+constexpr std::array kModes = {CoverageMode::off, CoverageMode::automatic};
+
+struct Options {
+  std::vector<std::string> layers{"europe_countries", "us_counties", "countries"};
+  std::string sample = TRAPEZE_BENCH_FOLDER "/../data";
+  std::string program = built_trapeze();
+  std::size_t tiles = 16;
+  int rounds = 3;
+  std::string json = "out/bench/coverage.json";
+};
+
+struct Seconds {
+  double cpu = HUGE_VAL;
+  double wall = HUGE_VAL;
+
+  void take_shorter(const Seconds& other) {
+    cpu = std::min(cpu, other.cpu);
+    wall = std::min(wall, other.wall);
+  }
+};
+
+template <typename Work>
+Seconds timed(const Work& work) {
+  const auto cpu_seconds = [] {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const double cpu_begin = cpu_seconds();
+  work();
+  return {cpu_seconds() - cpu_begin,
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+}
+
+std::string path_of(const Options& options, const std::string& layer) {
+  return (layer == "countries" ? options.sample : real_data_folder()) + "/" + layer + ".fgb";
+}
+
+Level level_of_zoom(int zoom) {
+  return nearest_level(kTolerance * static_cast<double>(TileId{zoom, 0, 0}.side()) / kTilePixels);
+}
+
+/// A layer in both modes, by their order in kModes.
+struct Pair {
+  std::array<std::unique_ptr<Layer>, kModes.size()> layers;
+  std::array<Seconds, kModes.size()> one_core;
+  std::array<Seconds, kModes.size()> all_cores;
+};
+
+std::unique_ptr<Layer> load(const std::string& path, CoverageMode mode, unsigned threads,
+                            WeightRule rule = WeightRule::douglas_peucker) {
+  LoadOptions options;
+  options.threads = threads;
+  options.generalization.weights = rule;
+  options.generalization.coverage = mode;
+  return load_layer(path, options).layer;
+}
+
+Pair build(const std::string& path, int rounds) {
+  Pair pair;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+      std::unique_ptr<Layer>& layer = pair.layers[mode];
+      pair.one_core[mode].take_shorter(timed([&] { layer = load(path, kModes[mode], 1); }));
+      pair.all_cores[mode].take_shorter(timed([&] { layer = load(path, kModes[mode], 0); }));
+    }
+  }
+  return pair;
+}
+
+/// Bytes of the graphs that the history is recorded from, if all were there at once.
+std::size_t memory_of_graphs(std::vector<Rings> features, CoverageMode mode) {
+  std::size_t bytes = 0;
+  std::vector<bool> is_done(features.size());
+  if (mode != CoverageMode::off) {
+    std::vector<const Rings*> all;
+    for (Rings& rings : features) {
+      clean_rings(rings);
+      all.push_back(&rings);
+    }
+    CoverageBuilder builder;
+    for (const auto& group : group_features(all, mode)) {
+      std::vector<const Rings*> of_group;
+      for (const std::uint32_t i : group) of_group.push_back(all[i]);
+      TrapezoidalGraph graph;
+      const Assembly assembly = assemble(of_group, mode, kNoGaps, builder, graph);
+      if (assembly.together.empty()) continue;
+      bytes += graph.memory();
+      for (const std::uint32_t i : assembly.together) is_done[group[i]] = true;
+    }
+  }
+  GraphBuilder builder;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    TrapezoidalGraph graph;
+    if (!is_done[i] && builder.build(features[i], graph).built) bytes += graph.memory();
+  }
+  return bytes;
+}
+
+/// Milliseconds of processor time that a tile takes, selected and drawn, by mode.
+std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileId>& tiles,
+                                       int rounds, CoverageRenderer& renderer) {
+  std::array<double, kModes.size()> sums{};
+  std::vector<TrapezoidRange> ranges;
+  Coverage coverage;
+  for (const TileId& tile : tiles) {
+    const View view = View::of_tile(tile);
+    const Level level = level_of_zoom(tile.z);
+    std::array<Seconds, kModes.size()> shortest;
+    for (int round = 0; round <= rounds; ++round) {
+      for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+        const Layer& layer = *pair.layers[mode];
+        const Seconds seconds = timed([&] {
+          layer.select({view.box(), level, level, SmallPolygons::dust}, ranges);
+          renderer.draw(layer.mesh(), ranges, view, coverage);
+        });
+        if (round > 0) shortest[mode].take_shorter(seconds);  // the first one uploads
+      }
+    }
+    for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+      sums[mode] += 1e3 * shortest[mode].cpu;
+    }
+  }
+  for (double& sum : sums) sum /= static_cast<double>(std::max<std::size_t>(tiles.size(), 1));
+  return sums;
+}
+
+void report_build(const std::string& layer, const std::string& path, const Pair& pair,
+                  std::vector<Figure>& figures) {
+  const std::vector<Rings> rings = read_source_rings(path);
+  for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
+    Figure figure("coverage/" + layer + "/" + std::string(name_of(kModes[mode])));
+    figure.set("built on one core, cpu s", pair.one_core[mode].cpu);
+    figure.set("built on one core, wall s", pair.one_core[mode].wall);
+    figure.set("built on all cores, cpu s", pair.all_cores[mode].cpu);
+    figure.set("built on all cores, wall s", pair.all_cores[mode].wall);
+    figure.set("graphs, MB", static_cast<double>(memory_of_graphs(rings, kModes[mode])) / 1e6);
+    figure.set("layer with history, MB", static_cast<double>(pair.layers[mode]->memory()) / 1e6);
+    print_line(figure);
+    figures.push_back(std::move(figure));
+  }
+}
+
+void report_tiles(const Options& options, const std::string& layer, const std::string& path,
+                  const Pair& pair, std::vector<Figure>& figures) {
+  const std::vector<TripLayer> source{{layer, path, ""}};
+  const Places places = read_places(source);
+  for (const RendererKind kind : {RendererKind::software, RendererKind::egl}) {
+    std::unique_ptr<CoverageRenderer> renderer;
+    try {
+      renderer = make_renderer({kind, {}}).renderer;
+    } catch (const std::exception& error) {
+      std::printf("coverage/%s: %s\n", layer.c_str(), error.what());
+      continue;
+    }
+    const std::string name = "coverage/" + layer + "/" + std::string(renderer->name());
+    std::printf("%s: cpu ms a tile; zoom, off, auto, auto / off\n", name.c_str());
+    for (int zoom = 0; zoom <= kLastZoom; ++zoom) {
+      const auto tiles = tiles_at_vertices(places, zoom, zoom, options.tiles);
+      const auto [off, automatic] = draw(pair, tiles, options.rounds, *renderer);
+      Figure figure(name + "/zoom " + std::to_string(zoom));
+      figure.set("off, cpu ms", off);
+      figure.set("auto, cpu ms", automatic);
+      figures.push_back(std::move(figure));
+      std::printf("%5d %9.4f %9.4f %6.2f\n", zoom, off, automatic, automatic / off);
+    }
+    std::fflush(stdout);
+  }
+}
+
+/// Of the layer with coverage, by the same rule as mapshaper, which may not be there; and without.
+void report_vertices(const std::string& name, const Layer& layer, const Layer& apart,
+                     WeightRule rule, const Mapshaper* mapshaper, std::vector<Figure>& figures) {
+  std::vector<double> tolerances;
+  for (int zoom = 0; zoom <= kLastZoom; ++zoom) {
+    tolerances.push_back(epsilon_of_level(level_of_zoom(zoom)));
+  }
+  std::vector<std::size_t> theirs;
+  if (mapshaper != nullptr) theirs = mapshaper->vertices_left(rule, tolerances);
+  std::printf("%s: vertices; zoom, off, auto, of these junctions, mapshaper, auto / mapshaper\n",
+              name.c_str());
+  for (int zoom = 0; zoom <= kLastZoom; ++zoom) {
+    const Level level = level_of_zoom(zoom);
+    const VerticesLeft left = vertices_left(layer, level);
+    const std::size_t left_apart = vertices_left(apart, level).stored;
+    Figure figure(name + "/zoom " + std::to_string(zoom));
+    figure.set("vertices, off", static_cast<double>(left_apart));
+    figure.set("vertices", static_cast<double>(left.positions));
+    figure.set("junctions", static_cast<double>(left.junctions));
+    std::printf("%5d %9zu %9zu %9zu", zoom, left_apart, left.positions, left.junctions);
+    if (!theirs.empty()) {
+      const auto count = static_cast<double>(theirs[static_cast<std::size_t>(zoom)]);
+      figure.set("vertices of mapshaper", count);
+      std::printf(" %9.0f %6.3f", count, static_cast<double>(left.positions) / count);
+    }
+    std::printf("\n");
+    figures.push_back(std::move(figure));
+  }
+  std::fflush(stdout);
+}
+
+void measure(const Options& options, const std::string& layer, std::vector<Figure>& figures) {
+  const std::string path = path_of(options, layer);
+  const Pair pair = build(path, options.rounds);
+  report_build(layer, path, pair, figures);
+  report_tiles(options, layer, path, pair, figures);
+  std::unique_ptr<Mapshaper> mapshaper;
+  if (Mapshaper::is_installed()) mapshaper = std::make_unique<Mapshaper>(options.program, path);
+  for (const WeightRule rule : {WeightRule::douglas_peucker, WeightRule::effective_area}) {
+    report_vertices("coverage/" + layer + "/" + std::string(name_of(rule)),
+                    *load(path, CoverageMode::automatic, 0, rule),
+                    *load(path, CoverageMode::off, 0, rule), rule, mapshaper.get(), figures);
+  }
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("What it takes that neighbours share their borders (TRAPEZE_DATA)");
+  app.add_option("--layer", options.layers, "Files without .fgb; countries is that of the sample")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--sample", options.sample, "The folder of the sample")->capture_default_str();
+  app.add_option("--server", options.program, "The program trapeze")->capture_default_str();
+  app.add_option("--tiles", options.tiles, "Tiles of every layer and zoom")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  app.add_option("--rounds", options.rounds, "How often each is built and drawn")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  app.add_option("--json", options.json, "Where the figures go")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  if (!Mapshaper::is_installed()) {
+    std::printf("mapshaper is not installed; script/bootstrap peers does that\n");
+  }
+  std::vector<Figure> figures;
+  for (const std::string& layer : options.layers) measure(options, layer, figures);
+  write_figures(figures, command_line(argc, argv), options.json);
+  return 0;
+}
+
+}  // namespace
+}  // namespace trapeze
+
+int main(int argc, char** argv) {
+  return trapeze::run_program("coverage_bench", trapeze::run, argc, argv);
+}

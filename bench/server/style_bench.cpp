@@ -1,0 +1,132 @@
+// What styles cost: a tile drawn in each, against the same tile in the layer's own; and the way
+// from a URL to the key under which its tile is cached.
+//
+//   TRAPEZE_DATA=folder style_bench
+//
+// Tiles are of Malta's land use and buildings, zooms 10 to 17, painted by the software renderer;
+// times are those of one tile. Compare rows of one run.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "bench/measure/trip.h"
+#include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kTilesPerZoom = 8;
+
+struct Style {
+  const char* name;
+  const char* query;
+};
+constexpr Style kStyles[] = {
+    {"plain", ""},
+    {"one_class", "color-by=type&classes=*:red"},
+    {"three_classes", "color-by=type&classes=residential:red,farmland:green,*:blue"},
+    {"filter", "filter=type='residential'"},
+    {"outline", "stroke=black"},
+    {"outline_dashed", "stroke=black&stroke-dasharray=4,2"},
+    {"hatch", "pattern=hatch"},
+    {"dots", "pattern=dots"},
+    {"opacity", "opacity=0.5"},
+};
+
+std::vector<TripLayer> trip_layers() {
+  std::vector<TripLayer> layers;
+  for (const std::string name : {"landuse", "buildings"}) {
+    layers.push_back({name, real_data_folder() + "/malta_" + name + ".fgb", ""});
+  }
+  return layers;
+}
+
+std::shared_ptr<const Dataset> dataset() {
+  static const auto loaded = [] {
+    std::vector<LayerConfig> layers;
+    for (const TripLayer& layer : trip_layers()) {
+      LayerConfig config;
+      config.name = layer.name;
+      config.title = layer.name;
+      config.file = layer.file;
+      layers.push_back(config);
+    }
+    return Dataset::load(layers);
+  }();
+  return loaded;
+}
+
+const std::vector<TileId>& tiles() {
+  static const auto chosen = [] {
+    std::vector<TileId> all;
+    const Places places = read_places(trip_layers());
+    for (int zoom = 10; zoom <= 17; ++zoom) {
+      const auto some = tiles_at_vertices(places, zoom, zoom, kTilesPerZoom);
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+  }();
+  return chosen;
+}
+
+std::string target_of(const TileId& tile, const std::string& query) {
+  return "/tiles/landuse,buildings/" + std::to_string(tile.z) + "/" + std::to_string(tile.x) + "/" +
+         std::to_string(tile.y) + ".png?" + query;
+}
+
+TilePlan plan_of(const std::string& target) {
+  static const StyleBook styles;
+  auto parsed = parse_tiles_target(target, styles);
+  return std::get<TilePlan>(
+      plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset()));
+}
+
+void paint(benchmark::State& state, const std::string& query) {
+  std::vector<TilePlan> plans;
+  for (const TileId& tile : tiles()) plans.push_back(plan_of(target_of(tile, query)));
+  TilePainter painter(make_renderer({RendererKind::software, {}}).renderer);
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const TilePainter::Job job{&plans[next], TilePainter::Deadline::max()};
+    benchmark::DoNotOptimize(painter.paint({&job, 1}));
+    next = (next + 1) % plans.size();
+  }
+}
+
+void make_key(benchmark::State& state, const std::string& query) {
+  const std::string target = target_of(tiles().front(), query);
+  for (auto _ : state) benchmark::DoNotOptimize(plan_of(target).key());
+}
+
+void register_all() {
+  for (const Style& style : kStyles) {
+    const std::string name = style.name;
+    benchmark::RegisterBenchmark(("paint/" + name).c_str(), paint, style.query)
+        ->Unit(benchmark::kMicrosecond);
+  }
+  for (const Style& style : kStyles) {
+    const std::string name = style.name;
+    benchmark::RegisterBenchmark(("key/" + name).c_str(), make_key, style.query)
+        ->Unit(benchmark::kMicrosecond);
+  }
+}
+
+}  // namespace
+}  // namespace trapeze
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  try {
+    trapeze::register_all();
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "style_bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,325 @@
+#include "core/adapt/adaptable_graph.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "core/graph/fetch_ahead.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint32_t kNobody = 0xffffffff;
+
+// How far ahead, in candidates, each step is taken: some hundred nanoseconds later it has come, and
+// what came is still in the nearest cache.
+constexpr std::size_t kCornerAhead = 24;
+constexpr std::size_t kEdgesAhead = 16;
+constexpr std::size_t kNodesAhead = 8;
+constexpr std::size_t kNeighboursAhead = 4;
+
+std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
+                                           const std::array<VertexId, 3>& triangle) {
+  std::pair<VertexId, VertexId> longest;
+  double greatest = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point a = graph.point(triangle[i]);
+    const Point b = graph.point(triangle[(i + 1) % 3]);
+    const double length =
+        std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
+    if (length > greatest) longest = {triangle[i], triangle[(i + 1) % 3]};
+    greatest = std::max(greatest, length);
+  }
+  return longest;
+}
+
+}  // namespace
+
+void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options) {
+  graph_ = &graph;
+  options_ = options;
+  const std::size_t count = graph.corners().size();
+  weights_.assign(count, std::numeric_limits<double>::quiet_NaN());
+  order_.clear();
+  for (std::size_t i = 0; i < count && graph.is_coverage(); ++i) {
+    const Corner& corner = graph.corner(CornerId(i));
+    if (corner.is_end() && corner.prev.is_none()) weigh_arc(CornerId(i));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::isnan(weights_[CornerId(i)])) weigh_loop(CornerId(i));
+  }
+  if (graph.is_coverage()) add_regions();
+  std::sort(order_.begin(), order_.end());
+  position_ = 0;
+  epsilon_ = 0;
+  retries_.clear();
+  state_.assign(count, State::ahead);
+  waiting_first_.assign(graph.vertices().size(), kNobody);
+  waiting_.clear();
+  has_blocked_ = false;
+  counts_ = {};
+}
+
+void PriorityStack::weigh_loop(CornerId first) {
+  ring_.clear();
+  ring_corners_.clear();
+  CornerId c = first;
+  do {
+    ring_.push_back(graph_->point(graph_->corner(c).vertex));
+    ring_corners_.push_back(c);
+    c = graph_->corner(c).next;
+  } while (c != first);
+  add_candidates(ring_weights_.weigh(ring_, options_.weights));
+}
+
+void PriorityStack::weigh_arc(CornerId first) {
+  ring_.clear();
+  ring_corners_.clear();
+  for (CornerId c = first; !c.is_none(); c = graph_->corner(c).next) {
+    ring_.push_back(graph_->point(graph_->corner(c).vertex));
+    ring_corners_.push_back(c);
+  }
+  add_candidates(ring_weights_.weigh_arc(ring_, options_.weights));
+}
+
+void PriorityStack::add_candidates(std::span<const double> weights) {
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const CornerId corner = ring_corners_[k];
+    weights_[corner] = weights[k];
+    if (!std::isfinite(weights[k])) continue;
+    order_.push_back({weights[k], graph_->corner(corner).vertex, corner});
+  }
+}
+
+void PriorityStack::add_regions() {
+  borders_.assign(*graph_);
+  region_weights_.clear();
+  for (std::size_t i = 0; i < borders_.count(); ++i) {
+    const double weight = borders_.weight(RegionId(i));
+    region_weights_.push_back(weight);
+    if (std::isfinite(weight)) order_.push_back({weight, {}, corner_for(RegionId(i))});
+  }
+  is_dissolved_.assign(weights_.size(), false);
+}
+
+std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
+  // What is due already goes before what is yet to come.
+  const bool has_more = position_ < order_.size();
+  if (!retries_.empty() &&
+      (retries_.front().weight <= epsilon_ || !has_more || retries_.front() < order_[position_])) {
+    std::pop_heap(retries_.begin(), retries_.end(), std::greater<>());
+    const Candidate next = retries_.back();
+    retries_.pop_back();
+    epsilon_ = std::max(epsilon_, next.weight);
+    return next;
+  }
+  if (!has_more) return std::nullopt;
+  return pop();
+}
+
+PriorityStack::Candidate PriorityStack::pop() {
+  const Candidate next = order_[position_++];
+  epsilon_ = std::max(epsilon_, next.weight);
+  if (position_ + kCornerAhead < order_.size()) fetch_candidates();
+  return next;
+}
+
+void PriorityStack::fetch_candidates() const {
+  const auto ahead = [this](std::size_t distance) { return order_[position_ + distance]; };
+  const auto fetch_for = [&](std::size_t distance, const auto& fetch_step) {
+    if (!is_region(ahead(distance).corner)) fetch_step(*graph_, ahead(distance).corner);
+  };
+  fetch_for(kCornerAhead, [&](const TrapezoidalGraph& graph, CornerId corner) {
+    fetch(graph.corners(), corner);
+    fetch(waiting_first_, ahead(kCornerAhead).vertex);
+    fetch(state_, corner);
+  });
+  fetch_for(kEdgesAhead, fetch_edges);
+  fetch_for(kNodesAhead, fetch_nodes);
+  fetch_for(kNeighboursAhead, fetch_neighbours);
+}
+
+void PriorityStack::enqueue(const Candidate& candidate) {
+  retries_.push_back(candidate);
+  std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
+}
+
+std::optional<double> PriorityStack::remove_next([[maybe_unused]] const TrapezoidalGraph& graph,
+                                                 EditLog& log) {
+  assert(&graph == graph_);
+  do {
+    while (const auto candidate = next_candidate()) {
+      const bool has_gone = is_region(candidate->corner)
+                                ? remove_region(region_of(candidate->corner), log)
+                                : remove_corner(candidate->corner, log);
+      if (!has_gone) continue;
+      ++counts_.removals;
+      counts_.touched += log.touched_nodes().size();
+      return epsilon_;
+    }
+  } while (has_blocked_ && enqueue_anchors());
+  return std::nullopt;
+}
+
+bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
+  const TrapezoidalGraph& graph = *graph_;
+  if (!graph.corner(c).is_alive()) return false;  // went with its loop
+  if (is_to_wait(c)) return false;
+  const Decision decision = decide_removal(graph, c, options_.topology);
+  ++counts_.tests;
+  counts_.walked += decision.walked;
+  if (decision.removal == Removal::blocked) {
+    has_blocked_ = true;
+    wait_for(c, decision.blocker);
+    return false;
+  }
+  const Corner gone = graph.corner(c);
+  const VertexId prev = graph.corner(gone.prev).vertex;
+  const VertexId next = graph.corner(gone.next).vertex;
+  const EdgeId edge_before = graph.corner(gone.prev).edge;
+  if (decision.removal == Removal::loop) {
+    last_side_ = longest_side(graph, {prev, gone.vertex, next});
+    if (graph.is_coverage()) {
+      const TriangleLoop loop = triangle_loop_at(graph, c);
+      borders_.note_lost_loop(loop.long_edge, loop.side, graph.point(last_side_.first),
+                              graph.point(last_side_.second));
+    }
+  }
+  Generalization(graph, log).remove(c, decision.removal);
+  last_corner_ = c;
+  last_removal_ = decision.removal;
+  retry_waiting(gone.vertex);
+  if (decision.removal == Removal::loop) {
+    retry_waiting(prev);
+    retry_waiting(next);
+    return true;
+  }
+  if (graph.is_coverage()) {
+    const EdgeId joined = graph.corner(gone.prev).edge;
+    borders_.note_joined(joined == edge_before ? gone.edge : edge_before, joined, gone.prev);
+  }
+  retry_if_blocked(gone.prev);
+  retry_if_blocked(gone.next);
+  return true;
+}
+
+/// A junction that became a corner is weighed where it stands each time that its turn comes.
+bool PriorityStack::is_to_wait(CornerId c) {
+  if (!graph_->is_coverage() || !is_dissolved_[c.value]) return false;
+  weights_[c] = weight_in_place(c);
+  if (weights_[c] <= epsilon_) return false;
+  state_[c] = State::queued;
+  enqueue({weights_[c], graph_->corner(c).vertex, c});
+  return true;
+}
+
+double PriorityStack::weight_in_place(CornerId c) const {
+  const auto at = [this](CornerId corner) { return graph_->point(graph_->corner(corner).vertex); };
+  const Corner& corner = graph_->corner(c);
+  return std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
+}
+
+/// Gives a weight to the corners of rings that are left and have none; false if there are none.
+bool PriorityStack::enqueue_anchors() {
+  bool has_any = false;
+  for (std::size_t i = 0; i < graph_->corners().size(); ++i) {
+    const CornerId c(i);
+    const Corner& corner = graph_->corner(c);
+    if (!corner.is_alive() || corner.is_end() || std::isfinite(weights_[c])) continue;
+    weights_[c] = weight_in_place(c);
+    state_[c] = State::queued;
+    enqueue({weights_[c], corner.vertex, c});
+    has_any = true;
+  }
+  return has_any;
+}
+
+bool PriorityStack::remove_region(RegionId region, EditLog& log) {
+  const double weight = borders_.weight(region);
+  if (!std::isfinite(weight)) return false;
+  if (weight > epsilon_) {
+    requeue_region(region, weight);
+    return false;
+  }
+  const std::vector<RegionId> takers = borders_.remove(region, log);
+  last_removal_ = Removal::region;
+  for (const VertexId v : borders_.changed()) retry_waiting(v);
+  for (const CornerId c : borders_.dissolved()) {
+    is_dissolved_[c.value] = true;
+    is_to_wait(c);
+    if (state_[c] != State::queued) {
+      state_[c] = State::queued;
+      enqueue({weights_[c], graph_->corner(c).vertex, c});
+    }
+  }
+  // What it has become a part of is not measured anew before its turn comes.
+  double known = 0;
+  for (const RegionId taker : takers) known = std::max(known, region_weights_[taker]);
+  if (!std::isfinite(known)) known = borders_.weight(region);
+  if (std::isfinite(known)) requeue_region(region, known);
+  return true;
+}
+
+void PriorityStack::requeue_region(RegionId region, double weight) {
+  region_weights_[region] = weight;
+  enqueue({weight, {}, corner_for(region)});
+}
+
+void PriorityStack::wait_for(CornerId corner, VertexId blocker) {
+  state_[corner] = State::blocked;
+  waiting_.push_back({corner, waiting_first_[blocker]});
+  waiting_first_[blocker] = static_cast<std::uint32_t>(waiting_.size() - 1);
+}
+
+void PriorityStack::retry_waiting(VertexId gone) {
+  std::uint32_t i = std::exchange(waiting_first_[gone], kNobody);
+  for (; i != kNobody; i = waiting_[i].next) retry_if_blocked(waiting_[i].corner);
+}
+
+void PriorityStack::retry_if_blocked(CornerId corner) {
+  if (state_[corner] != State::blocked || !graph_->corner(corner).is_alive()) return;
+  state_[corner] = State::queued;
+  enqueue({weights_[corner], graph_->corner(corner).vertex, corner});
+}
+
+AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options)
+    : graph_(std::move(graph)), log_(graph_) {
+  stack_.assign(graph_, options);
+}
+
+void AdaptableGraph::adapt_to(double epsilon) {
+  while (log_.applied() > 0 && epsilon_of_edit_[log_.applied() - 1] >= epsilon) log_.revert();
+  while (log_.applied() < log_.size() && epsilon_of_edit_[log_.applied()] < epsilon) log_.apply();
+  // The sequence goes on where it has been followed before; the next removal is known only once it
+  // has been made, so one too many is made and taken back.
+  while (log_.applied() == log_.size() && !exhausted_) {
+    const std::optional<double> made = stack_.remove_next(graph_, log_);
+    if (!made) {
+      exhausted_ = true;
+      return;
+    }
+    epsilon_of_edit_.push_back(*made);
+    if (*made >= epsilon) {
+      log_.revert();
+      return;
+    }
+  }
+}
+
+AdaptableGraph::Unchanged AdaptableGraph::unchanged() const {
+  const std::size_t applied = log_.applied();
+  Unchanged unchanged;
+  if (applied > 0) unchanged.above = epsilon_of_edit_[applied - 1];
+  if (applied < log_.size()) {
+    unchanged.up_to = epsilon_of_edit_[applied];
+  } else if (exhausted_) {
+    unchanged.up_to = std::numeric_limits<double>::infinity();
+  }
+  return unchanged;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,169 @@
+// One polygon's trapezoidal graph, adapted in place to any tolerance, forward and back (paper,
+// section 3.2).
+//
+// All vertices wait in a priority stack, ordered by weight and then by vertex. Adapting to a
+// tolerance pops every vertex of smaller weight and removes it, unless the topological consistency
+// test blocks it; a blocked vertex is tried again as soon as its blocker or one of its neighbours
+// in the ring has gone, and counts as of the weight that was popped last. So there is one fixed
+// sequence of removals, and the graph at a tolerance is a prefix of it: its state depends on the
+// tolerance only, never on what was asked before.
+//
+// The two vertices of a ring without a weight, between which all others are weighed, go with its
+// last triangle. Where rings hook into each other so that all of finite weight are blocked, these
+// two are weighed as well: an innermost ring has two vertices whose triangle is empty, wherever
+// they are, so that in the end nothing is left.
+//
+// In a coverage, arcs are weighed each by itself, so that a border is the same whichever side asks,
+// and regions wait in the stack as well (see region_borders.h).
+//
+// Thread-safety: none; different graphs may be used by different threads.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/adapt/vertex_weight.h"
+#include "core/borders/coverage_groups.h"
+#include "core/borders/region_borders.h"
+#include "core/graph/edit_log.h"
+#include "core/graph/generalization.h"
+#include "core/graph/topological_consistency.h"
+#include "core/graph/trapezoidal_graph.h"
+
+namespace trapeze {
+
+struct GeneralizationOptions {
+  WeightRule weights = WeightRule::douglas_peucker;
+  Topology topology = Topology::strict;
+  // Of layers; a graph is what it was built from.
+  CoverageMode coverage = CoverageMode::off;
+  double close_gaps = 0;  // metres on the ground, up to kWidestGap; where there are coverages
+};
+
+/// The corners of a graph in the order in which they are to go, with what blocks them.
+class PriorityStack {
+ public:
+  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use.
+  void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options);
+
+  /// Makes the next removal that the sequence holds, through `log`; returns the tolerance that it
+  /// belongs to (cells): the graph at a tolerance has seen all removals of smaller ones. None if no
+  /// vertex of finite weight can go any more.
+  std::optional<double> remove_next(const TrapezoidalGraph& graph, EditLog& log);
+
+  struct Counts {
+    std::uint64_t removals = 0;
+    std::uint64_t tests = 0;    // decisions made
+    std::uint64_t walked = 0;   // trapezoids looked at in them
+    std::uint64_t touched = 0;  // trapezoids changed by removals
+  };
+  const Counts& counts() const { return counts_; }
+
+  /// Whether some decision so far was that a vertex is blocked.
+  bool has_blocked() const { return has_blocked_; }
+
+  /// The corner that went last, how it went, and, if its whole loop went, the longest side of the
+  /// triangle that was left of it.
+  CornerId last_corner() const { return last_corner_; }
+  Removal last_removal() const { return last_removal_; }
+  std::pair<VertexId, VertexId> last_side() const { return last_side_; }
+  /// Of a coverage: the areas that changed hands when a loop or a region went last.
+  std::span<const Taken> last_taken() const { return borders_.taken(); }
+  double weight(CornerId c) const { return weights_[c]; }
+
+ private:
+  /// A corner with what it is ordered by, so that sorting looks nowhere else. Numbers of corners
+  /// that there are not stand for regions, which come after the vertices of their weight.
+  struct Candidate {
+    double weight;
+    VertexId vertex;
+    CornerId corner;
+    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  };
+
+  void weigh_loop(CornerId first);
+  void weigh_arc(CornerId first);
+  void add_candidates(std::span<const double> weights);
+  void add_regions();
+  std::optional<Candidate> next_candidate();
+  Candidate pop();
+  void fetch_candidates() const;
+  void enqueue(const Candidate& candidate);
+  bool is_region(CornerId c) const { return c.value >= weights_.size(); }
+  CornerId corner_for(RegionId region) const { return CornerId(weights_.size() + region.value); }
+  RegionId region_of(CornerId c) const { return RegionId(c.value - weights_.size()); }
+  bool remove_region(RegionId region, EditLog& log);
+  bool is_to_wait(CornerId corner);
+  bool remove_corner(CornerId corner, EditLog& log);
+  void requeue_region(RegionId region, double weight);
+  double weight_in_place(CornerId c) const;
+  bool enqueue_anchors();
+  void wait_for(CornerId corner, VertexId blocker);
+  void retry_waiting(VertexId gone);
+  void retry_if_blocked(CornerId corner);
+
+  const TrapezoidalGraph* graph_ = nullptr;
+  GeneralizationOptions options_;
+  Table<CornerId, double> weights_;
+  std::vector<Candidate> order_;
+  std::size_t position_ = 0;
+  double epsilon_ = 0;  // greatest weight popped
+
+  // Candidates to try again, smallest first (a heap), and corners blocked by each vertex.
+  enum class State : std::uint8_t { ahead, blocked, queued };
+  struct Waiting {
+    CornerId corner;
+    std::uint32_t next;
+  };
+  std::vector<Candidate> retries_;
+  Table<CornerId, State> state_;
+  Table<VertexId, std::uint32_t> waiting_first_;
+  std::vector<Waiting> waiting_;
+  VertexWeights ring_weights_;
+  std::vector<Point> ring_;
+  std::vector<CornerId> ring_corners_;
+  // Of a coverage.
+  RegionBorders borders_;
+  Table<RegionId, double> region_weights_;  // as they were queued last
+  std::vector<bool> is_dissolved_;          // by corner: was a junction, is weighed where it stands
+  bool has_blocked_ = false;
+  CornerId last_corner_;
+  Removal last_removal_ = Removal::blocked;
+  std::pair<VertexId, VertexId> last_side_;
+  Counts counts_;
+};
+
+class AdaptableGraph {
+ public:
+  explicit AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options = {});
+  AdaptableGraph(const AdaptableGraph&) = delete;
+  AdaptableGraph& operator=(const AdaptableGraph&) = delete;
+
+  /// Makes the graph the one of tolerance `epsilon` (cells, >= 0), forward or back.
+  void adapt_to(double epsilon);
+
+  /// The tolerances at which the graph is as it is now: those greater than `above`, up to `up_to`.
+  struct Unchanged {
+    double above = -1;  // below zero: nothing has been removed
+    double up_to = 0;
+
+    bool contains(double epsilon) const { return above < epsilon && epsilon <= up_to; }
+  };
+  Unchanged unchanged() const;
+
+  const TrapezoidalGraph& graph() const { return graph_; }
+  const PriorityStack& stack() const { return stack_; }
+  std::size_t memory() const { return graph_.memory() + log_.memory(); }
+
+ private:
+  TrapezoidalGraph graph_;
+  EditLog log_;
+  PriorityStack stack_;
+  std::vector<double> epsilon_of_edit_;
+  bool exhausted_ = false;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,154 @@
+#include "core/adapt/farthest_vertex.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trapeze {
+
+struct FarthestVertex::Search {
+  SegmentDistance distance;
+  std::size_t piece_begin;
+  std::size_t piece_end;
+  Found best;
+  // Of the vertices of the tree that are asked for; `lap` is added to their index in the piece.
+  std::size_t range_begin = 0;
+  std::size_t range_end = 0;
+  std::size_t lap = 0;
+
+  std::size_t off_middle(std::size_t i) const { return std::max(i - piece_begin, piece_end - i); }
+};
+
+void FarthestVertex::assign(std::span<const Point> ring) {
+  ring_ = ring;
+  looked_at_ = 0;
+  has_tree_ = false;
+}
+
+void FarthestVertex::build_tree() {
+  const std::span<const Point> ring = ring_;
+  std::size_t row = 0;
+  for (std::size_t count = (ring.size() + kLeaf - 1) / kLeaf;; count = (count + 1) / 2, ++row) {
+    if (rows_.size() == row) rows_.emplace_back();
+    Row& hulls = rows_[row];
+    hulls.corners.clear();
+    hulls.ends.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      points_.clear();
+      const auto take = [this](std::span<const Point> more) {
+        points_.insert(points_.end(), more.begin(), more.end());
+      };
+      if (row == 0) {
+        take(ring.subspan(i * kLeaf, std::min(kLeaf, ring.size() - i * kLeaf)));
+      } else {
+        take(rows_[row - 1][2 * i]);
+        if (2 * i + 1 < rows_[row - 1].size()) take(rows_[row - 1][2 * i + 1]);
+      }
+      append_hull(hulls);
+    }
+    if (count == 1) break;
+  }
+  rows_.resize(row + 1);
+  has_tree_ = true;
+}
+
+/// The hull of points_, which is put in order: its right side from top to bottom, then its left
+/// side from bottom to top (Andrew's monotone chain).
+void FarthestVertex::append_hull(Row& row) {
+  std::sort(points_.begin(), points_.end(), is_above);
+  points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+  std::vector<Point>& hull = row.corners;
+  const auto add_side = [&hull](auto begin, auto end) {
+    const std::size_t first = hull.size();
+    for (auto p = begin; p != end; ++p) {
+      while (hull.size() >= first + 2 && orientation(hull[hull.size() - 2], hull.back(), *p) <= 0)
+        hull.pop_back();
+      hull.push_back(*p);
+    }
+    hull.pop_back();  // the other side begins with it
+  };
+  if (points_.size() == 1) {
+    hull.push_back(points_.front());
+  } else {
+    add_side(points_.begin(), points_.end());
+    add_side(points_.rbegin(), points_.rend());
+  }
+  row.ends.push_back(static_cast<std::uint32_t>(hull.size()));
+}
+
+FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
+  Search search{SegmentDistance(at(begin), at(end)), begin, end, {begin + 1, -1}};
+  if (end - begin <= kFew || looked_at_ < kPatience * ring_.size()) {
+    looked_at_ += end - begin;
+    look_at_all(begin + 1, end, search);
+    return search.best;
+  }
+  if (!has_tree_) build_tree();
+  const std::size_t n = ring_.size();
+  search_range(std::min(begin + 1, n), std::min(end, n), 0, search);
+  search_range(std::max(begin + 1, n) - n, std::max(end, n) - n, n, search);
+  return search.best;
+}
+
+/// The vertices [begin, end) of the piece.
+void FarthestVertex::look_at_all(std::size_t begin, std::size_t end, Search& search) const {
+  Found& best = search.best;
+  const std::size_t n = ring_.size();
+  for (std::size_t i = begin; i < end; ++i) {
+    const double squared = search.distance.squared(ring_[i < n ? i : i - n]);
+    if (squared < best.squared) continue;
+    if (squared > best.squared || wins_tie(i, search)) best = {i, squared};
+  }
+}
+
+bool FarthestVertex::wins_tie(std::size_t i, const Search& search) const {
+  const std::size_t off = search.off_middle(i);
+  const std::size_t best_off = search.off_middle(search.best.vertex);
+  return off != best_off ? off < best_off : is_above(at(i), at(search.best.vertex));
+}
+
+void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_t lap,
+                                  Search& search) const {
+  if (begin >= end) return;
+  search.range_begin = begin;
+  search.range_end = end;
+  search.lap = lap;
+  const std::size_t top = rows_.size() - 1;
+  descend(top, 0, bound_of(top, 0, search), search);
+}
+
+/// No vertex in the hull is farther away, not even by rounding; negative if none is asked for. The
+/// distance is convex, so it is greatest at a corner.
+double FarthestVertex::bound_of(std::size_t row, std::size_t index, const Search& search) const {
+  const std::size_t vertices = kLeaf << row;
+  if (index * vertices >= search.range_end || (index + 1) * vertices <= search.range_begin)
+    return -1;
+  double bound = 0;
+  for (const Point p : rows_[row][index]) bound = std::max(bound, search.distance.squared(p));
+  // What rounding may add to a distance, twice over.
+  constexpr double kRounding = 4e-6;
+  return bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding;
+}
+
+void FarthestVertex::descend(std::size_t row, std::size_t index, double bound,
+                             Search& search) const {
+  if (bound < search.best.squared || bound < 0) return;
+  if (row == 0) {
+    const std::size_t end = std::min((index + 1) * kLeaf, search.range_end);
+    const std::size_t begin = std::max(index * kLeaf, search.range_begin);
+    look_at_all(begin + search.lap, end + search.lap, search);
+    return;
+  }
+  const std::size_t left = 2 * index;
+  const std::size_t right = left + 1;
+  const double left_bound = bound_of(row - 1, left, search);
+  const double right_bound = right < rows_[row - 1].size() ? bound_of(row - 1, right, search) : -1;
+  if (left_bound >= right_bound) {
+    descend(row - 1, left, left_bound, search);
+    descend(row - 1, right, right_bound, search);
+  } else {
+    descend(row - 1, right, right_bound, search);
+    descend(row - 1, left, left_bound, search);
+  }
+}
+
+}  // namespace trapeze

@@ -1,0 +1,104 @@
+// The vertex of a piece of a ring that lies farthest from the chord of the piece: what a recursive
+// partitioning (paper, section 3.2) asks again and again.
+//
+// Looking at all vertices of every piece is quadratic where the farthest one always is next to an
+// end: a comb with each tooth longer than the one before, a spiral, a long straight staircase. So a
+// tree of convex hulls over the vertices is kept: no vertex is farther away than the farthest
+// corner of a hull around it, and what lies in a hull that is nowhere far enough is not looked at.
+// The answer is the same as that of looking at all, bit for bit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/grid.h"
+
+namespace trapeze {
+
+/// The distance from a segment, prepared for many points. The segment is taken from its upper end,
+/// so that results do not depend on the direction of the ring.
+class SegmentDistance {
+ public:
+  SegmentDistance(Point a, Point b)
+      : a_(is_above(a, b) ? a : b),
+        b_(is_above(a, b) ? b : a),
+        dx_(static_cast<double>(b_.x) - a_.x),
+        dy_(static_cast<double>(b_.y) - a_.y),
+        squared_length_(dx_ * dx_ + dy_ * dy_),
+        inverse_(squared_length_ > 0 ? 1 / squared_length_ : 0) {}
+
+  /// In cells squared; off by less than a millionth of a cell in the distance.
+  double squared(Point p) const {
+    const double px = static_cast<double>(p.x) - a_.x;
+    const double py = static_cast<double>(p.y) - a_.y;
+    const double along = px * dx_ + py * dy_;
+    if (along <= 0) return px * px + py * py;
+    if (along >= squared_length_) {
+      const double qx = static_cast<double>(p.x) - b_.x;
+      const double qy = static_cast<double>(p.y) - b_.y;
+      return qx * qx + qy * qy;
+    }
+    const double across = dx_ * py - dy_ * px;
+    return across * across * inverse_;
+  }
+
+ private:
+  Point a_, b_;
+  double dx_, dy_, squared_length_, inverse_;
+};
+
+/// Reusable memory; one a thread.
+class FarthestVertex {
+ public:
+  /// `ring` must outlive its use here.
+  void assign(std::span<const Point> ring);
+
+  struct Found {
+    std::size_t vertex;  // its index in the piece, so perhaps past the end of the ring
+    double squared;      // its distance, in cells squared
+  };
+  /// Of the vertices begin + 1 .. end - 1 the one farthest from the segment between begin and end;
+  /// indices run past the end of the ring and are taken modulo its length. Of equally distant ones
+  /// it is the one nearest the middle of the piece, then the uppermost: a comb of equal teeth is
+  /// halved and not peeled tooth by tooth. begin + 1 < end <= begin + length of the ring.
+  Found find(std::size_t begin, std::size_t end);
+
+ private:
+  static constexpr std::size_t kLeaf = 64;  // vertices in a hull of the lowest row
+  static constexpr std::size_t kFew = 512;  // not worth a tree
+  // How often each vertex of a ring is looked at before a tree is worth it: more than is usual even
+  // for a ring of millions, whose pieces come in halves more or less.
+  static constexpr std::size_t kPatience = 48;
+
+  /// Convex hulls one after another.
+  struct Row {
+    std::vector<Point> corners;
+    std::vector<std::uint32_t> ends;
+
+    std::size_t size() const { return ends.size(); }
+    std::span<const Point> operator[](std::size_t i) const {
+      const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+      return std::span<const Point>(corners).subspan(begin, ends[i] - begin);
+    }
+  };
+
+  struct Search;
+  Point at(std::size_t i) const { return ring_[i < ring_.size() ? i : i - ring_.size()]; }
+  void build_tree();
+  void append_hull(Row& row);
+  void look_at_all(std::size_t begin, std::size_t end, Search& search) const;
+  bool wins_tie(std::size_t i, const Search& search) const;
+  void search_range(std::size_t begin, std::size_t end, std::size_t lap, Search& search) const;
+  void descend(std::size_t row, std::size_t index, double bound, Search& search) const;
+  double bound_of(std::size_t row, std::size_t index, const Search& search) const;
+
+  std::span<const Point> ring_;
+  std::size_t looked_at_ = 0;  // vertices, since the ring was assigned
+  bool has_tree_ = false;
+  std::vector<Row> rows_;  // [0]: around kLeaf vertices each; each next around pairs
+  std::vector<Point> points_;
+};
+
+}  // namespace trapeze

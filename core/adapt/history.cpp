@@ -1,0 +1,274 @@
+#include "core/adapt/history.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint32_t kNoVersion = 0xffffffff;
+constexpr std::uint32_t kLevelBit = 0x80000000;
+
+/// Equal but perhaps for another of two level vertices at the top or the bottom.
+bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
+  const auto y = [&history](std::uint32_t vertex) { return history.vertices[vertex].y; };
+  return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) &&
+         y(a.bottom) == y(b.bottom);
+}
+
+bool has_height(const History& history, const MeshTrapezoid& t) {
+  return history.vertices[t.top].y != history.vertices[t.bottom].y;
+}
+
+/// The side of a trapezoid without height that is as level as it is, if there is one.
+std::optional<std::uint32_t> level_edge_of(const History& history, const MeshTrapezoid& t) {
+  for (const std::uint32_t side : {t.left, t.right}) {
+    const MeshEdge& edge = history.edges[side];
+    if (history.vertices[edge.upper].y == history.vertices[edge.lower].y) return side;
+  }
+  return std::nullopt;
+}
+
+Lifespan& lifespan_of(History& history, std::uint32_t version) {
+  return (version & kLevelBit) == 0 ? history.lifespans[version]
+                                    : history.level_edges[version ^ kLevelBit].lifespan;
+}
+
+/// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
+/// while the order in which they were touched is that of weights, all over the map.
+template <class IdType>
+void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& flags) {
+  constexpr std::size_t kFitsTheCache = 4096;
+  constexpr std::size_t kSparse = 16;
+  if (ids.size() < kFitsTheCache || ids.size() < flags.size() / kSparse) return;
+  ids.clear();
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[IdType(i)] != 0) ids.push_back(IdType(i));
+  }
+}
+
+}  // namespace
+
+void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+                             const GeneralizationOptions& options, History& history) {
+  rows_ = rows;
+  begin(graph, history);
+  stack_.assign(graph, options);
+  EditLog log(graph);
+  int level = 0;
+  for (;;) {
+    const std::optional<double> epsilon = stack_.remove_next(graph, log);
+    const int next = epsilon ? level_above(*epsilon) : kLastLevel + 1;
+    if (next != level) {
+      // What has been removed up to now was due by `level`; the edit at hand is only due at `next`.
+      if (epsilon) log.revert();
+      if (level > 0) end_level(graph, static_cast<Level>(level));
+      if (next > kLastLevel) return;
+      log.apply();
+      level = next;
+    }
+    note_touched(log);
+    if (stack_.last_removal() == Removal::region) touch_along(graph, log);
+    note_lost_area(graph, static_cast<Level>(level));
+    log.forget();
+  }
+}
+
+void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
+                             History& history) {
+  record(graph, std::array<std::uint32_t, 1>{0}, options, history);
+}
+
+void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
+  history_ = &history;
+  vertex_base_ = static_cast<std::uint32_t>(history.vertices.size());
+  for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
+    history.vertices.push_back(graph.point(VertexId(v)));
+  }
+  edge_version_.assign(graph.edges().size(), kNoVersion);
+  node_version_.assign(graph.nodes().size(), kNoVersion);
+  touched_edges_.clear();
+  touched_nodes_.clear();
+  edge_is_touched_.assign(graph.edges().size(), 0);
+  node_is_touched_.assign(graph.nodes().size(), 0);
+  for (std::size_t e = 0; e < graph.edges().size(); ++e) {
+    if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
+  }
+  for (std::size_t n = 0; n < graph.nodes().size(); ++n) renew_node(graph, NodeId(n), 0);
+  if (!graph.is_coverage()) measure_loops(graph);
+}
+
+void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
+  loops_.clear();
+  loop_of_.assign(graph.corners().size(), kNoVersion);
+  for (std::size_t i = 0; i < graph.corners().size(); ++i) {
+    if (loop_of_[CornerId(i)] != kNoVersion) continue;
+    // Doubled area, positive if the loop runs clockwise on the map.
+    Int128 doubled = 0;
+    CornerId c(i);
+    do {
+      loop_of_[c] = static_cast<std::uint32_t>(loops_.size());
+      const Corner& corner = graph.corner(c);
+      const Point a = graph.point(corner.vertex);
+      const Point b = graph.point(graph.corner(corner.next).vertex);
+      doubled += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(b.x) * a.y;
+      c = corner.next;
+    } while (c != CornerId(i));
+    // Running clockwise, the loop's own side is left of what goes down and right of what goes up.
+    const Corner& first = graph.corner(CornerId(i));
+    const bool goes_down = first.vertex == graph.edge(first.edge).end[kUp];
+    const bool clockwise = doubled > 0;
+    const Side own = goes_down == clockwise ? kLeft : kRight;
+    loops_.push_back(
+        {std::abs(static_cast<double>(doubled)) / 2, graph.edge(first.edge).face[own] == kOutside});
+  }
+}
+
+void HistoryRecorder::touch(NodeId n) {
+  if (node_is_touched_[n] != 0) return;
+  node_is_touched_[n] = 1;
+  touched_nodes_.push_back(n);
+}
+
+void HistoryRecorder::note_touched(const EditLog& log) {
+  for (const auto& kept : log.touched_nodes()) touch(kept.id);
+  for (const auto& kept : log.touched_edges()) {
+    if (edge_is_touched_[kept.id] != 0) continue;
+    edge_is_touched_[kept.id] = 1;
+    touched_edges_.push_back(kept.id);
+  }
+}
+
+/// The nodes along edges that got another face are in another feature now.
+void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& log) {
+  for (const auto& kept : log.touched_edges()) {
+    const Edge& edge = graph.edge(kept.id);
+    if (!edge.is_alive() || (edge.face[kLeft] == kept.record.face[kLeft] &&
+                             edge.face[kRight] == kept.record.face[kRight])) {
+      continue;
+    }
+    for (const Side s : {kLeft, kRight}) {
+      for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
+           n = graph.node(n).link[opposite(s)][kDown])
+        touch(n);
+    }
+  }
+}
+
+void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level) {
+  const Removal removal = stack_.last_removal();
+  if (removal != Removal::loop && removal != Removal::region) return;
+  if (!graph.is_coverage()) return note_lost_loop(graph, level);
+  for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
+}
+
+/// A hole counts as less of what fills it.
+void HistoryRecorder::note_taken(const Taken& taken, Level level) {
+  if (taken.face == kOutside) {
+    history_->grains.push_back(
+        {taken.from, taken.to, -taken.area, level, row_of(taken.taker), Grain::kNobody});
+  } else {
+    history_->grains.push_back({taken.from, taken.to, taken.area, level, row_of(taken.face),
+                                taken.taker == kOutside ? Grain::kNobody : row_of(taken.taker)});
+  }
+}
+
+void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level) {
+  // The last triangle was no wider than the tolerance: its longest side stands for the loop.
+  const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
+  const auto [from, to] = stack_.last_side();
+  history_->grains.push_back({graph.point(from), graph.point(to),
+                              loop.is_hole ? -loop.area : loop.area, level, rows_.front(),
+                              Grain::kNobody});
+}
+
+void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
+  order_if_many(touched_edges_, edge_is_touched_);
+  for (const EdgeId e : touched_edges_) {
+    edge_is_touched_[e] = 0;
+    renew_edge(graph, e);
+  }
+  touched_edges_.clear();
+  order_if_many(touched_nodes_, node_is_touched_);
+  for (const NodeId n : touched_nodes_) {
+    node_is_touched_[n] = 0;
+    renew_node(graph, n, level);
+  }
+  touched_nodes_.clear();
+}
+
+/// An edge whose ends have changed begins a new version, and so do the inside nodes along it.
+void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
+  if (graph.is_frame(e)) return;
+  const Edge& edge = graph.edge(e);
+  if (!edge.is_alive()) {
+    edge_version_[e] = kNoVersion;
+    return;
+  }
+  const MeshEdge& open = history_->edges[edge_version_[e]];
+  if (open.upper == vertex_base_ + edge.end[kUp].value - 1 &&
+      open.lower == vertex_base_ + edge.end[kDown].value - 1) {
+    return;
+  }
+  open_edge(graph, e);
+  for (const Side s : {kLeft, kRight}) {
+    if (edge.face[s] == kOutside) continue;
+    for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown])
+      touch(n);
+  }
+}
+
+void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
+  const Edge& edge = graph.edge(e);
+  edge_version_[e] = static_cast<std::uint32_t>(history_->edges.size());
+  history_->edges.push_back(
+      {vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
+}
+
+void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
+  const Node& node = graph.node(n);
+  std::uint32_t& version = node_version_[n];
+  const bool is_inside = node.is_alive() && graph.face(node) != kOutside;
+  const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
+  const std::uint32_t row = is_inside ? row_of(graph.face(node)) : 0;
+  if (version != kNoVersion) {
+    if (is_inside && is_open(version, now, row)) return;
+    lifespan_of(*history_, version).dies = level;
+  }
+  version = is_inside ? open_node(now, row, level) : kNoVersion;
+}
+
+MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
+  return {vertex_base_ + node.end[kUp].value - 1, vertex_base_ + node.end[kDown].value - 1,
+          edge_version_[node.edge[kLeft]], edge_version_[node.edge[kRight]]};
+}
+
+bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid,
+                              std::uint32_t row) const {
+  if ((version & kLevelBit) == 0) {
+    return history_->rows[version] == row &&
+           covers_the_same(*history_, history_->trapezoids[version], trapezoid);
+  }
+  const LevelEdge& open = history_->level_edges[version ^ kLevelBit];
+  return open.row == row && !has_height(*history_, trapezoid) &&
+         level_edge_of(*history_, trapezoid) == open.edge;
+}
+
+// A trapezoid between level vertices has no area and is never drawn; but the edge along it may be.
+std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::uint32_t row,
+                                         Level level) {
+  const Lifespan lifespan{level, kNeverDies};
+  if (has_height(*history_, trapezoid)) {
+    history_->trapezoids.push_back(trapezoid);
+    history_->lifespans.push_back(lifespan);
+    history_->rows.push_back(row);
+    return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
+  }
+  const std::optional<std::uint32_t> edge = level_edge_of(*history_, trapezoid);
+  if (!edge) return kNoVersion;
+  history_->level_edges.push_back({*edge, lifespan, row});
+  return static_cast<std::uint32_t>(history_->level_edges.size() - 1) | kLevelBit;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,109 @@
+// The history of a graph: every version of its inside trapezoids between the untouched polygon and
+// the coarsest tolerance, each with its lifespan (see tolerance.h).
+//
+// The sequence of removals is played once from fine to coarse. At every level of the ladder the
+// nodes that changed since the level before end their version there and begin a new one. Versions
+// that no level sees are never stored, which bounds the memory; edges have versions of their own,
+// which the versions of trapezoids name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/adapt/adaptable_graph.h"
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/tolerance.h"
+#include "core/mesh/trapezoid_mesh.h"
+
+namespace trapeze {
+
+/// A loop that became too small to keep: its area stays on the map as dust, spread along the
+/// segment that was left of it.
+struct Grain {
+  static constexpr std::uint32_t kNobody = 0xffffffff;
+
+  Point from;
+  Point to;
+  double area = 0;        // cells squared; negative if the loop was a hole
+  Level born = 0;         // the first level that does without the loop
+  std::uint32_t row = 0;  // of the feature
+  /// The feature that covers the place since; kNobody if none does. If one does, the area is to be
+  /// taken from it.
+  std::uint32_t taker = kNobody;
+};
+
+/// A version of an edge whose ends are level, and when it is part of the boundary of a feature. The
+/// trapezoid along it has no height and is not stored, so that nothing else tells of it.
+struct LevelEdge {
+  std::uint32_t edge = 0;
+  Lifespan lifespan;
+  std::uint32_t row = 0;  // of the feature
+};
+
+/// Versions of many graphs, one after another; indices are relative to the beginning of the arrays.
+struct History {
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
+  std::vector<Lifespan> lifespans;  // by trapezoid
+  std::vector<std::uint32_t> rows;  // by trapezoid: the feature that it is a part of
+  std::vector<LevelEdge> level_edges;
+  std::vector<Grain> grains;
+};
+
+/// Reusable memory for recording; one a thread.
+class HistoryRecorder {
+ public:
+  /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
+  /// `graph` is adapted to the coarsest tolerance.
+  void record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+              const GeneralizationOptions& options, History& history);
+  /// The same of a single polygon, which is the feature of row 0.
+  void record(TrapezoidalGraph& graph, const GeneralizationOptions& options, History& history);
+
+  /// Of the last recording.
+  const PriorityStack& stack() const { return stack_; }
+
+ private:
+  void begin(const TrapezoidalGraph& graph, History& history);
+  void measure_loops(const TrapezoidalGraph& graph);
+  void note_touched(const EditLog& log);
+  void touch_along(const TrapezoidalGraph& graph, const EditLog& log);
+  void note_lost_area(const TrapezoidalGraph& graph, Level level);
+  void note_lost_loop(const TrapezoidalGraph& graph, Level level);
+  void note_taken(const Taken& taken, Level level);
+  void end_level(const TrapezoidalGraph& graph, Level level);
+  void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
+  void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
+  MeshTrapezoid trapezoid_of(const Node& node) const;
+  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid, std::uint32_t row) const;
+  std::uint32_t open_node(const MeshTrapezoid& trapezoid, std::uint32_t row, Level level);
+  std::uint32_t row_of(FaceId face) const { return rows_[face - 1]; }
+  void open_edge(const TrapezoidalGraph& graph, EdgeId e);
+  void touch(NodeId n);
+
+  History* history_ = nullptr;
+  std::span<const std::uint32_t> rows_;  // by face - 1
+  std::uint32_t vertex_base_ = 0;
+  PriorityStack stack_;
+  // The version that is open at present, by edge and by node; kNoVersion if there is none. That of
+  // a node without height is a level edge, flagged with kLevelBit, if it has one.
+  Table<EdgeId, std::uint32_t> edge_version_;
+  Table<NodeId, std::uint32_t> node_version_;
+  // Touched since the last level.
+  std::vector<EdgeId> touched_edges_;
+  std::vector<NodeId> touched_nodes_;
+  Table<EdgeId, std::uint8_t> edge_is_touched_;
+  Table<NodeId, std::uint8_t> node_is_touched_;
+  // Loops as they were at first.
+  struct Loop {
+    double area = 0;  // cells squared
+    bool is_hole = false;
+  };
+  std::vector<Loop> loops_;
+  Table<CornerId, std::uint32_t> loop_of_;
+};
+
+}  // namespace trapeze

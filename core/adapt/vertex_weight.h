@@ -1,0 +1,75 @@
+// Vertex weights: how much a vertex matters for the shape of its ring (paper, section 3.2).
+//
+// A weight is a distance in grid cells; a vertex is to go at every tolerance greater than its
+// weight. Two corners of a ring, its anchors, have no finite weight: they go with the ring.
+//
+// Thread-safety: one VertexWeights a thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/adapt/farthest_vertex.h"
+#include "core/grid/grid.h"
+
+namespace trapeze {
+
+enum class WeightRule : std::uint8_t {
+  /// Douglas-Peucker distance, lowered to the weight of the parent in the BLG tree where that is
+  /// smaller: dropping all weights below a tolerance is exactly Douglas-Peucker at that tolerance.
+  douglas_peucker,
+  /// The paper's adjustment, Eq. (1): the same distances, but the parent is raised to its children,
+  /// so
+  /// that no vertex is kept less long than one that was split off below it.
+  raised_parents,
+  /// Visvalingam-Whyatt: the square root of the area of the triangle with the neighbours that are
+  /// left, never less than that of a vertex removed before.
+  effective_area,
+};
+
+std::optional<WeightRule> weight_rule_from_name(std::string_view name);
+std::string_view name_of(WeightRule rule);
+
+/// Reusable memory for weighing rings.
+class VertexWeights {
+ public:
+  /// The weight of every vertex of a closed ring of at least three points, in the order given;
+  /// equal for the same ring started elsewhere or run through the other way round.
+  std::span<const double> weigh(std::span<const Point> ring, WeightRule rule);
+
+  /// The same of an arc between two vertices that stay, which have no finite weight; they may be at
+  /// the same place. At least two points.
+  std::span<const double> weigh_arc(std::span<const Point> arc, WeightRule rule);
+
+ private:
+  void split_pieces(std::span<const Point> points, bool raise_parents);
+  void weigh_by_distance(std::span<const Point> ring, bool raise_parents);
+  void weigh_by_area(std::span<const Point> points, bool is_arc);
+  struct Anchors {
+    std::size_t first;
+    std::size_t second;
+  };
+  Anchors anchors_of(std::span<const Point> ring) const;
+
+  // A piece of the ring between two kept vertices, its ends included; indices run past the end of
+  // the ring and are taken modulo its length. `parent` is the split above it.
+  struct Piece {
+    std::size_t begin;
+    std::size_t end;
+    std::size_t parent;
+  };
+  FarthestVertex farthest_;
+  std::vector<double> weights_;
+  std::vector<Piece> pieces_;
+  std::vector<std::pair<std::size_t, std::size_t>> splits_;  // vertex and its parent, parents first
+  std::vector<std::size_t> before_;
+  std::vector<std::size_t> after_;
+};
+
+/// The squared distance of p from the segment ab, in cells squared.
+double squared_distance(Point p, Point a, Point b);
+
+}  // namespace trapeze

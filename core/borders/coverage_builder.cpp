@@ -1,0 +1,462 @@
+#include "core/borders/coverage_builder.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "core/borders/border_lengths.h"
+#include "core/grid/web_mercator.h"
+#include "core/sweep/owned_segments.h"
+
+namespace trapeze {
+namespace {
+
+std::vector<OwnedSegment> node(const std::vector<OwnedSegment>& segments, HotCells cells) {
+  std::vector<Segment> alone;
+  alone.reserve(segments.size());
+  for (const OwnedSegment& s : segments) alone.push_back(s.segment);
+  std::vector<OwnedSegment> pieces;
+  for (const Piece& piece : node_pieces(alone, cells)) {
+    pieces.push_back({piece.segment, segments[piece.source].owner});
+  }
+  return pieces;
+}
+
+/// Numbers for small sets of features, each in ascending order; 0 is the empty one.
+class FeatureSets {
+ public:
+  FeatureSets() { number({}); }
+
+  std::uint32_t number(const std::vector<std::uint32_t>& features) {
+    const auto [found, is_new] =
+        numbers_.try_emplace(features, static_cast<std::uint32_t>(sets_.size()));
+    if (is_new) sets_.push_back(features);
+    return found->second;
+  }
+
+  const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
+  std::size_t size() const { return sets_.size(); }
+
+  /// The features that are in one of two sets and not in the other.
+  std::uint32_t toggled(std::uint32_t a, std::uint32_t b) {
+    const std::uint64_t key = std::uint64_t{a} << 32 | b;
+    const auto [found, is_new] = toggled_.try_emplace(key, 0);
+    if (is_new) {
+      std::vector<std::uint32_t> result;
+      std::ranges::set_symmetric_difference(sets_[a], sets_[b], std::back_inserter(result));
+      found->second = number(result);
+    }
+    return found->second;
+  }
+
+ private:
+  std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
+  std::vector<std::vector<std::uint32_t>> sets_;
+  std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
+};
+
+/// Different segments, and the sets of features whose boundary they are.
+struct Borders {
+  std::vector<Segment> segments;
+  std::vector<std::uint32_t> owners;
+};
+
+/// What a feature has twice is inside of it on both sides, or outside.
+Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
+  sort_by_place(pieces);
+  Borders borders;
+  std::vector<std::uint32_t> owners;
+  for (std::size_t i = 0; i < pieces.size();) {
+    const Segment& segment = pieces[i].segment;
+    owners.clear();
+    for (; i < pieces.size() && pieces[i].segment == segment; ++i) {
+      if (!owners.empty() && owners.back() == pieces[i].owner) {
+        owners.pop_back();
+      } else {
+        owners.push_back(pieces[i].owner);
+      }
+    }
+    if (owners.empty()) continue;
+    borders.segments.push_back(segment);
+    borders.owners.push_back(sets.number(owners));
+  }
+  return borders;
+}
+
+/// The map of which features cover what: its faces are numbers of sets.
+struct SetMap {
+  std::vector<OwnedSegment> pieces;
+  FeatureSets sets = {};
+  Borders borders = {};
+
+  /// False if nothing is left, or if it failed.
+  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
+             CoverageOutcome& outcome) {
+    // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
+    constexpr int kQuickPasses = 3;
+    constexpr int kMaxPasses = 6;
+    const FaceBeyond toggle = [this](EdgeId e, FaceId left) {
+      return sets.toggled(left, borders.owners[e.value]);
+    };
+    for (int pass = 0; pass <= kMaxPasses; ++pass) {
+      if (pass > 0) {
+        outcome.noded = true;
+        pieces = node(
+            pieces, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+      }
+      borders = unite(pieces, sets);
+      if (borders.segments.empty()) return false;
+      boundary.assign(borders.segments);
+      if (trapezoidation.build(boundary, toggle, graph)) return true;
+    }
+    outcome.failure =
+        "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+    return false;
+  }
+
+  /// What has been noded stays so.
+  void leave_out(const std::vector<std::uint32_t>& features) {
+    std::erase_if(pieces, [&features](const OwnedSegment& piece) {
+      return std::binary_search(features.begin(), features.end(), piece.owner);
+    });
+  }
+};
+
+/// The faces of the graph are sets: how much of the map each covers.
+std::vector<double> areas_of_sets(const TrapezoidalGraph& g, std::size_t count) {
+  std::vector<Int128> doubled(count, 0);
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    if (g.is_frame(EdgeId(i))) continue;
+    const Edge& edge = g.edge(EdgeId(i));
+    const Int128 strip = doubled_strip(g, edge);
+    doubled[edge.face[kLeft]] += strip;
+    doubled[edge.face[kRight]] -= strip;
+  }
+  std::vector<double> areas;
+  for (const Int128 area : doubled) areas.push_back(static_cast<double>(area) / 2);
+  return areas;
+}
+
+void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> overlaps;
+  const std::vector<double> areas = areas_of_sets(g, sets.size());
+  for (std::uint32_t number = 0; number < areas.size(); ++number) {
+    if (areas[number] == 0) continue;  // nowhere on the map
+    const std::vector<std::uint32_t>& set = sets[number];
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      outcome.areas[set[i]] += areas[number];
+      for (std::size_t k = i + 1; k < set.size(); ++k) {
+        overlaps[{set[i], set[k]}] += areas[number];
+      }
+    }
+  }
+  for (const auto& [pair, area] : overlaps) {
+    outcome.overlaps.push_back({pair.first, pair.second, area});
+  }
+}
+
+/// How many edges each feature has in common with a neighbour, which begins where it ends.
+std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Borders& borders,
+                                            const FeatureSets& sets, std::size_t features) {
+  std::vector<std::size_t> count(features, 0);
+  for (std::size_t e = 0; e < borders.segments.size(); ++e) {
+    const std::vector<std::uint32_t>& owners = sets[borders.owners[e]];
+    const std::vector<std::uint32_t>& left = sets[g.edge(EdgeId(e)).face[kLeft]];
+    const auto ends_here = [&left](std::uint32_t owner) {
+      return std::binary_search(left.begin(), left.end(), owner);
+    };
+    const auto ending = std::count_if(owners.begin(), owners.end(), ends_here);
+    if (ending == 0 || ending == std::ssize(owners)) continue;
+    for (const std::uint32_t owner : owners) ++count[owner];
+  }
+  return count;
+}
+
+/// Those by more than `most` of the smaller one's area.
+std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most) {
+  std::vector<Overlap> overlaps;
+  for (const Overlap& overlap : outcome.overlaps) {
+    const double smaller = std::min(outcome.areas[overlap.lower], outcome.areas[overlap.upper]);
+    if (overlap.area > most * smaller) overlaps.push_back(overlap);
+  }
+  return overlaps;
+}
+
+/// Without these, in ascending order, no two overlap. First go those that have the fewest edges in
+/// common with neighbours: an overseas region that is there a second time as a country, and not the
+/// motherland.
+std::vector<std::uint32_t> features_to_leave_out(std::vector<Overlap> overlaps,
+                                                 const std::vector<std::size_t>& common_edges) {
+  std::vector<std::uint32_t> apart;
+  std::vector<std::size_t> count(common_edges.size());
+  while (!overlaps.empty()) {
+    std::fill(count.begin(), count.end(), 0u);
+    for (const Overlap& overlap : overlaps) {
+      ++count[overlap.lower];
+      ++count[overlap.upper];
+    }
+    // Of several, that with the most overlaps, and of these the last one.
+    const auto goes_before = [&](std::uint32_t a, std::uint32_t b) {
+      return std::tuple(common_edges[a], count[b], b) < std::tuple(common_edges[b], count[a], a);
+    };
+    std::uint32_t worst = overlaps.front().lower;
+    for (const Overlap& overlap : overlaps) {
+      for (const std::uint32_t feature : {overlap.lower, overlap.upper}) {
+        if (goes_before(feature, worst)) worst = feature;
+      }
+    }
+    apart.push_back(worst);
+    std::erase_if(overlaps, [worst](const Overlap& overlap) {
+      return overlap.lower == worst || overlap.upper == worst;
+    });
+  }
+  std::sort(apart.begin(), apart.end());
+  return apart;
+}
+
+/// What is drawn of a set: its last feature.
+FaceId face_of(const std::vector<std::uint32_t>& set) {
+  return set.empty() ? kOutside : set.back() + 1;
+}
+
+/// The faces beside each edge.
+using Sides = std::vector<std::pair<FaceId, FaceId>>;
+
+Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t edges) {
+  Sides sides;
+  sides.reserve(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    const Edge& edge = g.edge(EdgeId(e));
+    sides.emplace_back(face_of(sets[edge.face[kLeft]]), face_of(sets[edge.face[kRight]]));
+  }
+  return sides;
+}
+
+/// What surrounds a region that no feature covers.
+struct Gap {
+  double border = 0;  // its length in cells
+  double reach = 0;   // the widest gap at this place, in cells
+  BorderLengths neighbours = {};
+};
+
+/// Narrow gaps between features get the face of a neighbour; returns how many.
+std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides) {
+  const Regions regions(g);
+  std::vector<Gap> gaps(regions.face.size());
+  const auto hole_beside = [&](std::size_t e, Side s) {
+    const RegionId region = regions.beside[EdgeId(e)][s];
+    return regions.face[region] == kOutside && region != regions.unbounded ? region : RegionId();
+  };
+  for (std::size_t e = 0; e < sides.size(); ++e) {
+    for (const Side s : {kLeft, kRight}) {
+      const RegionId hole = hole_beside(e, s);
+      if (hole.is_none()) continue;
+      const Edge& edge = g.edge(EdgeId(e));
+      const double length = length_of(g, edge);
+      Gap& gap = gaps[hole.value];
+      gap.reach = cells_from_ground(widest_gap, g.point(edge.end[kUp]).y);
+      gap.border += length;
+      gap.neighbours.add(s == kLeft ? sides[e].second : sides[e].first, length);
+    }
+  }
+  const auto is_narrow = [&](RegionId hole) {
+    const Gap& gap = gaps[hole.value];
+    return gap.neighbours.faces() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
+  };
+  for (std::size_t e = 0; e < sides.size(); ++e) {
+    for (const Side s : {kLeft, kRight}) {
+      const RegionId hole = hole_beside(e, s);
+      if (hole.is_none() || !is_narrow(hole)) continue;
+      (s == kLeft ? sides[e].first : sides[e].second) = gaps[hole.value].neighbours.longest();
+    }
+  }
+  std::size_t filled = 0;
+  for (std::size_t r = 0; r < gaps.size(); ++r) filled += is_narrow(RegionId(r));
+  return filled;
+}
+
+/// Drops the segments with one feature on both sides; returns whether there are any.
+bool keep_borders(std::vector<Segment>& segments, Sides& sides) {
+  const std::size_t count = segments.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (sides[i].first == sides[i].second) continue;
+    segments[kept] = segments[i];
+    sides[kept++] = sides[i];
+  }
+  segments.resize(kept);
+  sides.resize(kept);
+  return kept < count;
+}
+
+void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOutcome& outcome) {
+  outcome.vertices = g.vertex_count();
+  std::vector<FaceId> first_beside(regions.face.size(), kOutside);
+  std::vector<bool> is_gap(regions.face.size(), false);
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    const Edge& edge = g.edge(EdgeId(i));
+    if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
+    outcome.shared_edges += edge.face[kLeft] != kOutside && edge.face[kRight] != kOutside;
+    for (const Side s : {kLeft, kRight}) {
+      if (edge.face[s] != kOutside) continue;
+      const RegionId hole = regions.beside[EdgeId(i)][s];
+      FaceId& first = first_beside[hole.value];
+      if (first == kOutside) first = edge.face[opposite(s)];
+      if (first != edge.face[opposite(s)] && hole != regions.unbounded) is_gap[hole.value] = true;
+    }
+  }
+  outcome.gaps = static_cast<std::size_t>(std::count(is_gap.begin(), is_gap.end(), true));
+  std::vector<VertexId> ends;
+  for (const Corner& corner : g.corners()) {
+    if (corner.is_end()) ends.push_back(corner.vertex);
+  }
+  std::sort(ends.begin(), ends.end());
+  outcome.junctions =
+      static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+}
+
+}  // namespace
+
+CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
+                                       const CoverageTolerance& tolerance,
+                                       TrapezoidalGraph& graph) {
+  CoverageOutcome outcome;
+  SetMap map{segments_of(features)};
+  for (;;) {
+    if (!map.sweep(boundary_, trapezoidation_, graph, outcome)) return outcome;
+    outcome.areas.assign(features.size(), 0);
+    outcome.overlaps.clear();
+    note_areas(graph, map.sets, outcome);
+    const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
+    if (overlaps.empty()) break;
+    const std::vector<std::uint32_t> apart = features_to_leave_out(
+        overlaps, count_common_edges(graph, map.borders, map.sets, features.size()));
+    outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
+    std::sort(outcome.apart.begin(), outcome.apart.end());
+    if (features.size() - outcome.apart.size() < 2) return outcome;
+    map.leave_out(apart);
+  }
+  Borders& borders = map.borders;
+  Sides sides = sides_of(graph, map.sets, borders.segments.size());
+  if (tolerance.widest_gap > 0) outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
+  if (keep_borders(borders.segments, sides)) {
+    if (borders.segments.empty()) return outcome;
+    boundary_.assign(borders.segments);
+    const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
+    if (!trapezoidation_.build(boundary_, given, graph)) return outcome;
+  } else {
+    BorderArcs::name_faces(sides, graph);
+  }
+  outcome.built = true;
+  const Regions regions(graph);
+  arcs_.trace(boundary_, static_cast<FaceId>(features.size()), regions, graph);
+  count_borders(graph, regions, outcome);
+  return outcome;
+}
+
+namespace {
+
+/// Where an arc of the boundary of a face begins or ends.
+struct ArcEnd {
+  FaceId face;
+  VertexId vertex;
+  CornerId corner;  // the first or the last one of the arc
+  CornerId other;   // at the other end
+  auto operator<=>(const ArcEnd&) const = default;
+};
+
+/// Sorts the boundary of each face into closed rings.
+class FaceRings {
+ public:
+  explicit FaceRings(const TrapezoidalGraph& graph)
+      : g_(graph), rings_(graph.face_count()), seen_(graph.corners().size(), false) {
+    for (const bool is_loop : {false, true}) {
+      for (std::size_t i = 0; i < g_.corners().size(); ++i) {
+        const CornerId c(i);
+        const Corner& corner = g_.corner(c);
+        if (!corner.is_alive() || seen_[i] || (!is_loop && !corner.prev.is_none())) continue;
+        add(c, is_loop);
+      }
+    }
+    std::sort(ends_.begin(), ends_.end());
+    is_used_.assign(ends_.size(), false);
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      if (!is_used_[i]) walk(ends_[i]);
+    }
+  }
+
+  std::vector<Rings> take() { return std::move(rings_); }
+
+ private:
+  /// An arc from its first corner, or a loop.
+  void add(CornerId first, bool is_loop) {
+    CornerId last = first;
+    seen_[first.value] = true;
+    for (CornerId c = g_.corner(first).next; !c.is_none() && c != first; c = g_.corner(c).next) {
+      seen_[c.value] = true;
+      last = c;
+    }
+    for (const FaceId face : g_.edge(g_.corner(first).edge).face) {
+      if (face == kOutside) continue;
+      if (is_loop) {
+        append(first, last, rings_[face - 1]);
+        rings_[face - 1].points.push_back(g_.point(g_.corner(last).vertex));
+        rings_[face - 1].close_ring();
+      } else {
+        ends_.push_back({face, g_.corner(first).vertex, first, last});
+        ends_.push_back({face, g_.corner(last).vertex, last, first});
+      }
+    }
+  }
+
+  /// From arc to arc, until there is none left to go on by. Each vertex has an even number of ends
+  /// in a face, so that is where the ring began.
+  void walk(ArcEnd at) {
+    Rings& rings = rings_[at.face - 1];
+    for (;;) {
+      append(at.corner, at.other, rings);
+      use(at);
+      at = {at.face, g_.corner(at.other).vertex, at.other, at.corner};
+      use(at);
+      auto next = std::lower_bound(ends_.begin(), ends_.end(),
+                                   ArcEnd{at.face, at.vertex, CornerId(0), CornerId(0)});
+      const auto is_there = [&] {
+        return next != ends_.end() && next->face == at.face && next->vertex == at.vertex;
+      };
+      while (is_there() && is_used_[static_cast<std::size_t>(next - ends_.begin())]) ++next;
+      if (!is_there()) break;
+      at = *next;
+    }
+    rings.close_ring();
+  }
+
+  void use(const ArcEnd& end) {
+    const auto found = std::lower_bound(ends_.begin(), ends_.end(), end);
+    is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
+  }
+
+  /// What lies between the ends of an arc, with the end that it begins at.
+  void append(CornerId from, CornerId to, Rings& rings) const {
+    const bool is_forward = !g_.corner(from).next.is_none();
+    for (CornerId c = from; c != to; c = is_forward ? g_.corner(c).next : g_.corner(c).prev) {
+      rings.points.push_back(g_.point(g_.corner(c).vertex));
+    }
+  }
+
+  const TrapezoidalGraph& g_;
+  std::vector<Rings> rings_;
+  std::vector<bool> seen_;
+  std::vector<ArcEnd> ends_;
+  std::vector<bool> is_used_;
+};
+
+}  // namespace
+
+std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph) {
+  return FaceRings(graph).take();
+}
+
+}  // namespace trapeze

@@ -1,0 +1,74 @@
+// From the rings of several features that share borders to one trapezoidal graph.
+//
+// All rings are noded together, so that a border that two features have is there once. The sweep
+// knows for each face which features cover it: crossing an edge toggles those that own it. Where
+// several do, the one drawn last has it; edges that then have the same feature on both sides go.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/borders/border_arcs.h"
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/rings.h"
+#include "core/sweep/boundary.h"
+#include "core/sweep/noding.h"
+#include "core/sweep/trapezoidation.h"
+
+namespace trapeze {
+
+/// Two features of a coverage that cover the same place, by their positions.
+struct Overlap {
+  std::uint32_t lower = 0;  // drawn first, so that it is covered there
+  std::uint32_t upper = 0;
+  double area = 0;  // cells squared
+};
+
+/// What came of the features of one coverage.
+struct CoverageOutcome {
+  bool built = false;        // false: nothing left to draw, or failed
+  bool noded = false;        // vertices were missing on one side of a border, or borders crossed
+  std::size_t vertices = 0;  // of the graph: one on a shared border counts once
+  std::size_t shared_edges = 0;   // between two features
+  std::size_t junctions = 0;      // vertices where three or more borders meet
+  std::size_t gaps = 0;           // regions that no feature covers, with at least two around them
+  std::size_t filled = 0;         // such ones that were narrow enough to go to a neighbour
+  std::vector<Overlap> overlaps;  // in order of their features
+  std::vector<double> areas;      // of each feature by itself, cells squared
+  std::vector<std::uint32_t> apart;  // those that were left out, in ascending order
+  std::string failure;               // why it could not be built, empty otherwise
+};
+
+/// How far features may be from a coverage.
+struct CoverageTolerance {
+  double most_overlap = 0;  // of the area of the smaller one of two
+  double widest_gap = 0;    // metres on the ground
+};
+
+/// Reusable memory; one a thread.
+class CoverageBuilder {
+ public:
+  /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
+  /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
+  /// has the place. Gaps whose mean width, area over half of the border, is at most the widest go
+  /// to the feature with the longest border. Of features that overlap by more than is tolerated,
+  /// those are left out that have the fewest edges in common with neighbours. If fewer than two are
+  /// left, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
+  /// outcome says built.
+  CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
+                        TrapezoidalGraph& graph);
+
+ private:
+  Boundary boundary_;
+  Trapezoidation trapezoidation_;
+  BorderArcs arcs_;
+};
+
+/// The rings of every face of a coverage, by face - 1, read from its edges: closed, and the inside
+/// of the face by even-odd. Where one face touches itself, they may pass through a vertex twice.
+std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph);
+
+}  // namespace trapeze

@@ -1,0 +1,130 @@
+#include "core/borders/coverage_groups.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "core/sweep/owned_segments.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, CoverageMode>, 3> kNames{{
+    {"off", CoverageMode::off},
+    {"auto", CoverageMode::automatic},
+    {"on", CoverageMode::on},
+}};
+
+/// Sets of features that are tied together; the smallest number of each stands for it.
+class Ties {
+ public:
+  explicit Ties(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+
+  void tie(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+  std::vector<std::vector<std::uint32_t>> groups() {
+    std::vector<std::vector<std::uint32_t>> by_first(parent_.size());
+    for (std::uint32_t i = 0; i < parent_.size(); ++i) by_first[find(i)].push_back(i);
+    std::erase_if(by_first, [](const auto& group) { return group.size() < 2; });
+    return by_first;
+  }
+
+ private:
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
+    }
+    return i;
+  }
+
+  std::vector<std::uint32_t> parent_;
+};
+
+void tie_by_edges(std::span<const Rings* const> features, Ties& ties) {
+  std::vector<OwnedSegment> segments = segments_of(features);
+  sort_by_place(segments);
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    if (segments[i - 1].segment == segments[i].segment) {
+      ties.tie(segments[i - 1].owner, segments[i].owner);
+    }
+  }
+}
+
+void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
+  struct Place {
+    Box box;
+    std::uint32_t feature;
+  };
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    Place place{Box(), i};
+    for (const Point p : features[i]->points) place.box.include(p);
+    if (!place.box.is_empty()) places.push_back(place);
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tuple(a.box.min_x, a.feature) < std::tuple(b.box.min_x, b.feature);
+  });
+  // From west to east, with those that are not passed yet.
+  std::vector<Place> open;
+  for (const Place& place : places) {
+    std::erase_if(open, [&](const Place& other) { return other.box.max_x < place.box.min_x; });
+    for (const Place& other : open) {
+      if (other.box.intersects(place.box)) ties.tie(other.feature, place.feature);
+    }
+    open.push_back(place);
+  }
+}
+
+/// Of the smaller one of two polygons: what they may overlap by and still be neighbours.
+double most_overlap(CoverageMode coverage) {
+  return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
+}
+
+}  // namespace
+
+std::optional<CoverageMode> coverage_from_name(std::string_view name) {
+  for (const auto& [known, coverage] : kNames) {
+    if (known == name) return coverage;
+  }
+  return std::nullopt;
+}
+
+std::string_view name_of(CoverageMode coverage) {
+  return kNames[static_cast<std::size_t>(coverage)].first;
+}
+
+std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
+                                                       CoverageMode coverage) {
+  Ties ties(features.size());
+  if (coverage == CoverageMode::on) {
+    tie_by_boxes(features, ties);
+  } else {
+    tie_by_edges(features, ties);
+  }
+  return ties.groups();
+}
+
+Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
+                  CoverageBuilder& builder, TrapezoidalGraph& graph) {
+  Assembly assembly;
+  assembly.outcome = builder.build(features, {most_overlap(coverage), widest_gap}, graph);
+  const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    const bool is_apart =
+        !assembly.outcome.built || std::binary_search(apart.begin(), apart.end(), i);
+    (is_apart ? assembly.apart : assembly.together).push_back(i);
+  }
+  return assembly;
+}
+
+}  // namespace trapeze

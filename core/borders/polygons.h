@@ -1,0 +1,50 @@
+// From a trapezoidal graph back to polygons as other programs know them: one shell and its holes
+// each.
+//
+// The links between inside nodes connect exactly what can be reached without crossing or touching
+// the boundary, so every connected part of the inside is one polygon. The loops of the boundary are
+// those of a graph built anew from what is left of the rings (see boundary_loops.h): each is
+// simple, and all its edges bound the same part from inside. Exactly one loop of a part has the
+// part within it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/rings.h"
+
+namespace trapeze {
+
+/// Polygons valid in the sense of OGC simple features, one after another. Their insides are
+/// disjoint; they touch each other at vertices only, and so do the rings of one polygon.
+struct Polygons {
+  /// The shell of each polygon, counterclockwise on a map with north up, then its holes, clockwise.
+  /// Every ring begins at its topmost vertex.
+  Rings rings;
+  std::vector<std::uint32_t> ends;  // polygon i is rings ends[i - 1] .. ends[i] - 1
+
+  /// The graph's edges crossed, as they may without the topology test; they were noded, and inside
+  /// is even-odd.
+  bool is_noded = false;
+  /// Why they could not be noded; then there are no polygons. Empty otherwise.
+  std::string failure;
+
+  std::size_t size() const { return ends.size(); }
+  bool empty() const { return ends.empty(); }
+  std::size_t first_ring(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
+};
+
+/// The polygons that the inside nodes of `graph` make up, adapted or not; none if there are no
+/// inside nodes. Polygons are in sweep order of their topmost vertices, and so are the holes of
+/// each. They depend on what `graph` draws only, not on how it came about.
+Polygons polygons_of(const TrapezoidalGraph& graph);
+
+/// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common
+/// border in common.
+std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph);
+
+}  // namespace trapeze

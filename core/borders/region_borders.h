@@ -1,0 +1,126 @@
+// What keeps a coverage from being crowded: a region too small to see is given to a neighbour.
+//
+// Removing vertices alone would leave every region at least a triangle and every junction where it
+// is. So a region whose mean width has shrunk below a tolerance goes to the face, other than the
+// outside, with which it has the longest border: that border disappears, edge by edge, which no
+// boundary can cross, and the rest of its borders is the neighbour's from then on. Junctions where
+// only two arcs are left become corners of one.
+//
+// Follows a graph through the sequence of its removals, forward only. Thread-safety: none.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/borders/border_arcs.h"
+#include "core/borders/regions.h"
+#include "core/graph/edit_log.h"
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/grid.h"
+
+namespace trapeze {
+
+/// A part of an area that has changed hands, along a segment of the border of the region it was.
+struct Taken {
+  Point from;
+  Point to;
+  double area = 0;          // cells squared, of the region as it was at first
+  FaceId face = kOutside;   // what it was
+  FaceId taker = kOutside;  // what covers it now
+};
+
+class RegionBorders {
+ public:
+  /// `graph`, a coverage, must outlive the use of this.
+  void assign(const TrapezoidalGraph& graph);
+
+  /// Regions are numbered 0 .. count() - 1; one that has become part of another is no more.
+  std::size_t count() const { return parent_.size(); }
+
+  /// The tolerance at which the region is to go, in cells: such that a square goes when it is half
+  /// a pixel wide and the tolerance a quarter of one. Infinite if it does not go as a region: it is
+  /// no more, is what surrounds everything, or has no junction, so that its loops go by themselves.
+  double weight(RegionId region);
+
+  /// Gives a region of finite weight to a neighbour, as one edit that begins here, and returns the
+  /// regions that are one with it from then on, under its number.
+  std::vector<RegionId> remove(RegionId region, EditLog& log);
+
+  /// To be called after a corner has gone other than with its loop: of its two edges `gone` is no
+  /// more, and `kept` leaves `corner`.
+  void note_joined(EdgeId gone, EdgeId kept, CornerId corner);
+  /// To be called before a triangular loop goes, of which `edge` is one, and its inside lies on
+  /// `side` of it: what is inside becomes part of what is outside.
+  void note_lost_loop(EdgeId edge, Side side, Point from, Point to);
+
+  // What the last removal did.
+  /// Areas that changed hands.
+  std::span<const Taken> taken() const { return taken_; }
+  /// Vertices that lost an edge.
+  std::span<const VertexId> changed() const { return changed_; }
+  /// Junctions that have become corners in the middle of an arc.
+  std::span<const CornerId> dissolved() const { return dissolved_; }
+
+ private:
+  // Every arc is in the lists of the two regions beside it, named by one of its edges at first.
+  static constexpr std::uint32_t kNobody = 0xffffffff;
+  struct Seed {
+    EdgeId edge;
+    std::uint32_t next = kNobody;
+  };
+  struct List {
+    std::uint32_t first = kNobody;
+    std::uint32_t last = kNobody;
+  };
+
+  // An arc of the region at hand, as edges_[begin .. end).
+  struct Arc {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    CornerId first;
+    bool is_closed = false;
+    FaceId beyond = kOutside;  // the face on its other side
+    double length = 0;
+  };
+
+  RegionId find(RegionId region);
+  EdgeId find(EdgeId edge);
+  void unite(RegionId a, RegionId b);
+  void add_seed(RegionId region, EdgeId edge);
+
+  void collect_arcs(RegionId region);
+  Arc walk_arc(EdgeId edge);
+  FaceId choose_taker() const;
+  Side side_of(EdgeId edge, RegionId region);
+  void note_taken(FaceId face, FaceId taker, double area);
+  void repair_junction(VertexId v, EditLog& log);
+  void join_ends(CornerId a, CornerId b, EditLog& log);
+  void reverse(CornerId end, EditLog& log);
+  CornerId end_at(VertexId v, EdgeId edge) const;
+
+  const TrapezoidalGraph* graph_ = nullptr;
+  Table<EdgeId, std::array<RegionId, 2>> beside_;
+  Table<EdgeId, EdgeId> replaced_by_;
+  Table<EdgeId, CornerId> corner_of_;  // that the edge leaves
+  Table<RegionId, RegionId> parent_;
+  Table<RegionId, double> area_;
+  Table<RegionId, List> lists_;
+  std::vector<Seed> seeds_;
+  RegionId unbounded_;
+  std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order
+
+  // Of the region at hand.
+  Table<EdgeId, std::uint32_t> seen_;
+  std::uint32_t stamp_ = 0;
+  std::vector<Arc> arcs_;
+  std::vector<EdgeId> edges_;
+  Box box_;
+  bool has_junction_ = false;
+  std::vector<Spoke> spokes_;
+  std::vector<Taken> taken_;
+  std::vector<VertexId> changed_;
+  std::vector<CornerId> dissolved_;
+};
+
+}  // namespace trapeze

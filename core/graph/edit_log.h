@@ -1,0 +1,82 @@
+// Edit records: the only way to change a trapezoidal graph, and the way to change it back.
+//
+// An edit is one removal. Whoever makes it asks the log for each node, edge and corner that it
+// changes; the log keeps the value from before. To revert an edit is to swap the kept values with
+// those in the graph, last first; to apply it again, to swap them once more, first to last. Undo is
+// exact for every operator by this one mechanism (paper, section 3.2).
+//
+// Thread-safety: none.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/graph/trapezoidal_graph.h"
+
+namespace trapeze {
+
+class EditLog {
+ public:
+  template <class IdType, class Record>
+  struct Kept {
+    IdType id;
+    Record record;
+  };
+
+  /// Changes to `graph`, which must outlive the log, go through this log from now on.
+  explicit EditLog(TrapezoidalGraph& graph) : graph_(&graph) {}
+
+  /// Starts a new edit; every edit before it must be applied.
+  void begin();
+
+  /// The record to change; its present value is kept. Valid until the graph is rebuilt.
+  Node& edit(NodeId n) { return keep(n, graph_->nodes_, nodes_); }
+  Edge& edit(EdgeId e) { return keep(e, graph_->edges_, edges_); }
+  Corner& edit(CornerId c) { return keep(c, graph_->corners_, corners_); }
+
+  /// Number of edits recorded, and of those applied at present (from the first on).
+  std::size_t size() const { return edits_.size(); }
+  std::size_t applied() const { return applied_; }
+
+  /// Takes back the last applied edit; there is one.
+  void revert();
+  /// Makes the first edit that is not applied anew; there is one.
+  void apply();
+
+  /// What the last edit recorded touched, some perhaps more than once.
+  std::span<const Kept<NodeId, Node>> touched_nodes() const;
+  std::span<const Kept<EdgeId, Edge>> touched_edges() const;
+
+  /// Drops all records: the graph as it is is the new beginning. Memory is kept.
+  void forget();
+
+  std::size_t memory() const;
+
+ private:
+  struct Start {  // of an edit within each kind of record
+    std::size_t nodes;
+    std::size_t edges;
+    std::size_t corners;
+  };
+
+  template <class IdType, class Record>
+  Record& keep(IdType id, Table<IdType, Record>& table, std::vector<Kept<IdType, Record>>& kept) {
+    Record& record = table[id];
+    kept.push_back({id, record});
+    return record;
+  }
+
+  Start end_of(std::size_t edit) const;
+
+  TrapezoidalGraph* graph_;
+  std::vector<Start> edits_;
+  std::size_t applied_ = 0;
+  std::vector<Kept<NodeId, Node>> nodes_;
+  std::vector<Kept<EdgeId, Edge>> edges_;
+  std::vector<Kept<CornerId, Corner>> corners_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,62 @@
+// Asks early for the memory that removals will look at.
+//
+// Vertices go in the order of their weights, so successive ones lie anywhere on the map: of a large
+// graph nothing about the next one is in the cache, and each step from corner to edge to node to
+// neighbour would wait for memory. Each of these functions takes one step for a vertex so far ahead
+// that the step before has come by then. They change nothing, and may be called for corners that
+// have gone or never go.
+#pragma once
+
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/ids.h"
+
+namespace trapeze {
+
+template <class IdType, class Record>
+void fetch(const Table<IdType, Record>& table, IdType id) {
+  if (id.is_none()) return;
+  __builtin_prefetch(&table[id]);
+  // Without it GCC takes a function that only fetches for one without effect, and drops its calls.
+  __asm__ volatile("");
+}
+
+/// After fetch(graph.corners(), c).
+inline void fetch_edges(const TrapezoidalGraph& graph, CornerId c) {
+  const Corner& corner = graph.corner(c);
+  if (!corner.is_alive()) return;
+  fetch(graph.corners(), corner.prev);
+  fetch(graph.corners(), corner.next);
+  fetch(graph.edges(), corner.edge);
+  fetch(graph.vertices(), corner.vertex);
+}
+
+/// After fetch_edges().
+inline void fetch_nodes(const TrapezoidalGraph& graph, CornerId c) {
+  const Corner& corner = graph.corner(c);
+  if (!corner.is_alive()) return;
+  for (const EdgeId e : {corner.edge, graph.corner(corner.prev).edge}) {
+    const Edge& edge = graph.edge(e);
+    for (const VertexId v : edge.end) fetch(graph.vertices(), v);
+    for (const auto& along : edge.extreme) {
+      for (const NodeId n : along) fetch(graph.nodes(), n);
+    }
+  }
+}
+
+/// After fetch_nodes(): what the nodes at the vertex are next to.
+inline void fetch_neighbours(const TrapezoidalGraph& graph, CornerId c) {
+  const Corner& corner = graph.corner(c);
+  if (!corner.is_alive()) return;
+  for (const EdgeId e : {corner.edge, graph.corner(corner.prev).edge}) {
+    const Edge& edge = graph.edge(e);
+    const Direction back = edge.end[kUp] == corner.vertex ? kUp : kDown;
+    for (const Side side : {kLeft, kRight}) {
+      const Node& node = graph.node(edge.extreme[side][back]);
+      fetch(graph.vertices(), node.end[opposite(back)]);
+      fetch(graph.edges(), node.edge[side]);
+      for (const auto& link : node.link) fetch(graph.nodes(), link[opposite(back)]);
+    }
+  }
+}
+
+}  // namespace trapeze

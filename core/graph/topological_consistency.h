@@ -1,0 +1,69 @@
+// May a vertex be removed? The topological consistency test (paper, section 3.3), exact and local.
+//
+// Removing a vertex V between A and B replaces the boundary A V B by A B. No edge is crossed, and
+// no part of the boundary changes sides, exactly if the closed triangle A V B holds no other
+// vertex. If it holds one, then a trapezoid along AV or VB on the triangle's side has such a vertex
+// at its top or bottom: the horizontal line from the vertex nearest to AV or VB reaches it
+// unhindered. So only those trapezoids are looked at (the paper's minimal surrounding trapezoid
+// set).
+#pragma once
+
+#include <cstdint>
+
+#include "core/graph/trapezoidal_graph.h"
+
+namespace trapeze {
+
+enum class Topology : std::uint8_t {
+  strict,  // the boundary never crosses or touches itself where it did not before
+  fast,  // only what the operators themselves need is asked for, as in the paper's runs without the
+         // test: the boundary may come to cross itself
+};
+
+/// What removing a corner amounts to.
+enum class Removal : std::uint8_t {
+  blocked,
+  regular,   // A and B on different sides of V in sweep order: vertical generalization
+  extremum,  // A and B on the same side of V: horizontal generalization
+  loop,      // the loop is a triangle: it goes as a whole
+  region,    // not of a corner: a region between junctions is given to a neighbour
+};
+
+struct Decision {
+  Removal removal = Removal::blocked;
+  /// If blocked: a vertex whose removal, from any loop, may unblock it.
+  VertexId blocker;
+  std::uint32_t walked = 0;  // trapezoids looked at
+};
+
+/// Decides about the removal of `corner`, which is alive.
+Decision decide_removal(const TrapezoidalGraph& graph, CornerId corner, Topology topology);
+
+/// At an extremum: the edges to the nearer and to the farther neighbour of V in sweep order, and
+/// where they are. Meaningful if V's neighbours lie both above or both below it.
+struct Extremum {
+  Direction away = kDown;  // from V towards its neighbours
+  EdgeId near_edge;
+  EdgeId far_edge;
+  VertexId near_vertex;
+  VertexId far_vertex;
+};
+Extremum extremum_at(const TrapezoidalGraph& graph, CornerId corner);
+
+/// A triangular loop: its vertices from top to bottom and its edges; the long edge joins top and
+/// bottom, and the middle vertex lies on `side` of it.
+struct TriangleLoop {
+  CornerId top, middle, bottom;
+  EdgeId upper_edge, lower_edge, long_edge;
+  Side side = kLeft;
+};
+TriangleLoop triangle_loop_at(const TrapezoidalGraph& graph, CornerId corner);
+
+/// The edges of a regular corner: the one that ends there and the one that starts there.
+struct Passage {
+  EdgeId upper_edge;
+  EdgeId lower_edge;
+};
+Passage passage_at(const TrapezoidalGraph& graph, CornerId corner);
+
+}  // namespace trapeze

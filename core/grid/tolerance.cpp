@@ -1,0 +1,44 @@
+#include "core/grid/tolerance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trapeze {
+namespace {
+
+/// Steps above level 1, not yet rounded.
+double steps(double epsilon) {
+  return (std::log2(epsilon) - kFirstExponent) * kLevelsPerOctave;
+}
+
+std::array<double, kLastLevel + 1> ladder() {
+  std::array<double, kLastLevel + 1> epsilons{};
+  for (int k = 1; k <= kLastLevel; ++k) {
+    epsilons[static_cast<std::size_t>(k)] =
+        std::exp2((k - 1) / static_cast<double>(kLevelsPerOctave) + kFirstExponent);
+  }
+  return epsilons;
+}
+
+const std::array<double, kLastLevel + 1> kLadder = ladder();
+
+}  // namespace
+
+double epsilon_of_level(Level level) {
+  return kLadder[level];
+}
+
+Level nearest_level(double epsilon) {
+  // Not even a quarter of a step below the first level.
+  if (!(epsilon > 0) || steps(epsilon) < -0.5) return 0;
+  return static_cast<Level>(
+      std::clamp(static_cast<int>(std::lround(steps(epsilon))) + 1, 1, int{kLastLevel}));
+}
+
+int level_above(double epsilon) {
+  return static_cast<int>(std::upper_bound(kLadder.begin() + 1, kLadder.end(), epsilon) -
+                          kLadder.begin());
+}
+
+}  // namespace trapeze

@@ -1,0 +1,59 @@
+// Between longitude and latitude (degrees, WGS 84), metres of EPSG:3857, tiles and the grid.
+#pragma once
+
+#include <cstdint>
+
+#include "core/grid/grid.h"
+
+namespace trapeze {
+
+/// Half the side of the Web Mercator square in metres; the square is [-h, h] in x and y.
+constexpr double kMercatorHalfSide = 20037508.342789244;
+/// The latitude, in degrees, at which the square ends in the north and (negated) in the south.
+constexpr double kMaxLatitude = 85.0511287798066;
+
+/// Metres (x east, y north) to cells (x east, y south), not yet rounded. The Web Mercator square
+/// becomes [kGridMin, kGridMax] squared; points outside of it stay outside.
+struct GridPosition {
+  double x = 0;
+  double y = 0;
+};
+GridPosition grid_from_metres(double x, double y);
+GridPosition metres_from_grid(double x, double y);
+
+/// How many cells a length on the ground is, at the level of y (cells): the map grows towards the
+/// poles.
+double cells_from_ground(double metres, double y);
+
+struct LonLat {
+  double lon = 0;  // degrees east
+  double lat = 0;  // degrees north
+};
+LonLat lonlat_from_grid(double x, double y);
+GridPosition grid_from_lonlat(LonLat position);
+
+constexpr int kMaxZoom = 24;
+
+/// A tile of the XYZ scheme: 0 <= z <= kMaxZoom, 0 <= x, y < 2^z, y grows southwards.
+struct TileId {
+  int z = 0;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+
+  constexpr bool is_valid() const {
+    return z >= 0 && z <= kMaxZoom && x < (1u << z) && y < (1u << z);
+  }
+  /// Side of the tile in cells.
+  constexpr std::int64_t side() const { return kGridSize >> z; }
+  /// The corner in the north-west, in cells.
+  constexpr std::int64_t origin_x() const {
+    return kGridMin + static_cast<std::int64_t>(x) * side();
+  }
+  constexpr std::int64_t origin_y() const {
+    return kGridMin + static_cast<std::int64_t>(y) * side();
+  }
+
+  friend constexpr bool operator==(const TileId&, const TileId&) = default;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,87 @@
+#include "core/io/prepared/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // what one write takes for sure
+
+[[noreturn]] void fail(const std::string& path) {
+  throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
+}
+
+/// A file under a name of its own, gone at the end unless it was given its final one.
+class NewFile {
+ public:
+  explicit NewFile(const std::string& path)
+      : path_(path), temporary_(path + ".tmp." + std::to_string(getpid())) {
+    // What has this name was left by a process that is no more.
+    unlink(temporary_.c_str());
+    // Read-only: to write into a file that is mapped would change what is being served.
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444);
+    if (descriptor_ < 0) fail(path_);
+  }
+  ~NewFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+    if (!is_named_) unlink(temporary_.c_str());
+  }
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  void write(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written =
+          ::write(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(path_);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  }
+
+  void give_name() {
+    if (fsync(descriptor_) != 0) fail(path_);
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (close(descriptor) != 0) fail(path_);
+    if (rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_);
+    is_named_ = true;
+  }
+
+ private:
+  const std::string path_;
+  const std::string temporary_;
+  int descriptor_ = -1;
+  bool is_named_ = false;
+};
+
+/// So that the name outlives a power cut, too. Not every file system can, and the file is there
+/// already: failing is no failure.
+void sync_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+}  // namespace
+
+void write_atomically(const std::string& path,
+                      const std::vector<std::span<const std::byte>>& pieces) {
+  NewFile file(path);
+  for (const std::span<const std::byte> piece : pieces) file.write(piece);
+  file.give_name();
+  sync_folder_of(path);
+}
+
+}  // namespace trapeze

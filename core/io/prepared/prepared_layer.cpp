@@ -1,0 +1,326 @@
+#include "core/io/prepared/prepared_layer.h"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/io/prepared/build_fingerprint.h"
+#include "core/io/prepared/byte_stream.h"
+#include "core/io/prepared/mapped_file.h"
+#include "core/io/prepared/prepared_file.h"
+#include "core/layer/layer_arrays.h"
+
+namespace trapeze {
+namespace {
+
+constexpr const char* kPrepareAgain = "; run `trapeze prepare` again";
+
+/// The small parts of a file: what is not an array.
+struct Description {
+  LayerArrays numbers;  // all but the arrays
+  std::uint64_t revision = 0;
+  SourceStamp source;
+  LoadReport report;
+};
+
+// Writing and reading name the same parts in the same order; keep them side by side.
+
+void write_stamp(const SourceStamp& stamp, ByteWriter& out) {
+  out.add_text(stamp.path);
+  out.add(std::uint64_t{stamp.files.size()});
+  for (const FileStamp& file : stamp.files) {
+    out.add_text(file.name);
+    out.add(file.size);
+    out.add(file.modified);
+    out.add(file.checksum);
+  }
+}
+
+SourceStamp read_stamp(ByteReader& in) {
+  SourceStamp stamp;
+  stamp.path = in.take_text();
+  stamp.files.resize(in.take_count(4 * sizeof(std::uint64_t)));
+  for (FileStamp& file : stamp.files) {
+    file.name = in.take_text();
+    file.size = in.take<std::uint64_t>();
+    file.modified = in.take<std::int64_t>();
+    file.checksum = in.take<std::uint64_t>();
+  }
+  return stamp;
+}
+
+/// Calls visit(count) for every count of a report.
+template <typename Report, typename Visit>
+void for_each_count(Report& report, const Visit& visit) {
+  for (auto* count : {&report.features, &report.loaded, &report.other_geometry, &report.empty,
+                      &report.skipped, &report.polygons, &report.rings, &report.source_vertices,
+                      &report.vertices, &report.collapsed_rings, &report.repaired}) {
+    visit(*count);
+  }
+  for (const auto count : kCoverageCounts) visit(report.coverage.*count);
+}
+
+void write_report(const LoadReport& report, ByteWriter& out) {
+  out.add_text(report.driver);
+  for_each_count(report, [&out](std::size_t count) { out.add(std::uint64_t{count}); });
+  out.add(std::uint64_t{report.notes.size()});
+  for (const FeatureNote& note : report.notes) {
+    out.add(note.id);
+    out.add_text(note.reason);
+  }
+}
+
+LoadReport read_report(ByteReader& in) {
+  LoadReport report;
+  report.driver = in.take_text();
+  for_each_count(report, [&in](std::size_t& count) { count = in.take<std::uint64_t>(); });
+  report.notes.resize(in.take_count(2 * sizeof(std::uint64_t)));
+  for (FeatureNote& note : report.notes) {
+    note.id = in.take<std::int64_t>();
+    note.reason = in.take_text();
+  }
+  return report;
+}
+
+void write_fields(const std::vector<Field>& fields, ByteWriter& out) {
+  out.add(std::uint64_t{fields.size()});
+  for (const Field& field : fields) {
+    out.add_text(field.name);
+    out.add(static_cast<std::uint8_t>(field.type));
+  }
+}
+
+/// A value of an enumeration whose last is `last`.
+template <typename Enum>
+Enum take_enum(ByteReader& in, Enum last) {
+  const auto number = in.take<std::uint8_t>();
+  if (number > static_cast<std::uint8_t>(last)) {
+    throw std::invalid_argument("the description holds an unknown word");
+  }
+  return static_cast<Enum>(number);
+}
+
+std::vector<Field> read_fields(ByteReader& in) {
+  std::vector<Field> fields(in.take_count(sizeof(std::uint64_t) + 1));
+  for (Field& field : fields) {
+    field.name = in.take_text();
+    field.type = take_enum(in, FieldType::text);
+  }
+  return fields;
+}
+
+void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
+  out.add(static_cast<std::uint8_t>(numbers.options.weights));
+  out.add(static_cast<std::uint8_t>(numbers.options.topology));
+  out.add(static_cast<std::uint8_t>(numbers.options.coverage));
+  out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
+  const Box& box = numbers.bounds;
+  for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
+  const Layer::Size& size = numbers.size;
+  for (const std::uint64_t sum : {size.vertices, size.trapezoids, size.edges, size.motes}) {
+    out.add(sum);
+  }
+  out.add(numbers.level_edges);
+  out.add(numbers.single_motes);
+  write_fields(numbers.fields, out);
+}
+
+LayerArrays read_numbers(ByteReader& in) {
+  LayerArrays numbers;
+  numbers.options.weights = take_enum(in, WeightRule::effective_area);
+  numbers.options.topology = take_enum(in, Topology::fast);
+  numbers.options.coverage = take_enum(in, CoverageMode::on);
+  numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());
+  Box& box = numbers.bounds;
+  for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
+    *side = in.take<std::int32_t>();
+  }
+  Layer::Size& size = numbers.size;
+  for (auto* sum : {&size.vertices, &size.trapezoids, &size.edges, &size.motes}) {
+    *sum = in.take<std::uint64_t>();
+  }
+  numbers.level_edges = in.take<std::uint64_t>();
+  numbers.single_motes = in.take<std::uint64_t>();
+  numbers.fields = read_fields(in);
+  return numbers;
+}
+
+ByteWriter written(const LayerArrays& numbers, std::uint64_t revision, const SourceStamp& source,
+                   const LoadReport& report) {
+  ByteWriter out;
+  write_numbers(numbers, out);
+  out.add(revision);
+  write_stamp(source, out);
+  write_report(report, out);
+  return out;
+}
+
+Description read_description(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  Description description;
+  description.numbers = read_numbers(in);
+  description.revision = in.take<std::uint64_t>();
+  description.source = read_stamp(in);
+  description.report = read_report(in);
+  if (!in.is_at_end()) throw std::invalid_argument("the description is too long");
+  return description;
+}
+
+void add_arrays(const LayerArrays& a, SectionWriter& out) {
+  out.add(SectionKind::vertices, a.vertices);
+  out.add(SectionKind::edges, a.edges);
+  out.add(SectionKind::trapezoids, a.trapezoids);
+  out.add(SectionKind::lifespans, a.lifespans);
+  out.add(SectionKind::feature_of, a.feature_of);
+  out.add(SectionKind::polygon_index, a.polygon_index);
+  out.add(SectionKind::level_edge_index, a.level_edge_index);
+  out.add(SectionKind::mote_index, a.mote_index);
+  out.add(SectionKind::merged_mote_index, a.merged_mote_index);
+  out.add(SectionKind::grains, a.grains);
+  out.add(SectionKind::outline_points, a.outline_points);
+  out.add(SectionKind::ring_ends, a.ring_ends);
+  out.add(SectionKind::outline_ends, a.outline_ends);
+  out.add(SectionKind::ids, a.cells.ids);
+  out.add(SectionKind::string_bytes, a.cells.string_bytes);
+  out.add(SectionKind::string_ends, a.cells.string_ends);
+  for (const FeatureTable::Cells::Column& column : a.cells.columns) {
+    out.add(SectionKind::numbers, column.numbers);
+    out.add(SectionKind::nulls, column.nulls);
+    out.add(SectionKind::texts, column.texts);
+  }
+}
+
+void take_arrays(SectionReader& in, LayerArrays& a) {
+  a.vertices = in.take<Point>(SectionKind::vertices);
+  a.edges = in.take<MeshEdge>(SectionKind::edges);
+  a.trapezoids = in.take<MeshTrapezoid>(SectionKind::trapezoids);
+  a.lifespans = in.take<Lifespan>(SectionKind::lifespans);
+  a.feature_of = in.take<std::uint32_t>(SectionKind::feature_of);
+  a.polygon_index = in.take<MeshIndex::Entry>(SectionKind::polygon_index);
+  a.level_edge_index = in.take<MeshIndex::Entry>(SectionKind::level_edge_index);
+  a.mote_index = in.take<MeshIndex::Entry>(SectionKind::mote_index);
+  a.merged_mote_index = in.take<MeshIndex::Entry>(SectionKind::merged_mote_index);
+  a.grains = in.take<FeatureGrain>(SectionKind::grains);
+  a.outline_points = in.take<Point>(SectionKind::outline_points);
+  a.ring_ends = in.take<std::uint32_t>(SectionKind::ring_ends);
+  a.outline_ends = in.take<std::uint32_t>(SectionKind::outline_ends);
+  a.cells.ids = in.take<std::int64_t>(SectionKind::ids);
+  a.cells.string_bytes = in.take<char>(SectionKind::string_bytes);
+  a.cells.string_ends = in.take<std::uint64_t>(SectionKind::string_ends);
+  for (std::size_t i = 0; i < a.fields.size(); ++i) {
+    auto& column = a.cells.columns.emplace_back();
+    column.numbers = in.take<std::uint64_t>(SectionKind::numbers);
+    column.nulls = in.take<std::uint64_t>(SectionKind::nulls);
+    column.texts = in.take<std::uint32_t>(SectionKind::texts);
+  }
+  in.finish();
+}
+
+std::string text_of(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
+void check_options(const GeneralizationOptions& options, const PreparedDemands& demands) {
+  if (demands.weights && *demands.weights != options.weights) {
+    throw PreparedFileError("was prepared with the weights " +
+                            std::string(name_of(options.weights)) + ", and " +
+                            std::string(name_of(*demands.weights)) + " are configured");
+  }
+  if (demands.coverage && *demands.coverage != options.coverage) {
+    throw PreparedFileError("was prepared with coverage " + std::string(name_of(options.coverage)) +
+                            ", and " + std::string(name_of(*demands.coverage)) + " is configured");
+  }
+  if (demands.close_gaps && *demands.close_gaps != options.close_gaps) {
+    throw PreparedFileError("was prepared with gaps closed up to " + text_of(options.close_gaps) +
+                            " m, and " + text_of(*demands.close_gaps) + " m are configured");
+  }
+}
+
+void check_fingerprint(const GeneralizationOptions& options, std::uint64_t fingerprint) {
+  if (build_fingerprint(options) == fingerprint) return;
+  throw PreparedFileError("was prepared by a version of Trapeze that builds layers otherwise");
+}
+
+void check_source(const SourceStamp& stamp, const PreparedDemands& demands) {
+  const std::string change =
+      change_since(stamp, demands.source.empty() ? stamp.path : demands.source);
+  if (change.empty()) return;
+  throw PreparedFileError("is older than its source: " + change);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+LoadedLayer layer_from_sections(SectionReader& sections, Description description,
+                                std::shared_ptr<const void> memory) {
+  take_arrays(sections, description.numbers);
+  LoadedLayer loaded;
+  loaded.layer = layer_from(description.numbers, std::move(memory));
+  loaded.report = std::move(description.report);
+  loaded.report.prepared_from = std::move(description.source.path);
+  loaded.revision = description.revision;
+  return loaded;
+}
+
+Description take_description(SectionReader& sections) {
+  return read_description(sections.take<std::byte>(SectionKind::description));
+}
+
+LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto file = std::make_shared<const MappedFile>(path);
+  SectionReader sections(file->bytes());
+  Description description = take_description(sections);
+  const double read_seconds = seconds_since(start);
+  check_fingerprint(description.numbers.options, sections.fingerprint());
+  check_options(description.numbers.options, demands);
+  check_source(description.source, demands);
+  LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
+  loaded.file = file;
+  loaded.report.path = path;
+  loaded.report.read_seconds = read_seconds;
+  loaded.report.total_seconds = seconds_since(start);
+  return loaded;
+}
+
+}  // namespace
+
+void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
+                         const SourceStamp& source) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !is_prepared_file(path)) {
+    throw std::runtime_error(path + ": is there already and is no prepared file; not replaced");
+  }
+  const LayerArrays arrays = arrays_of(*loaded.layer);
+  const ByteWriter description = written(arrays, revision, source, loaded.report);
+  SectionWriter sections;
+  sections.add(SectionKind::description, std::span(description.bytes()));
+  add_arrays(arrays, sections);
+  sections.write(path, build_fingerprint(arrays.options));
+}
+
+LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands) {
+  try {
+    return open(path, demands);
+  } catch (const PreparedFileError& error) {
+    throw std::runtime_error(path + ": " + error.what() + kPrepareAgain);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": is damaged: " + error.what() + kPrepareAgain);
+  }
+}
+
+LoadedLayer layer_of_prepared_bytes(std::span<const std::byte> bytes,
+                                    std::shared_ptr<const void> memory) {
+  SectionReader sections(bytes);
+  Description description = take_description(sections);
+  return layer_from_sections(sections, std::move(description), std::move(memory));
+}
+
+}  // namespace trapeze

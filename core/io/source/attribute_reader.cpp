@@ -1,0 +1,164 @@
+#include "core/io/source/attribute_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <iterator>
+#include <memory>
+#include <string_view>
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+
+namespace trapeze {
+namespace {
+
+struct CplFree {
+  void operator()(char* text) const { CPLFree(text); }
+};
+using CplText = std::unique_ptr<char, CplFree>;
+
+FieldType type_of(OGRFieldType type) {
+  if (type == OFTInteger || type == OFTInteger64) return FieldType::integer;
+  if (type == OFTReal) return FieldType::real;
+  return FieldType::text;
+}
+
+bool is_utf8(const char* text) {
+  return CPLIsUTF8(text, -1) != 0;
+}
+
+std::string utf8_from_latin1(const char* text) {
+  const CplText recoded(CPLRecode(text, CPL_ENC_ISO8859_1, CPL_ENC_UTF8));
+  return recoded.get();
+}
+
+template <typename Number>
+std::string shortest(Number number) {
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  return std::string(text.data(), end);
+}
+
+// GDAL counts time zones in quarters of an hour from 100, which is UTC; 0 and 1 are none.
+std::string time_zone(int flag) {
+  if (flag < 2) return {};
+  if (flag == 100) return "Z";
+  const int minutes = std::abs(flag - 100) * 15;
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%c%02d:%02d", flag > 100 ? '+' : '-', minutes / 60,
+                minutes % 60);
+  return text.data();
+}
+
+std::string iso_date(const OGRFeature& feature, int index, OGRFieldType type) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, zone = 0;
+  float second = 0;
+  feature.GetFieldAsDateTime(index, &year, &month, &day, &hour, &minute, &second, &zone);
+  std::array<char, 32> date{};
+  std::snprintf(date.data(), date.size(), "%04d-%02d-%02d", year, month, day);
+  if (type == OFTDate) return date.data();
+  std::array<char, 32> time{};
+  const bool is_whole_second = second == static_cast<float>(static_cast<int>(second));
+  std::snprintf(time.data(), time.size(), is_whole_second ? "%02d:%02d:%02.0f" : "%02d:%02d:%06.3f",
+                hour, minute, static_cast<double>(second));
+  if (type == OFTTime) return time.data() + time_zone(zone);
+  return std::string(date.data()) + "T" + time.data() + time_zone(zone);
+}
+
+bool is_list(OGRFieldType type) {
+  return type == OFTIntegerList || type == OFTInteger64List || type == OFTRealList ||
+         type == OFTStringList;
+}
+
+// A value that is no text already, in words that lose nothing.
+std::string in_words(const OGRFeature& feature, int index, OGRFieldType type) {
+  if (type == OFTInteger || type == OFTInteger64) {
+    return shortest(feature.GetFieldAsInteger64(index));
+  }
+  if (type == OFTReal) return shortest(feature.GetFieldAsDouble(index));
+  if (type == OFTDate || type == OFTTime || type == OFTDateTime) {
+    return iso_date(feature, index, type);
+  }
+  if (is_list(type)) {
+    const CplText json(feature.GetFieldAsSerializedJSon(index));
+    if (json != nullptr) return json.get();
+  }
+  return feature.GetFieldAsString(index);
+}
+
+}  // namespace
+
+void AttributeReader::add_layer(const OGRFeatureDefn& definition) {
+  std::vector<std::size_t>& fields = field_of_.emplace_back();
+  for (int i = 0; i < definition.GetFieldCount(); ++i) {
+    const OGRFieldDefn& field = *definition.GetFieldDefn(i);
+    const char* raw_name = field.GetNameRef();
+    const std::string name = is_utf8(raw_name) ? raw_name : utf8_from_latin1(raw_name);
+    if (!is_kept(name)) {
+      fields.push_back(kNotKept);
+      continue;
+    }
+    const FieldType type = type_of(field.GetType());
+    const auto known = std::find_if(fields_.begin(), fields_.end(),
+                                    [&name](const Field& f) { return f.name == name; });
+    fields.push_back(static_cast<std::size_t>(known - fields_.begin()));
+    if (known == fields_.end()) {
+      fields_.push_back({name, type});
+    } else if (known->type != type) {
+      known->type = FieldType::text;
+    }
+  }
+  values_.resize(fields_.size());
+  texts_.resize(fields_.size());
+}
+
+bool AttributeReader::is_kept(const std::string& name) const {
+  return !kept_ || std::find(kept_->begin(), kept_->end(), name) != kept_->end();
+}
+
+std::vector<std::string> AttributeReader::missing() const {
+  std::vector<std::string> missing;
+  if (!kept_) return missing;
+  std::copy_if(kept_->begin(), kept_->end(), std::back_inserter(missing),
+               [this](const std::string& name) {
+                 return std::none_of(fields_.begin(), fields_.end(),
+                                     [&name](const Field& field) { return field.name == name; });
+               });
+  return missing;
+}
+
+const std::vector<Value>& AttributeReader::read(const OGRFeature& feature, std::size_t layer) {
+  std::fill(values_.begin(), values_.end(), Value());
+  const std::vector<std::size_t>& fields = field_of_[layer];
+  const int count = std::min(static_cast<int>(fields.size()), feature.GetFieldCount());
+  for (int i = 0; i < count; ++i) {
+    if (fields[i] == kNotKept) continue;
+    if (feature.IsFieldSetAndNotNull(i)) values_[fields[i]] = read_value(feature, i, fields[i]);
+  }
+  return values_;
+}
+
+Value AttributeReader::read_value(const OGRFeature& feature, int index, std::size_t field) {
+  const OGRFieldType type = feature.GetFieldDefnRef(index)->GetType();
+  if (fields_[field].type == FieldType::integer) {
+    return static_cast<std::int64_t>(feature.GetFieldAsInteger64(index));
+  }
+  if (fields_[field].type == FieldType::real) return feature.GetFieldAsDouble(index);
+  if (type == OFTString) return utf8_text(field, feature.GetFieldAsString(index));
+  return keep_text(field, in_words(feature, index, type));
+}
+
+Value AttributeReader::keep_text(std::size_t field, std::string text) {
+  texts_[field] = is_utf8(text.c_str()) ? std::move(text) : utf8_from_latin1(text.c_str());
+  return std::string_view(texts_[field]);
+}
+
+Value AttributeReader::utf8_text(std::size_t field, const char* text) {
+  if (is_utf8(text)) return std::string_view(text);
+  texts_[field] = utf8_from_latin1(text);
+  return std::string_view(texts_[field]);
+}
+
+}  // namespace trapeze

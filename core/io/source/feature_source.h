@@ -1,0 +1,73 @@
+// Reads the features of all layers of a source one after another.
+//
+// Belongs to one thread, as GDAL's handles do.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <ogrsf_frmts.h>
+
+#include "core/io/source/gdal_messages.h"
+#include "core/io/source/open_source.h"
+#include "core/io/source/source_crs.h"
+#include "core/io/source/source_selection.h"
+
+namespace trapeze {
+
+/// A layer that can hold polygons.
+struct SourceLayer {
+  OGRLayer* layer = nullptr;
+  int geometry_field = 0;  // the first one that can hold polygons
+  SourceCrs crs;
+};
+
+struct SourceFeature {
+  OGRFeatureUniquePtr feature;
+  const SourceLayer* layer = nullptr;  // null: of a layer that cannot hold polygons
+  std::size_t layer_index = 0;         // in layers()
+  std::string failure;                 // what GDAL complained about while reading it
+};
+
+class FeatureSource {
+ public:
+  /// Throws std::runtime_error, naming the source, if it cannot be opened or has not what is
+  /// selected.
+  explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
+
+  std::string driver() const;
+  const std::vector<SourceLayer>& layers() const { return layers_; }
+  /// Features of layers that cannot hold polygons and are not given out by next().
+  std::size_t passed_over() const { return passed_over_; }
+
+  /// Reads the next feature; false at the end. Throws SourceError if the source breaks off.
+  bool next(SourceFeature& next);
+
+  /// Share of the features that have been read, 0 to 1, or < 0 if unknown.
+  double progress() const;
+
+ private:
+  void find_layers(const SourceSelection& selection);
+  void find_only_layer(const std::string& name);
+  void add_layer(OGRLayer& layer, int geometry_field);
+  void apply_condition(const std::string& where);
+  OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
+  OGRFeatureUniquePtr next_interleaved(SourceFeature& next);
+  void expect(OGRLayer& layer);
+
+  ReadingSettings settings_;
+  GDALDatasetUniquePtr dataset_;
+  // OSM mixes its layers in one stream, which can be read only as it comes.
+  bool is_interleaved_ = false;
+  std::vector<SourceLayer> layers_;
+  std::size_t passed_over_ = 0;
+  GdalMessages messages_;
+
+  std::size_t current_layer_ = 0;
+  std::size_t read_ = 0;
+  double expected_ = 0;  // features in layers(), < 0 if unknown
+  double interleaved_share_ = -1;
+};
+
+}  // namespace trapeze

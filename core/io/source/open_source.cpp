@@ -1,0 +1,179 @@
+#include "core/io/source/open_source.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
+#include "core/io/prepared/prepared_file.h"
+#include "core/io/source/gdal_messages.h"
+#include "core/io/source/source_name.h"
+
+namespace trapeze {
+namespace {
+
+// Drivers that read polygons from one named source and nothing else. Not VRT: such a file can name
+// any other file, URL or database.
+constexpr std::array kAllowedDrivers = {
+    "FlatGeobuf", "GPKG", "GeoJSON", "GeoJSONSeq", "TopoJSON",    "ESRI Shapefile", "OSM",
+    "GML",        "KML",  "LIBKML",  "SQLite",     "OpenFileGDB", "PostgreSQL",     "Parquet"};
+
+CPLStringList allowed_drivers() {
+  CPLStringList list;
+  for (const char* name : kAllowedDrivers) list.AddString(name);
+  return list;
+}
+
+std::string allowed_drivers_in_words() {
+  std::string words;
+  for (const char* name : kAllowedDrivers) {
+    if (GDALGetDriverByName(name) == nullptr) continue;
+    if (!words.empty()) words += ", ";
+    words += name;
+  }
+  return words;
+}
+
+void register_drivers() {
+  static std::once_flag once;
+  std::call_once(once, GDALAllRegister);
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw std::runtime_error(name_of_source(path) + ": " + what);
+}
+
+bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> prefixes) {
+  for (const std::string_view prefix : prefixes) {
+    if (text.substr(0, prefix.size()) == prefix) return true;
+  }
+  return false;
+}
+
+bool is_database_connection(std::string_view path) {
+  return starts_with_any(path, {"PG:", "pg:", "PostgreSQL:", "postgresql://"});
+}
+
+bool is_in_archive_or_remote(std::string_view path) {
+  return starts_with_any(path, {"/vsi"});
+}
+
+// A folder is a source only if it is a File Geodatabase. (Drivers that take a folder for a set of
+// layers would read files that nobody named.)
+void check_folder(const std::string& path) {
+  const char* const only_geodatabase[] = {"OpenFileGDB", nullptr};
+  if (GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, only_geodatabase, nullptr) == nullptr) {
+    fail(path, "is a folder; name a file in it");
+  }
+}
+
+void check_contents(const std::string& path) {
+  errno = 0;
+  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+  if (file == nullptr) {
+    fail(path, std::string("cannot be read: ") +
+                   (errno != 0 ? std::strerror(errno) : "permission denied or broken"));
+  }
+  char byte = 0;
+  const bool is_empty = VSIFReadL(&byte, 1, 1, file) == 0;
+  VSIFCloseL(file);
+  if (is_empty) fail(path, "is empty");
+  if (is_prepared_file(path)) fail(path, "is a prepared layer; name what it was prepared from");
+}
+
+// Distinguishes a name that is not there from one that is there and cannot be looked at, such as a
+// loop of links.
+void check_exists(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) fail(path, "no such file");
+  if (error) fail(path, "cannot be read: " + error.message());
+}
+
+void check_readable(const std::string& path) {
+  const bool is_local = !is_in_archive_or_remote(path);
+  if (is_local) check_exists(path);
+  VSIStatBufL status;
+  const bool found = VSIStatL(path.c_str(), &status) == 0;
+  if (found && VSI_ISDIR(status.st_mode)) {
+    if (is_local) check_folder(path);
+    return;
+  }
+  if (!found && !is_local) fail(path, "no such file");
+  check_contents(path);
+}
+
+// Why an existing, readable file could not be opened with an allowed driver.
+[[noreturn]] void explain_refusal(const std::string& path, const std::string& message) {
+  GDALDriverH any =
+      GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_RASTER, nullptr, nullptr);
+  if (any == nullptr) {
+    fail(path,
+         "holds no vector data that is known here" + (message.empty() ? "" : " (" + message + ")"));
+  }
+  const std::string name = GDALGetDriverShortName(any);
+  for (const char* allowed : kAllowedDrivers) {
+    if (name == allowed) fail(path, "is broken (" + name + "): " + message);
+  }
+  fail(path, "is of the format " + name + ", which is not allowed; allowed are " +
+                 allowed_drivers_in_words());
+}
+
+CPLStringList options_for(const std::string& path, const CPLStringList& drivers) {
+  CPLStringList options;
+  GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, drivers.List(), nullptr);
+  // Reading must not leave a .gfs file beside the source.
+  if (driver != nullptr && std::string_view(GDALGetDriverShortName(driver)) == "GML") {
+    options.AddNameValue("WRITE_GFS", "NO");
+  }
+  return options;
+}
+
+}  // namespace
+
+GDALDatasetUniquePtr open_source(const std::string& path) {
+  register_drivers();
+  GdalMessages messages;
+  if (!is_database_connection(path)) check_readable(path);
+  const CPLStringList drivers = allowed_drivers();
+  const CPLStringList options = options_for(path, drivers);
+  messages.clear();
+  GDALDatasetUniquePtr dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                        drivers.List(), options.List()));
+  if (dataset == nullptr && is_database_connection(path)) {
+    fail(path, "cannot be opened: " + messages.text());
+  }
+  if (dataset == nullptr) explain_refusal(path, std::string(messages.text()));
+  if (dataset->GetLayerCount() > 0) return dataset;
+  if (!messages.has_failure()) fail(path, "has no layer of vector data");
+  fail(path, std::string("is broken (") + dataset->GetDriverName() + "): " + messages.text());
+}
+
+bool has_clockwise_shells(const std::string& driver) {
+  return driver == "ESRI Shapefile" || driver == "OpenFileGDB";
+}
+
+ReadingSettings::ReadingSettings() {
+  CPLSetThreadLocalConfigOption("OGR_ORGANIZE_POLYGONS", "SKIP");
+  CPLSetThreadLocalConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", "0");
+  if (CPLGetConfigOption("CPL_TMPDIR", nullptr) == nullptr) {
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+    if (!error) CPLSetThreadLocalConfigOption("CPL_TMPDIR", folder.c_str());
+  }
+}
+
+ReadingSettings::~ReadingSettings() {
+  CPLSetThreadLocalConfigOption("OGR_ORGANIZE_POLYGONS", nullptr);
+  CPLSetThreadLocalConfigOption("OGR_GEOJSON_MAX_OBJ_SIZE", nullptr);
+  CPLSetThreadLocalConfigOption("CPL_TMPDIR", nullptr);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,269 @@
+#include "core/io/source/ring_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/grid/web_mercator.h"
+
+namespace trapeze {
+namespace {
+
+// Rounding and buffers carry honest data a little beyond the world; pixels and metres go further.
+constexpr double kDegreeSlack = 1;
+
+constexpr ClipWindow kWorld = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
+                               static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
+
+bool is_collection(OGRwkbGeometryType flat) {
+  return OGR_GT_IsSubClassOf(flat, wkbGeometryCollection) != 0;
+}
+
+bool is_polyhedral(OGRwkbGeometryType flat) {
+  return OGR_GT_IsSubClassOf(flat, wkbPolyhedralSurface) != 0;
+}
+
+bool is_polygon(OGRwkbGeometryType flat) {
+  return OGR_GT_IsSubClassOf(flat, wkbCurvePolygon) != 0;
+}
+
+// Positive if the ring runs counterclockwise on a map with north up. Relative to the first vertex,
+// so that large coordinates do not drown small rings.
+double twice_area(std::span<const double> x, std::span<const double> y) {
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    sum += (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
+  }
+  return sum;
+}
+
+bool are_finite(std::span<const double> values) {
+  // Zero times anything finite is zero; infinities and NaN turn the sum into NaN.
+  double sum = 0;
+  for (const double value : values) sum += value * 0.0;
+  return sum == 0;
+}
+
+bool are_within(std::span<const double> values, double limit) {
+  return std::all_of(values.begin(), values.end(),
+                     [limit](double value) { return std::abs(value) <= limit; });
+}
+
+// Undoes the jumps from one side of the 180th meridian to the other in a ring that crosses it, and
+// leads a ring around a pole over that pole. Only for rings whose edges are short in longitude.
+void unwrap_longitudes(PositionRing& ring) {
+  if (ring.empty()) return;
+  double turns = 0;
+  double latitude_sum = 0;
+  double previous = ring.front().x;
+  for (Position& p : ring) {
+    const double step = p.x + turns - previous;
+    if (step > 180) turns -= 360;
+    if (step < -180) turns += 360;
+    p.x += turns;
+    previous = p.x;
+    latitude_sum += p.y;
+  }
+  const Position first = ring.front();
+  const double closing_step = first.x - previous;
+  if (std::abs(closing_step) <= 180) return;
+  const double around = first.x + (closing_step > 0 ? -360 : 360);
+  const double pole = latitude_sum < 0 ? -90 : 90;
+  ring.insert(ring.end(), {{around, first.y}, {around, pole}, {first.x, pole}});
+}
+
+// Appends the ring rounded to cells, each coordinate to the nearest and halves to even, without
+// consecutive duplicates; nothing if the ring is empty. All positions lie in the world.
+void append_snapped(const PositionRing& ring, Rings& rings) {
+  const std::size_t begin = rings.points.size();
+  for (const Position p : ring) {
+    const Point point{static_cast<std::int32_t>(std::lrint(p.x)),
+                      static_cast<std::int32_t>(std::lrint(p.y))};
+    if (rings.points.size() > begin && rings.points.back() == point) continue;
+    rings.points.push_back(point);
+  }
+  while (rings.points.size() > begin + 1 && rings.points.back() == rings.points[begin]) {
+    rings.points.pop_back();
+  }
+  if (rings.points.size() > begin) rings.close_ring();
+}
+
+struct Extent {
+  double min_x = std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+};
+
+Extent extent_of(const PositionRing& ring) {
+  Extent extent;
+  for (const Position p : ring) {
+    extent.min_x = std::min(extent.min_x, p.x);
+    extent.min_y = std::min(extent.min_y, p.y);
+    extent.max_x = std::max(extent.max_x, p.x);
+    extent.max_y = std::max(extent.max_y, p.y);
+  }
+  return extent;
+}
+
+}  // namespace
+
+void FeatureRings::clear() {
+  rings.clear();
+  polygons = source_rings = vertices = 0;
+  failure.clear();
+  has_wrong_units = false;
+}
+
+bool can_hold_polygons(OGRwkbGeometryType type) {
+  const OGRwkbGeometryType flat = wkbFlatten(type);
+  return flat == wkbUnknown || flat == wkbSurface || flat == wkbGeometryCollection ||
+         flat == wkbMultiPolygon || flat == wkbMultiSurface || is_polygon(flat) ||
+         is_polyhedral(flat);
+}
+
+bool has_polygons(const OGRGeometry& geometry) {
+  const OGRwkbGeometryType flat = wkbFlatten(geometry.getGeometryType());
+  if (flat != wkbGeometryCollection) return can_hold_polygons(flat);
+  const OGRGeometryCollection& parts = *geometry.toGeometryCollection();
+  return std::any_of(parts.begin(), parts.end(),
+                     [](const OGRGeometry* part) { return has_polygons(*part); });
+}
+
+RingReader::RingReader(const SourceCrs& crs, Options options) : crs_(crs), options_(options) {
+  if (crs.kind == SourceCrs::Kind::geographic || crs.kind == SourceCrs::Kind::projected) {
+    transform_ = std::make_unique<LonLatTransform>(crs);
+  }
+}
+
+void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
+  feature.clear();
+  x_.clear();
+  y_.clear();
+  ends_.clear();
+  collect(geometry, feature);
+  check_coordinates(feature);
+  if (feature.failure.empty() && transform_ != nullptr) to_lonlat(feature);
+  if (!feature.failure.empty()) return;
+  feature.rings.points.reserve(x_.size());
+  std::size_t begin = 0;
+  for (const std::size_t end : ends_) {
+    append_ring(begin, end, feature.rings);
+    begin = end;
+  }
+}
+
+void RingReader::collect(const OGRGeometry& geometry, FeatureRings& feature) {
+  const OGRwkbGeometryType flat = wkbFlatten(geometry.getGeometryType());
+  if (flat == wkbPolygon || flat == wkbTriangle) {
+    collect_polygon(*geometry.toPolygon(), feature);
+  } else if (is_polygon(flat)) {
+    const std::unique_ptr<OGRGeometry> linear(geometry.getLinearGeometry());
+    collect_polygon(*linear->toPolygon(), feature);
+  } else if (is_polyhedral(flat)) {
+    for (const OGRPolygon* part : *geometry.toPolyhedralSurface()) collect_polygon(*part, feature);
+  } else if (is_collection(flat)) {
+    for (const OGRGeometry* part : *geometry.toGeometryCollection()) collect(*part, feature);
+  }
+}
+
+void RingReader::collect_polygon(const OGRPolygon& polygon, FeatureRings& feature) {
+  if (polygon.IsEmpty()) return;
+  const std::size_t polygons_before = feature.polygons;
+  for (const OGRLinearRing* ring : polygon) collect_ring(*ring, feature);
+  if (!options_.shells_are_clockwise) feature.polygons = polygons_before + 1;
+}
+
+void RingReader::collect_ring(const OGRLinearRing& ring, FeatureRings& feature) {
+  const std::size_t begin = x_.size();
+  const std::size_t count = static_cast<std::size_t>(ring.getNumPoints());
+  if (count == 0) return;
+  x_.resize(begin + count);
+  y_.resize(begin + count);
+  ring.getPoints(x_.data() + begin, sizeof(double), y_.data() + begin, sizeof(double));
+  ends_.push_back(x_.size());
+  feature.source_rings += 1;
+  feature.vertices += count;
+  if (options_.shells_are_clockwise &&
+      twice_area(std::span(x_).subspan(begin), std::span(y_).subspan(begin)) <= 0) {
+    feature.polygons += 1;
+  }
+}
+
+void RingReader::check_coordinates(FeatureRings& feature) const {
+  if (!are_finite(x_) || !are_finite(y_)) {
+    feature.failure = "has a coordinate that is not a finite number";
+  } else if (crs_.kind == SourceCrs::Kind::assumed_degrees &&
+             !(are_within(x_, 180 + kDegreeSlack) && are_within(y_, 90 + kDegreeSlack))) {
+    feature.failure = "has coordinates that are not degrees";
+    feature.has_wrong_units = true;
+  }
+}
+
+void RingReader::to_lonlat(FeatureRings& feature) {
+  const bool can_unwrap = crs_.degrees_per_unit > 0;
+  if (can_unwrap) source_x_ = x_;
+  feature.failure = transform_->apply(x_, y_);
+  if (!feature.failure.empty()) return;
+  if (!are_finite(x_) || !are_finite(y_)) {
+    feature.failure = "lies where its coordinate reference system is not defined";
+    return;
+  }
+  if (!can_unwrap) return;
+  // A datum moves a point by metres: a longitude that moved by half a turn was wrapped.
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] += 360 * std::nearbyint((source_x_[i] * crs_.degrees_per_unit - x_[i]) / 360);
+  }
+}
+
+void RingReader::append_ring(std::size_t begin, std::size_t end, Rings& rings) {
+  // The closing vertex repeats the first one; a ring that lacks it is closed all the same.
+  if (end - begin > 1 && x_[begin] == x_[end - 1] && y_[begin] == y_[end - 1]) --end;
+  ring_.clear();
+  for (std::size_t i = begin; i < end; ++i) ring_.push_back({x_[i], y_[i]});
+  if (crs_.kind == SourceCrs::Kind::projected) unwrap_longitudes(ring_);
+  project_ring();
+
+  const Extent extent = extent_of(ring_);
+  if (extent.min_x >= kGridMin && extent.max_x <= kGridMax && extent.min_y >= kGridMin &&
+      extent.max_y <= kGridMax) {
+    append_snapped(ring_, rings);
+    return;
+  }
+  constexpr double kTurn = static_cast<double>(kGridSize);
+  for (const double shift : {0.0, -kTurn, kTurn}) {
+    if (extent.min_x + shift < kGridMax && extent.max_x + shift > kGridMin) {
+      append_clipped(shift, rings);
+    }
+  }
+}
+
+void RingReader::project_ring() {
+  if (crs_.kind == SourceCrs::Kind::web_mercator) {
+    for (Position& p : ring_) {
+      const GridPosition cell = grid_from_metres(p.x, p.y);
+      p = {cell.x, cell.y};
+    }
+    return;
+  }
+  clip_latitude();
+  for (Position& p : ring_) {
+    const GridPosition cell = grid_from_lonlat({p.x, p.y});
+    p = {cell.x, cell.y};
+  }
+}
+
+// Before the projection, which takes the poles to infinity.
+void RingReader::clip_latitude() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  clip_ring(ring_, {-kInfinity, -kMaxLatitude, kInfinity, kMaxLatitude}, scratch_);
+}
+
+void RingReader::append_clipped(double shift, Rings& rings) {
+  clipped_.clear();
+  for (const Position p : ring_) clipped_.push_back({p.x + shift, p.y});
+  clip_ring(clipped_, kWorld, scratch_);
+  append_snapped(clipped_, rings);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,33 @@
+// Reads the geometries of all layers of a source as rings on the grid.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <ogr_geometry.h>
+
+#include "core/io/source/feature_source.h"
+#include "core/io/source/ring_reader.h"
+
+namespace trapeze {
+
+/// Belongs to the thread that made it; several may read geometries of one source at once.
+class SourceRingReader {
+ public:
+  /// `source` must outlive the reader.
+  explicit SourceRingReader(const FeatureSource& source);
+
+  /// The rings of a geometry of that layer; they are overwritten by the next call, and the caller
+  /// may change them. Throws SourceError if the whole source cannot be understood: it names no CRS
+  /// and is not in degrees, or there is no way from its CRS.
+  FeatureRings& read(const OGRGeometry& geometry, std::size_t layer_index);
+
+ private:
+  const std::vector<SourceLayer>& layers_;
+  RingReader::Options options_;
+  std::vector<std::unique_ptr<RingReader>> readers_;  // by layer, made when first needed
+  FeatureRings feature_;                              // memory kept between calls
+};
+
+}  // namespace trapeze

@@ -1,0 +1,67 @@
+#include "core/layer/class_dust.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/layer/dust.h"
+
+namespace trapeze {
+namespace {
+
+std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixel) {
+  const auto number = [pixel](double v) {
+    return static_cast<std::uint64_t>(std::max(0.0, (v - kGridMin) / pixel)) & 0xfffffff;
+  };
+  return std::uint64_t{feature_class} << 56 | number(y) << 28 | number(x);
+}
+
+/// The box, moved so that it lies within a pixel if it is no larger.
+Box within_pixel(const Box& box, double x, double y, double pixel) {
+  const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) -> std::int64_t {
+    const double begin = kGridMin + std::floor((at - kGridMin) / pixel) * pixel;
+    if (max - min > pixel) return 0;
+    return std::llround(std::max(begin - min, std::min(0.0, begin + pixel - max)));
+  };
+  const std::int64_t dx = shift(box.min_x, box.max_x, x);
+  const std::int64_t dy = shift(box.min_y, box.max_y, y);
+  const auto moved = [](std::int32_t v, std::int64_t by) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v + by, kGridMin, kGridMax));
+  };
+  return {moved(box.min_x, dx), moved(box.min_y, dy), moved(box.max_x, dx), moved(box.max_y, dy)};
+}
+
+}  // namespace
+
+void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, double pixel,
+                       std::span<const std::uint8_t> classes, std::vector<ClassMote>& motes) {
+  sums_.clear();
+  keys_.clear();
+  motes.clear();
+  // Pixels of more cells than the grid's side over 2^28 are told apart.
+  pixel = std::max(pixel, static_cast<double>(kGridSize) / (1 << 28));
+  grains.visit(box, level, [&](const FeatureGrain& grain) {
+    const std::uint8_t feature_class = classes[grain.row];
+    if (feature_class == kNotDrawn) return;
+    const double grain_area = static_cast<double>(grain.doubled_area) / 2;
+    lay_out(grain.from, grain.to, grain_area, pixel, [&](double x, double y, double area) {
+      Sum& sum = sums_[key_of(feature_class, x, y, pixel)];
+      const double weight = std::abs(area);
+      sum.x += weight * x;
+      sum.y += weight * y;
+      sum.area += area;
+      sum.weight += weight;
+    });
+  });
+  for (const auto& [key, sum] : sums_) keys_.push_back(key);
+  std::sort(keys_.begin(), keys_.end());
+  for (const std::uint64_t key : keys_) {
+    const Sum& sum = sums_[key];
+    if (std::abs(sum.area) < kSmallestMote) continue;
+    const double x = sum.x / sum.weight;
+    const double y = sum.y / sum.weight;
+    motes.push_back({within_pixel(box_of_mote(x, y, std::abs(sum.area)), x, y, pixel),
+                     static_cast<std::uint8_t>(key >> 56), sum.area < 0});
+  }
+}
+
+}  // namespace trapeze

@@ -1,0 +1,46 @@
+// Dust for a style that draws features in classes: motes for each class, taken together within the
+// pixels of one picture, so that there are no more than its pixels times its classes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/grid/grid.h"
+#include "core/grid/tolerance.h"
+#include "core/layer/grains.h"
+
+namespace trapeze {
+
+/// The class of features that are left out.
+constexpr std::uint8_t kNotDrawn = 0xff;
+
+struct ClassMote {
+  Box box;
+  std::uint8_t feature_class = 0;
+  bool is_hole = false;  // takes coverage away
+};
+
+/// Keeps memory from use to use; one a thread.
+class ClassDust {
+ public:
+  /// Replaces `motes` by those of the grains born at `level` or before that lie in the box, in
+  /// order of class, and within it of pixel. `pixel` is the side of a pixel in cells; `classes` has
+  /// one for every row that a grain may name.
+  void gather(const GrainIndex& grains, const Box& box, Level level, double pixel,
+              std::span<const std::uint8_t> classes, std::vector<ClassMote>& motes);
+
+ private:
+  struct Sum {
+    double x = 0;  // of places, weighted
+    double y = 0;
+    double area = 0;
+    double weight = 0;
+  };
+
+  std::unordered_map<std::uint64_t, Sum> sums_;  // by class and pixel
+  std::vector<std::uint64_t> keys_;
+};
+
+}  // namespace trapeze

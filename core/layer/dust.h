@@ -1,0 +1,57 @@
+// Dust: the area of loops too small to draw, kept as coverage, so that a town seen from far is a
+// grey tint and not a hole.
+//
+// A grain that a loop left behind is laid out as square motes. From one octave of tolerance to the
+// next, motes that fall into one pixel (four times the tolerance: the default tolerance is a
+// quarter of a pixel) become one, so that the motes of a tile are bounded by its pixels, however
+// many polygons fall into it. Each mote has a lifespan, like a trapezoid. Motes of holes have
+// negative area.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/adapt/history.h"
+#include "core/grid/grid.h"
+#include "core/grid/tolerance.h"
+
+namespace trapeze {
+
+struct Mote {
+  double x = 0;     // cells
+  double y = 0;     // cells
+  double area = 0;  // cells squared, may be negative
+  Lifespan lifespan;
+  bool is_merged = false;  // stands for several
+};
+
+/// The side of a pixel, in cells, whose default tolerance is that of the level.
+double pixel_of_level(Level level);
+
+/// Motes of less are left out, in cells squared.
+constexpr double kSmallestMote = 0.5;
+
+/// Calls visit(x, y, area) for the motes of a loop of that area, laid out along the segment that
+/// was left of it: one a pixel of so many cells.
+template <typename Visit>
+void lay_out(Point from, Point to, double area, double pixel, const Visit& visit) {
+  constexpr int kMaxMotes = 256;
+  const double dx = static_cast<double>(to.x) - from.x;
+  const double dy = static_cast<double>(to.y) - from.y;
+  const int count =
+      std::clamp(static_cast<int>(std::ceil(std::hypot(dx, dy) / pixel)), 1, kMaxMotes);
+  for (int i = 0; i < count; ++i) {
+    const double along = (i + 0.5) / count;
+    visit(from.x + along * dx, from.y + along * dy, area / count);
+  }
+}
+
+/// The square of a mote, or what comes near it in whole cells. `area` is positive.
+Box box_of_mote(double x, double y, double area);
+
+/// The motes of all levels. The sum of the areas alive at a level is that of the grains born by
+/// then, but for motes too small to matter (less than half a cell squared).
+std::vector<Mote> settle(const std::vector<Grain>& grains);
+
+}  // namespace trapeze

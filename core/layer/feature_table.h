@@ -1,0 +1,91 @@
+// Ids and attributes of the features of a layer, by row; geometry lives elsewhere under the same
+// row.
+//
+// Thread-safety: immutable once filled, any number of threads may read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/grid/stored_array.h"
+
+namespace trapeze {
+
+enum class FieldType : std::uint8_t { integer, real, text };
+
+struct Field {
+  std::string name;
+  FieldType type = FieldType::text;
+};
+
+/// Null is std::monostate. The string looks at memory of the table.
+using Value = std::variant<std::monostate, std::int64_t, double, std::string_view>;
+
+class FeatureTable {
+ public:
+  /// The cells as flat arrays, to be stored and looked at again.
+  struct Cells {
+    struct Column {
+      std::span<const std::uint64_t> numbers;
+      std::span<const std::uint64_t> nulls;
+      std::span<const std::uint32_t> texts;
+    };
+    std::span<const std::int64_t> ids;
+    std::vector<Column> columns;
+    std::span<const char> string_bytes;
+    std::span<const std::uint64_t> string_ends;
+  };
+
+  FeatureTable() = default;
+  explicit FeatureTable(std::vector<Field> fields);
+  /// A table that looks at cells, which must outlive it. Throws std::invalid_argument if they do
+  /// not fit each other or the fields; if it does not, no value is read from beyond them.
+  FeatureTable(std::vector<Field> fields, const Cells& cells);
+
+  /// Appends a row and returns its number; `values` are as many as fields, each null or of its
+  /// field's type (std::invalid_argument if not). `id` is the source's own feature id.
+  std::uint32_t append(std::int64_t id, std::span<const Value> values);
+
+  std::size_t size() const { return ids_.size(); }
+  std::span<const Field> fields() const { return fields_; }
+  /// Number of the first field of that name, or -1.
+  int field_index(std::string_view name) const;
+  std::int64_t id(std::uint32_t row) const { return ids_[row]; }
+  /// `row` < size(), 0 <= `field` < fields().size().
+  Value value(std::uint32_t row, int field) const;
+  Cells cells() const;
+  /// Memory held, in bytes: heap, or mapped.
+  std::size_t memory() const;
+
+ private:
+  // One column a field; a column uses one of the two kinds of cells. Equal strings of the whole
+  // table are stored once, whatever their field.
+  struct Column {
+    StoredArray<std::uint64_t> numbers;  // integer and real: the integer, or the bits of the double
+    StoredArray<std::uint64_t> nulls;    // integer and real: a bit a row, up to the last null
+    StoredArray<std::uint32_t> texts;    // text: number of the string, or kNullText
+  };
+  static constexpr std::uint32_t kNullText = 0xffffffff;
+
+  void check_types(std::span<const Value> values) const;
+  void check_cells() const;
+  void append_number(Column& column, const Value& value);
+  std::uint32_t intern(std::string_view text);
+  std::string_view text(std::uint32_t number) const;
+  void grow_slots();
+
+  std::vector<Field> fields_;
+  StoredArray<std::int64_t> ids_;
+  std::vector<Column> columns_;
+  StoredArray<char> string_bytes_;
+  StoredArray<std::uint64_t> string_ends_;
+  // Open addressing over string numbers, keyed by the bytes; the size is a power of two.
+  std::vector<std::uint32_t> string_slots_;
+};
+
+}  // namespace trapeze

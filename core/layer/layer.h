@@ -1,0 +1,119 @@
+// A layer ready to be drawn: the trapezoids of all its polygons, where they are, and its features.
+//
+// Thread-safety: immutable to the eye; any number of threads may read.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/grid/grid.h"
+#include "core/grid/rings.h"
+#include "core/grid/tolerance.h"
+#include "core/layer/feature_table.h"
+#include "core/layer/grains.h"
+#include "core/mesh/trapezoid_mesh.h"
+
+namespace trapeze {
+
+/// What becomes of polygons, and of holes, that are too small for a tolerance.
+enum class SmallPolygons : std::uint8_t {
+  dust,  // their area is kept as coverage where they were
+  keep,  // the caller draws them large enough to be seen, see Layer::small_polygons
+  drop,  // they are left out
+};
+
+class Layer {
+ public:
+  static constexpr std::uint32_t kNoFeature = 0xffffffff;
+
+  struct Contents;  // the stored arrays; made by LayerBuilder and layer_from
+
+  explicit Layer(std::unique_ptr<const Contents> contents);  // used by these
+  ~Layer();
+  Layer(const Layer&) = delete;
+  Layer& operator=(const Layer&) = delete;
+
+  const FeatureTable& features() const;
+  /// The smallest box that holds all polygons; empty if there are none.
+  const Box& bounds() const;
+  const MeshView& mesh() const;
+
+  /// What of the mesh is wanted.
+  struct Selection {
+    Box box;
+    Level level = 0;  // of tolerance
+    /// The level of a quarter of a pixel: dust is taken together within pixels of this size,
+    /// however much greater the tolerance is.
+    Level pixel_level = kLastLevel;
+    SmallPolygons small = SmallPolygons::dust;
+  };
+
+  /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
+  /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
+  /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
+  /// that stands for holes, left and right edge have changed places: its area is negative.
+  void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
+  /// Replaces `ranges` by what stands for the level edges of the boundary at the level that may
+  /// touch the box: trapezoids without height, whose left and right side are the edge. All other
+  /// edges of the boundary are sides of trapezoids that select() names.
+  void select_level_edges(const Box& box, Level level, std::vector<TrapezoidRange>& ranges) const;
+
+  /// What small polygons and holes left behind, feature by feature: the same dust as select()
+  /// names, before any of it is taken together.
+  const GrainIndex& grains() const;
+
+  /// True only if the ranges that were selected cover the selection's box wholly, so that nothing
+  /// need be drawn to know it; may be false though they do.
+  bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
+
+  /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
+  /// in one pixel taken together.
+  void small_polygons(const Selection& selection, std::vector<Box>& places) const;
+
+  /// The same polygons generalized without the topological consistency test (paper, section 4.2),
+  /// where that makes a difference. Built when first asked for, which takes about as long as
+  /// loading took and as much memory again; callers that come meanwhile wait.
+  const Layer& without_topology_test() const;
+
+  /// The ids of all meshes that were there to be drawn from so far.
+  std::vector<std::uint64_t> mesh_ids() const;
+
+  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
+  void append_outline(std::uint32_t row, Rings& rings) const;
+
+  /// The row, in features(), of the polygon that a trapezoid, or a level edge, is a part of;
+  /// kNoFeature for dust.
+  std::uint32_t feature_of(std::uint32_t trapezoid) const;
+
+  /// Figures for reports: vertices at full detail, and versions of trapezoids and of edges, dust
+  /// counted apart.
+  struct Size {
+    std::size_t vertices = 0;
+    std::size_t trapezoids = 0;
+    std::size_t edges = 0;
+    std::size_t motes = 0;
+  };
+  Size size() const;
+
+  /// Memory held by geometry and index, in bytes: heap, or mapped. Attributes are counted by
+  /// features().memory().
+  std::size_t memory() const;
+
+  const Contents& contents() const { return *contents_; }  // used by arrays_of
+
+ private:
+  void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
+  std::unique_ptr<const Contents> contents_;
+  mutable std::once_flag without_test_built_;
+  mutable std::unique_ptr<const Layer> without_test_;
+  mutable std::atomic<bool> has_without_test_ = false;  // set after it, for those who do not wait
+};
+
+}  // namespace trapeze

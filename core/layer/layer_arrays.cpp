@@ -1,0 +1,172 @@
+#include "core/layer/layer_arrays.h"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <utility>
+
+#include "core/grid/for_each_in_parallel.h"
+#include "core/layer/layer_contents.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
+constexpr std::size_t kMostItems = 0xffffffff;  // what indices of 32 bits can tell apart
+
+void require(bool condition, const char* words) {
+  if (!condition) throw std::invalid_argument(words);
+}
+
+/// Whether holds(item) for all items, looked at on all cores.
+template <typename T, typename Holds>
+bool all_of(std::span<const T> items, const Holds& holds) {
+  std::atomic<bool> result = true;
+  const std::size_t pieces = (items.size() + kItemsAtOnce - 1) / kItemsAtOnce;
+  for_each_in_parallel(pieces, pieces, [&](std::size_t piece) {
+    const std::size_t begin = piece * kItemsAtOnce;
+    bool holds_here = true;  // without an early end, so that the loop can be vectorised
+    for (const T& item : items.subspan(begin, std::min(kItemsAtOnce, items.size() - begin))) {
+      holds_here &= holds(item);
+    }
+    if (!holds_here) result = false;
+  });
+  return result;
+}
+
+constexpr auto is_on_grid = [](Point p) {
+  return p.x >= kGridMin && p.x <= kGridMax && p.y >= kGridMin && p.y <= kGridMax;
+};
+
+bool is_sorted_up_to(std::span<const std::uint32_t> ends, std::size_t end) {
+  return std::ranges::is_sorted(ends) && (ends.empty() || ends.back() <= end);
+}
+
+/// What is drawn between two edges then stays within them: no division by nothing, no place off the
+/// grid.
+bool lies_between_its_edges(const LayerArrays& a, const MeshTrapezoid& t) {
+  const std::int32_t top = a.vertices[t.top].y;
+  const std::int32_t bottom = a.vertices[t.bottom].y;
+  const auto spans = [&](const MeshEdge& edge) {
+    return a.vertices[edge.upper].y <= top && bottom <= a.vertices[edge.lower].y;
+  };
+  return top <= bottom && spans(a.edges[t.left]) && spans(a.edges[t.right]);
+}
+
+void check_mesh(const LayerArrays& a) {
+  const std::size_t vertices = a.vertices.size();
+  const std::size_t edges = a.edges.size();
+  require(std::max({vertices, edges, a.trapezoids.size()}) <= kMostItems,
+          "there is too much of it");
+  require(all_of(a.vertices, is_on_grid), "a vertex is not on the grid");
+  require(
+      all_of(a.edges,
+             [vertices](const MeshEdge& e) { return e.upper < vertices && e.lower < vertices; }),
+      "an end of an edge is not there");
+  require(all_of(a.trapezoids,
+                 [&](const MeshTrapezoid& t) {
+                   return t.top < vertices && t.bottom < vertices && t.left < edges &&
+                          t.right < edges && lies_between_its_edges(a, t);
+                 }),
+          "a trapezoid does not lie between its edges");
+  require(a.lifespans.size() == a.trapezoids.size(), "there is not one lifespan a trapezoid");
+}
+
+void check_features(const LayerArrays& a) {
+  const std::size_t rows = a.cells.ids.size();
+  require(a.feature_of.size() <= a.trapezoids.size(), "there is dust that has a feature");
+  require(all_of(a.feature_of, [rows](std::uint32_t row) { return row < rows; }),
+          "the feature of a trapezoid is not there");
+  require(all_of(a.grains,
+                 [rows](const FeatureGrain& grain) {
+                   return grain.row < rows && grain.born <= kLastLevel && is_on_grid(grain.from) &&
+                          is_on_grid(grain.to);
+                 }),
+          "a grain of dust has no feature or no place");
+  require(a.outline_ends.size() <= rows, "there are outlines without a feature");
+  require(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
+  require(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
+  require(all_of(a.outline_points, is_on_grid), "a point of an outline is not on the grid");
+}
+
+void check_sums(const LayerArrays& a) {
+  require(a.single_motes <= a.trapezoids.size() - a.feature_of.size(), "there is too much dust");
+  require(a.level_edges <= a.feature_of.size() &&
+              a.size.trapezoids == a.feature_of.size() - a.level_edges &&
+              a.size.motes == a.trapezoids.size() - a.feature_of.size(),
+          "the sums are not those of the trapezoids");
+  const Box& box = a.bounds;
+  require(box == Box() || (!box.is_empty() && is_on_grid({box.min_x, box.min_y}) &&
+                           is_on_grid({box.max_x, box.max_y})),
+          "the bounds are not on the grid");
+}
+
+TrapezoidRange between(std::size_t begin, std::size_t end) {
+  return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)};
+}
+
+template <typename T>
+void look_at(std::span<const T> items, StoredArray<T>& array) {
+  array = StoredArray<T>::looking_at(items);
+}
+
+}  // namespace
+
+LayerArrays arrays_of(const Layer& layer) {
+  const Layer::Contents& c = layer.contents();
+  LayerArrays arrays;
+  arrays.vertices = c.vertices;
+  arrays.edges = c.edges;
+  arrays.trapezoids = c.trapezoids;
+  arrays.lifespans = c.lifespans;
+  arrays.feature_of = c.feature_of;
+  arrays.polygon_index = c.polygon_index.entries();
+  arrays.mote_index = c.mote_index.entries();
+  arrays.merged_mote_index = c.merged_mote_index.entries();
+  arrays.level_edge_index = c.level_edge_index.entries();
+  arrays.grains = c.grains.grains();
+  arrays.outline_points = c.outline_points;
+  arrays.ring_ends = c.ring_ends;
+  arrays.outline_ends = c.outline_ends;
+  arrays.cells = c.features.cells();
+  arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
+  arrays.level_edges = c.level_edge_index.range().count;
+  arrays.single_motes = c.mote_index.range().count;
+  arrays.size = c.size;
+  arrays.bounds = c.bounds;
+  arrays.options = c.options;
+  return arrays;
+}
+
+std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<const void> mapping) {
+  check_mesh(arrays);
+  check_features(arrays);
+  check_sums(arrays);
+  auto layer = std::make_unique<Layer::Contents>();
+  layer->mapping = std::move(mapping);
+  look_at(arrays.vertices, layer->vertices);
+  look_at(arrays.edges, layer->edges);
+  look_at(arrays.trapezoids, layer->trapezoids);
+  look_at(arrays.lifespans, layer->lifespans);
+  look_at(arrays.feature_of, layer->feature_of);
+  look_at(arrays.outline_points, layer->outline_points);
+  look_at(arrays.ring_ends, layer->ring_ends);
+  look_at(arrays.outline_ends, layer->outline_ends);
+  const std::size_t level_edges = arrays.feature_of.size();
+  const std::size_t polygons = level_edges - arrays.level_edges;
+  const std::size_t singles = level_edges + arrays.single_motes;
+  layer->polygon_index = MeshIndex(between(0, polygons), arrays.polygon_index);
+  layer->level_edge_index = MeshIndex(between(polygons, level_edges), arrays.level_edge_index);
+  layer->mote_index = MeshIndex(between(level_edges, singles), arrays.mote_index);
+  layer->merged_mote_index =
+      MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index);
+  layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));
+  layer->features = FeatureTable(arrays.fields, arrays.cells);
+  layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
+  layer->size = arrays.size;
+  layer->bounds = arrays.bounds;
+  layer->options = arrays.options;
+  return std::make_unique<Layer>(std::move(layer));
+}
+
+}  // namespace trapeze

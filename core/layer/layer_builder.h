@@ -1,0 +1,51 @@
+// From rings to a layer: every feature's polygon is trapezoidated, generalized through all levels,
+// and the history of its graph stored for drawing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/adapt/adaptable_graph.h"
+#include "core/borders/coverage_builder.h"
+#include "core/grid/rings.h"
+#include "core/layer/feature_table.h"
+#include "core/layer/layer.h"
+#include "core/sweep/graph_builder.h"
+
+namespace trapeze {
+
+/// Builds the graphs of many features one after another and keeps the result. Use one builder a
+/// thread and join them at the end: the joined layer does not depend on which builder got which
+/// feature.
+class LayerBuilder {
+ public:
+  explicit LayerBuilder(const GeneralizationOptions& options = {});
+  ~LayerBuilder();
+  LayerBuilder(LayerBuilder&&) noexcept;
+  LayerBuilder& operator=(LayerBuilder&&) noexcept;
+
+  /// Builds the graph of feature `row` from its rings, whatever their state: duplicates, spikes and
+  /// collapsed rings are dropped, crossings and touches noded on the grid, inside is even-odd.
+  /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
+  BuildOutcome add(std::uint32_t row, Rings& rings);
+
+  /// Builds one graph of those features of a group that can live in one, see assemble(): the
+  /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
+  /// rings are clean.
+  Assembly add_coverage(std::span<const std::uint32_t> rows,
+                        std::span<const Rings* const> features);
+
+  /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
+  /// with the same options.
+  static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace trapeze

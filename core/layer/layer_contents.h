@@ -1,0 +1,40 @@
+// The stored arrays of a layer; private to Layer, LayerBuilder and LayerArrays.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/adapt/adaptable_graph.h"
+#include "core/grid/stored_array.h"
+#include "core/layer/grains.h"
+#include "core/layer/layer.h"
+#include "core/mesh/mesh_index.h"
+
+namespace trapeze {
+
+struct Layer::Contents {
+  std::shared_ptr<const void> mapping;  // what arrays that own nothing look at
+  StoredArray<Point> vertices;
+  StoredArray<MeshEdge> edges;
+  StoredArray<MeshTrapezoid> trapezoids;
+  StoredArray<Lifespan> lifespans;        // by trapezoid
+  StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
+  MeshView view;                          // looks at the arrays above
+  // Trapezoids of polygons come first, then those that stand for level edges, then those of single
+  // motes, then those of merged ones.
+  MeshIndex polygon_index;
+  MeshIndex level_edge_index;
+  MeshIndex mote_index;
+  MeshIndex merged_mote_index;
+  GrainIndex grains;
+  Size size;
+  GeneralizationOptions options;
+  // The rings of all features, in order of rows, as in Rings.
+  StoredArray<Point> outline_points;
+  StoredArray<std::uint32_t> ring_ends;
+  StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
+  Box bounds;
+  FeatureTable features;
+};
+
+}  // namespace trapeze

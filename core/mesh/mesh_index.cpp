@@ -1,0 +1,164 @@
+#include "core/mesh/mesh_index.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/grid/hilbert.h"
+
+namespace trapeze {
+namespace {
+
+struct Interval {
+  double min;
+  double max;
+};
+
+/// Where the edge runs in x between two levels.
+Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, std::int32_t y1) {
+  const Point a = mesh.vertices[edge.upper];
+  const Point b = mesh.vertices[edge.lower];
+  if (a.y == b.y)
+    return {static_cast<double>(std::min(a.x, b.x)), static_cast<double>(std::max(a.x, b.x))};
+  const double slope = (static_cast<double>(b.x) - a.x) / (static_cast<double>(b.y) - a.y);
+  const double x0 = a.x + slope * (static_cast<double>(y0) - a.y);
+  const double x1 = a.x + slope * (static_cast<double>(y1) - a.y);
+  return {std::min(x0, x1), std::max(x0, x1)};
+}
+
+/// Whether one side is beyond the box's west and the other beyond its east border, all the way
+/// between two levels.
+bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box, std::int32_t y0,
+           std::int32_t y1) {
+  const Interval left = x_range(mesh, mesh.edges[trapezoid.left], y0, y1);
+  const Interval right = x_range(mesh, mesh.edges[trapezoid.right], y0, y1);
+  return left.max + 1 <= box.min_x && right.min - 1 >= box.max_x;
+}
+
+/// An octave of levels to a class; the untouched and the undying are classes of their own.
+unsigned lifespan_class(Level level) {
+  return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
+}
+
+/// Where the heights of a tree over `count` items begin, and where the last one ends. The last has
+/// one entry, or the first none.
+std::vector<std::size_t> heights_over(std::size_t count, std::size_t fanout) {
+  std::vector<std::size_t> begins = {0};
+  std::size_t entries = count;
+  do {
+    entries = (entries + fanout - 1) / fanout;
+    begins.push_back(begins.back() + entries);
+  } while (entries > 1);
+  return begins;
+}
+
+}  // namespace
+
+Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
+  const std::int32_t y0 = mesh.vertices[trapezoid.top].y;
+  const std::int32_t y1 = mesh.vertices[trapezoid.bottom].y;
+  const Interval left = x_range(mesh, mesh.edges[trapezoid.left], y0, y1);
+  const Interval right = x_range(mesh, mesh.edges[trapezoid.right], y0, y1);
+  const auto clamped = [](double x) {
+    return static_cast<std::int32_t>(std::clamp(x, double{kGridMin}, double{kGridMax}));
+  };
+  return {clamped(std::floor(std::min(left.min, right.min))), y0,
+          clamped(std::ceil(std::max(left.max, right.max))), y1};
+}
+
+bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box) {
+  // A tile within a large polygon meets a few trapezoids; with more than this it has a boundary.
+  constexpr std::size_t kMaxTrapezoids = 48;
+  struct Rows {
+    std::int32_t begin;
+    std::int32_t end;
+  };
+  std::array<Rows, kMaxTrapezoids> spanned;
+  std::size_t count = 0;
+  for (const TrapezoidRange& range : ranges) {
+    if (count + range.count > kMaxTrapezoids) return false;
+    for (const MeshTrapezoid& trapezoid : mesh.trapezoids.subspan(range.first, range.count)) {
+      const std::int32_t y0 = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
+      const std::int32_t y1 = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
+      if (y0 < y1 && spans(mesh, trapezoid, box, y0, y1)) spanned[count++] = {y0, y1};
+    }
+  }
+  std::sort(spanned.begin(), spanned.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Rows& a, const Rows& b) { return a.begin < b.begin; });
+  std::int32_t covered_to = box.min_y;
+  for (std::size_t i = 0; i < count && spanned[i].begin <= covered_to; ++i) {
+    covered_to = std::max(covered_to, spanned[i].end);
+  }
+  return count > 0 && covered_to >= box.max_y;
+}
+
+std::uint64_t order_key(const Box& box, Lifespan lifespan) {
+  const Point centre{static_cast<std::int32_t>((std::int64_t{box.min_x} + box.max_x) / 2),
+                     static_cast<std::int32_t>((std::int64_t{box.min_y} + box.max_y) / 2)};
+  return (std::uint64_t{lifespan_class(lifespan.dies)} << 32) | hilbert(centre);
+}
+
+MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
+                     std::span<const Lifespan> lifespans)
+    : range_(range), heights_(heights_over(range.count, kFanout)) {
+  std::vector<Entry> entries(heights_.back());
+  for (std::size_t i = 0; i < range.count; ++i) {
+    Entry& entry = entries[i / kFanout];
+    const std::size_t t = range.first + i;
+    entry.box.include(box_of(mesh, mesh.trapezoids[t]));
+    entry.min_born = std::min(entry.min_born, lifespans[t].born);
+    entry.max_dies = std::max(entry.max_dies, lifespans[t].dies);
+  }
+  for (std::size_t height = 1; height + 1 < heights_.size(); ++height) {
+    const std::size_t below = heights_[height - 1];
+    for (std::size_t i = below; i < heights_[height]; ++i) {
+      Entry& entry = entries[heights_[height] + (i - below) / kFanout];
+      entry.box.include(entries[i].box);
+      entry.min_born = std::min(entry.min_born, entries[i].min_born);
+      entry.max_dies = std::max(entry.max_dies, entries[i].max_dies);
+    }
+  }
+  entries_ = std::move(entries);
+}
+
+MeshIndex::MeshIndex(TrapezoidRange range, std::span<const Entry> entries)
+    : range_(range),
+      entries_(StoredArray<Entry>::looking_at(entries)),
+      heights_(heights_over(range.count, kFanout)) {
+  if (entries.size() != heights_.back()) {
+    throw std::invalid_argument("an index is not one over its trapezoids");
+  }
+}
+
+void MeshIndex::select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
+                       std::vector<TrapezoidRange>& ranges) const {
+  if (range_.count == 0) return;
+  descend(heights_.size() - 2, 0, Query{box, born, alive, lifespans, ranges});
+}
+
+void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
+  const Entry& entry = entries_[heights_[height] + index];
+  if (query.born < entry.min_born || query.alive >= entry.max_dies) return;
+  if (!entry.box.intersects(query.box)) return;
+  const std::size_t begin = index * kFanout;
+  if (height > 0) {
+    const std::size_t end = std::min(begin + kFanout, heights_[height] - heights_[height - 1]);
+    for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, query);
+    return;
+  }
+  const std::size_t end = std::min<std::size_t>(begin + kFanout, range_.count);
+  for (std::size_t i = range_.first + begin; i < range_.first + end; ++i) {
+    if (query.lifespans[i].born > query.born || query.lifespans[i].dies <= query.alive) continue;
+    const auto id = static_cast<std::uint32_t>(i);
+    if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {
+      ++query.ranges.back().count;
+    } else {
+      query.ranges.push_back({id, 1});
+    }
+  }
+}
+
+}  // namespace trapeze

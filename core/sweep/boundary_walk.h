@@ -1,0 +1,40 @@
+// From edge to edge along a boundary, written down as corners.
+#pragma once
+
+#include "core/graph/trapezoidal_graph.h"
+#include "core/sweep/boundary.h"
+
+namespace trapeze {
+
+struct BoundaryWalk {
+  bool is_loop;   // its last corner leads to its first
+  CornerId last;  // without a next one if it is no loop
+  VertexId end;   // where the edge of `last` ends
+};
+
+/// Walks from `start` along `first` and on along partner(v, e), the edge on which one leaves v
+/// having come by e, until there is none or it is `first` again. The corner that edge i leaves is
+/// corner i; each is linked to the one before and after it.
+template <typename Partner>
+BoundaryWalk walk_boundary(const Boundary& boundary, VertexId start, EdgeId first,
+                           const Partner& partner, Table<CornerId, Corner>& corners) {
+  VertexId v = start;
+  EdgeId e = first;
+  CornerId last;
+  do {
+    const CornerId c(e.value);
+    corners[c].vertex = v;
+    corners[c].edge = e;
+    corners[c].prev = last;
+    if (!last.is_none()) corners[last].next = c;
+    last = c;
+    v = boundary.edges[e].upper == v ? boundary.edges[e].lower : boundary.edges[e].upper;
+    e = partner(v, e);
+  } while (!e.is_none() && e != first);
+  if (e.is_none()) return {false, last, v};
+  corners[last].next = CornerId(first.value);
+  corners[CornerId(first.value)].prev = last;
+  return {true, last, v};
+}
+
+}  // namespace trapeze

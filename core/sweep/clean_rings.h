@@ -1,0 +1,15 @@
+// Removes from rings what has no area after snapping: duplicate points, spikes, collapsed rings.
+#pragma once
+
+#include <cstddef>
+
+#include "core/grid/rings.h"
+
+namespace trapeze {
+
+/// Drops consecutive duplicates (a repeated first point included) and spikes (a boundary that runs
+/// back over itself), then rings of fewer than three points. The set of points inside by even-odd
+/// does not change. Returns the number of rings that were dropped.
+std::size_t clean_rings(Rings& rings);
+
+}  // namespace trapeze

@@ -1,0 +1,54 @@
+#include "core/sweep/graph_builder.h"
+
+#include <utility>
+#include <vector>
+
+#include "core/sweep/clean_rings.h"
+#include "core/sweep/noding.h"
+
+namespace trapeze {
+
+BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
+  BuildOutcome outcome;
+  outcome.rings = rings.size();
+  outcome.collapsed_rings = clean_rings(rings);
+  if (rings.empty()) return outcome;
+
+  boundary_.assign(rings);
+  if (trapezoidation_.build(boundary_, graph)) {
+    if (boundary_.has_touches) {
+      loops_.trace(boundary_, graph);
+    } else {
+      loops_.take_rings(rings, boundary_, graph);
+    }
+    outcome.built = true;
+  } else {
+    outcome.noded = true;
+    outcome.built = build_noded(rings, graph, outcome);
+  }
+  outcome.vertices = outcome.built ? graph.vertex_count() : 0;
+  return outcome;
+}
+
+bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome) {
+  // The quick way is repeated while it may help; the thorough one is certain to be enough at once,
+  // and repeated only for safety.
+  constexpr int kQuickPasses = 3;
+  constexpr int kMaxPasses = 6;
+  std::vector<Segment> segments = segments_of(rings);
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    segments = node_segments(
+        segments, pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+    if (segments.empty()) return false;  // everything cancelled: no area
+    boundary_.assign(segments);
+    if (trapezoidation_.build(boundary_, graph)) {
+      loops_.trace(boundary_, graph);
+      return true;
+    }
+  }
+  outcome.failure =
+      "its rings still cross after " + std::to_string(kMaxPasses) + " passes of noding";
+  return false;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,41 @@
+// From the rings of one feature, whatever their state, to its trapezoidal graph.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/rings.h"
+#include "core/sweep/boundary.h"
+#include "core/sweep/boundary_loops.h"
+#include "core/sweep/trapezoidation.h"
+
+namespace trapeze {
+
+/// What happened to the rings of one feature on the way to its graph.
+struct BuildOutcome {
+  bool built = false;               // false: nothing left to draw, or failed
+  bool noded = false;               // rings crossed, touched or overlapped and were noded
+  std::size_t rings = 0;            // rings that came in
+  std::size_t collapsed_rings = 0;  // rings without area after snapping
+  std::size_t vertices = 0;         // vertices of the finished polygon
+  std::string failure;              // why it could not be built, empty otherwise
+};
+
+/// Reusable memory; one a thread.
+class GraphBuilder {
+ public:
+  /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed
+  /// rings; nodes crossings, touches and overlaps on the grid. `rings` are cleaned in place. Never
+  /// throws for bad geometry: `graph` is meaningful only if the outcome says built.
+  BuildOutcome build(Rings& rings, TrapezoidalGraph& graph);
+
+ private:
+  bool build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome);
+
+  Boundary boundary_;
+  Trapezoidation trapezoidation_;
+  BoundaryLoops loops_;
+};
+
+}  // namespace trapeze

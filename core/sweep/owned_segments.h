@@ -1,0 +1,24 @@
+// The segments of several features, each with the feature whose boundary it is a part of.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/rings.h"
+#include "core/sweep/noding.h"
+
+namespace trapeze {
+
+struct OwnedSegment {
+  Segment segment;          // upper end first
+  std::uint32_t owner = 0;  // the feature, by its position
+};
+
+/// All segments of the rings, feature by feature.
+std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features);
+
+/// By their ends in sweep order, then by owner: what coincides lies side by side.
+void sort_by_place(std::vector<OwnedSegment>& segments);
+
+}  // namespace trapeze

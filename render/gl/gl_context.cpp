@@ -1,0 +1,433 @@
+#include "render/gl/gl_context.h"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#ifdef TRAPEZE_HAVE_OSMESA
+#include <GL/osmesa.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+
+namespace trapeze {
+namespace {
+
+constexpr int kGlMajor = 4;
+constexpr int kGlMinor = 3;
+
+// Whether a blank-separated list of extensions names that one.
+bool has_extension(const char* extensions, std::string_view name) {
+  if (extensions == nullptr) return false;
+  std::string_view rest(extensions);
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(' '), rest.size());
+    if (rest.substr(0, end) == name) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+std::string to_lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+bool contains_in_any_case(std::string_view text, std::string_view part) {
+  return to_lower(text).find(to_lower(part)) != std::string::npos;
+}
+
+std::string text_or_empty(const void* text) {
+  return text == nullptr ? std::string() : std::string(static_cast<const char*>(text));
+}
+
+// --- EGL ------------------------------------------------------------------------------------
+
+std::string_view egl_error_name(EGLint error) {
+  switch (error) {
+    case EGL_SUCCESS:
+      return "no error given";
+    case EGL_NOT_INITIALIZED:
+      return "not initialized (missing driver or permission)";
+    case EGL_BAD_ACCESS:
+      return "access denied, or current on another thread";
+    case EGL_BAD_ALLOC:
+      return "out of resources";
+    case EGL_BAD_ATTRIBUTE:
+      return "bad attribute";
+    case EGL_BAD_CONFIG:
+      return "bad configuration";
+    case EGL_BAD_CONTEXT:
+      return "bad context";
+    case EGL_BAD_DISPLAY:
+      return "bad display";
+    case EGL_BAD_MATCH:
+      return "no such kind of context";
+    case EGL_BAD_PARAMETER:
+      return "bad parameter";
+    case EGL_CONTEXT_LOST:
+      return "context lost";
+    default:
+      return "unknown error";
+  }
+}
+
+[[noreturn]] void throw_egl_error(std::string_view what) {
+  const EGLint error = eglGetError();
+  std::array<char, 16> code{};
+  std::snprintf(code.data(), code.size(), "0x%04X", static_cast<unsigned>(error));
+  throw std::runtime_error(std::string(what) + " failed: " + std::string(egl_error_name(error)) +
+                           " (" + code.data() + ")");
+}
+
+template <typename Function>
+Function egl_function(const char* name) {
+  return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
+std::vector<EGLDeviceEXT> query_egl_devices() {
+  const auto query = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+  EGLint count = 0;
+  if (query == nullptr || query(0, nullptr, &count) != EGL_TRUE || count <= 0) return {};
+  std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+  if (query(count, devices.data(), &count) != EGL_TRUE || count < 0) return {};
+  devices.resize(static_cast<std::size_t>(count));
+  return devices;
+}
+
+std::string name_of_device(EGLDeviceEXT device, const char* extensions) {
+  const auto query = egl_function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  if (has_extension(extensions, "EGL_EXT_device_drm_render_node")) {
+    if (const char* file = query(device, EGL_DRM_RENDER_NODE_FILE_EXT)) return file;
+  }
+  if (has_extension(extensions, "EGL_EXT_device_drm")) {
+    if (const char* file = query(device, EGL_DRM_DEVICE_FILE_EXT)) return file;
+  }
+  if (has_extension(extensions, "EGL_EXT_device_query_name")) {
+    if (const char* name = query(device, EGL_RENDERER_EXT)) return name;
+  }
+  return {};
+}
+
+std::vector<ContextCandidate> list_egl_candidates() {
+  std::vector<ContextCandidate> candidates;
+  const auto query = egl_function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  if (query != nullptr) {
+    const std::vector<EGLDeviceEXT> devices = query_egl_devices();
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      const char* extensions = query(devices[i], EGL_EXTENSIONS);
+      const bool is_software = has_extension(extensions, "EGL_MESA_device_software");
+      candidates.push_back(
+          {is_software ? ContextPath::egl_software_device : ContextPath::egl_device,
+           static_cast<int>(i), name_of_device(devices[i], extensions)});
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.path < b.path; });
+  candidates.push_back({ContextPath::egl_surfaceless, -1, {}});
+  return candidates;
+}
+
+EGLDisplay display_of(const ContextCandidate& candidate) {
+  const auto get_display =
+      egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  if (get_display == nullptr) throw std::runtime_error("EGL has no platform displays");
+  if (candidate.path == ContextPath::egl_surfaceless) {
+    if (!has_extension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS),
+                       "EGL_MESA_platform_surfaceless")) {
+      throw std::runtime_error("EGL_MESA_platform_surfaceless is missing");
+    }
+    return get_display(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+  }
+  const std::vector<EGLDeviceEXT> devices = query_egl_devices();
+  const auto index = static_cast<std::size_t>(candidate.device_index);
+  if (candidate.device_index < 0 || index >= devices.size()) {
+    throw std::runtime_error("there is no such device");
+  }
+  return get_display(EGL_PLATFORM_DEVICE_EXT, devices[index], nullptr);
+}
+
+// A context of EGL, without any surface: the renderer draws into buffers of its own.
+class EglContext final : public GlContext {
+ public:
+  explicit EglContext(const ContextCandidate& candidate) : display_(display_of(candidate)) {
+    if (display_ == EGL_NO_DISPLAY) throw_egl_error("opening the display");
+    EGLint major = 0;
+    EGLint minor = 0;
+    if (eglInitialize(display_, &major, &minor) != EGL_TRUE) throw_egl_error("eglInitialize");
+    const char* extensions = eglQueryString(display_, EGL_EXTENSIONS);
+    if (!has_extension(extensions, "EGL_KHR_surfaceless_context") ||
+        !has_extension(extensions, "EGL_KHR_create_context")) {
+      throw std::runtime_error("the display cannot make contexts without a surface");
+    }
+    config_ = choose_config(extensions);
+    create(EGL_NO_CONTEXT, candidate);
+  }
+
+  ~EglContext() override {
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+  }
+
+  void make_current() override {
+    eglBindAPI(EGL_OPENGL_API);  // a setting of each thread
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
+      throw_egl_error("eglMakeCurrent");
+    }
+  }
+
+  void release() noexcept override {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
+
+  std::unique_ptr<GlContext> create_shared() override {
+    return std::unique_ptr<GlContext>(new EglContext(*this));
+  }
+
+ private:
+  EglContext(EglContext& other) : display_(other.display_), config_(other.config_) {
+    create(other.context_, other.info().candidate);
+  }
+
+  EGLConfig choose_config(const char* extensions) const {
+    if (has_extension(extensions, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
+    const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                       EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (eglChooseConfig(display_, wanted.data(), &config, 1, &count) != EGL_TRUE) {
+      throw_egl_error("eglChooseConfig");
+    }
+    if (count == 0) throw std::runtime_error("the display has no configuration for OpenGL");
+    return config;
+  }
+
+  void create(EGLContext share, const ContextCandidate& candidate) {
+    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) throw_egl_error("choosing desktop OpenGL");
+    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION_KHR,
+                                           kGlMajor,
+                                           EGL_CONTEXT_MINOR_VERSION_KHR,
+                                           kGlMinor,
+                                           EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
+                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
+                                           EGL_NONE};
+    context_ = eglCreateContext(display_, config_, share, attributes.data());
+    if (context_ == EGL_NO_CONTEXT) throw_egl_error("creating an OpenGL 4.3 core context");
+    try {
+      const CurrentContext current(*this);
+      inspect([](const char* name) { return GlFunctions::AnyFunction(eglGetProcAddress(name)); },
+              candidate);
+    } catch (...) {
+      eglDestroyContext(display_, context_);
+      throw;
+    }
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLConfig config_ = nullptr;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+// --- OSMesa ---------------------------------------------------------------------------------
+
+#ifdef TRAPEZE_HAVE_OSMESA
+
+class OsmesaContext final : public GlContext {
+ public:
+  explicit OsmesaContext(const ContextCandidate& candidate) { create(nullptr, candidate); }
+
+  ~OsmesaContext() override {
+    if (context_ != nullptr) OSMesaDestroyContext(context_);
+  }
+
+  void make_current() override {
+    if (OSMesaMakeCurrent(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE) {
+      throw std::runtime_error("OSMesaMakeCurrent failed");
+    }
+  }
+
+  void release() noexcept override { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+
+  std::unique_ptr<GlContext> create_shared() override {
+    return std::unique_ptr<GlContext>(new OsmesaContext(*this));
+  }
+
+ private:
+  OsmesaContext(OsmesaContext& other) { create(other.context_, other.info().candidate); }
+
+  void create(OSMesaContext share, const ContextCandidate& candidate) {
+    const std::array<int, 9> attributes{OSMESA_FORMAT,
+                                        OSMESA_RGBA,
+                                        OSMESA_PROFILE,
+                                        OSMESA_CORE_PROFILE,
+                                        OSMESA_CONTEXT_MAJOR_VERSION,
+                                        kGlMajor,
+                                        OSMESA_CONTEXT_MINOR_VERSION,
+                                        kGlMinor,
+                                        0};
+    context_ = OSMesaCreateContextAttribs(attributes.data(), share);
+    if (context_ == nullptr) {
+      throw std::runtime_error("creating an OpenGL 4.3 core context failed");
+    }
+    try {
+      const CurrentContext current(*this);
+      inspect([](const char* name) { return GlFunctions::AnyFunction(OSMesaGetProcAddress(name)); },
+              candidate);
+    } catch (...) {
+      OSMesaDestroyContext(context_);
+      throw;
+    }
+  }
+
+  OSMesaContext context_ = nullptr;
+  // OSMesa wants a window to draw into; nothing is ever drawn there.
+  std::array<unsigned char, 4> pixel_{};
+};
+
+#endif
+
+// --- Choosing -------------------------------------------------------------------------------
+
+std::optional<int> as_index(std::string_view text) {
+  int index = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc() || end != text.data() + text.size() || index < 0) return std::nullopt;
+  return index;
+}
+
+// Tries one candidate after another and keeps the reason of each failure.
+class Search {
+ public:
+  explicit Search(const std::function<void(std::unique_ptr<GlContext>)>& use) : use_(use) {}
+
+  // Takes the candidate if it opens, `refusal` has nothing to say against it, and it is of use.
+  template <typename Refusal>
+  void attempt(const ContextCandidate& candidate, Refusal refusal) {
+    try {
+      std::unique_ptr<GlContext> context = open_context(candidate);
+      const std::string reason = refusal(context->info());
+      if (!reason.empty()) throw std::runtime_error(reason);
+      use_(std::move(context));
+      result_.found = true;
+    } catch (const std::exception& error) {
+      fail(candidate.text(), error.what());
+    }
+  }
+
+  void fail(std::string candidate, std::string reason) {
+    result_.failures.push_back({std::move(candidate), std::move(reason)});
+  }
+
+  bool found() const { return result_.found; }
+  const ContextSearch& result() const { return result_; }
+
+ private:
+  const std::function<void(std::unique_ptr<GlContext>)>& use_;
+  ContextSearch result_;
+};
+
+void try_preferred(const std::vector<ContextCandidate>& candidates, const std::string& device,
+                   Search& search) {
+  const std::optional<int> index = as_index(device);
+  bool is_listed = false;
+  for (const ContextCandidate& candidate : candidates) {
+    if (search.found()) return;
+    if (index && candidate.device_index != *index) continue;
+    is_listed = true;
+    search.attempt(candidate, [&](const ContextInfo& info) -> std::string {
+      if (index || contains_in_any_case(candidate.device_name, device) ||
+          contains_in_any_case(info.renderer, device)) {
+        return {};
+      }
+      return "\"" + info.renderer + "\" is not the device \"" + device + "\"";
+    });
+  }
+  if (!is_listed) search.fail("device \"" + device + "\"", "there is no such device");
+}
+
+}  // namespace
+
+std::string_view name_of(ContextPath path) {
+  switch (path) {
+    case ContextPath::egl_device:
+      return "EGL device";
+    case ContextPath::egl_software_device:
+      return "EGL software device";
+    case ContextPath::egl_surfaceless:
+      return "EGL surfaceless";
+    case ContextPath::osmesa:
+      return "OSMesa";
+  }
+  return "unknown";
+}
+
+std::string ContextCandidate::text() const {
+  std::string text(name_of(path));
+  if (device_index >= 0) text.append(" ").append(std::to_string(device_index));
+  if (!device_name.empty()) text.append(" (").append(device_name).append(")");
+  return text;
+}
+
+bool ContextInfo::is_software() const {
+  const std::array<std::string_view, 3> names{"llvmpipe", "softpipe", "swrast"};
+  return std::any_of(names.begin(), names.end(), [this](std::string_view name) {
+    return renderer.find(name) != std::string::npos;
+  });
+}
+
+std::string ContextInfo::text() const {
+  return candidate.text() + ": " + renderer + " by " + vendor + ", OpenGL " + version;
+}
+
+void GlContext::inspect(GlFunctions::Lookup lookup, const ContextCandidate& candidate) {
+  gl_ = GlFunctions::load(lookup);
+  info_ = {candidate, text_or_empty(gl_.GetString(GL_VENDOR)),
+           text_or_empty(gl_.GetString(GL_RENDERER)), text_or_empty(gl_.GetString(GL_VERSION))};
+  GLint major = 0;
+  GLint minor = 0;
+  gl_.GetIntegerv(GL_MAJOR_VERSION, &major);
+  gl_.GetIntegerv(GL_MINOR_VERSION, &minor);
+  if (major < kGlMajor || (major == kGlMajor && minor < kGlMinor)) {
+    throw std::runtime_error("OpenGL 4.3 is needed, \"" + info_.renderer + "\" has " +
+                             info_.version);
+  }
+}
+
+std::vector<ContextCandidate> list_context_candidates() {
+  std::vector<ContextCandidate> candidates = list_egl_candidates();
+#ifdef TRAPEZE_HAVE_OSMESA
+  candidates.push_back({ContextPath::osmesa, -1, {}});
+#endif
+  return candidates;
+}
+
+std::unique_ptr<GlContext> open_context(const ContextCandidate& candidate) {
+  if (candidate.path != ContextPath::osmesa) return std::make_unique<EglContext>(candidate);
+#ifdef TRAPEZE_HAVE_OSMESA
+  return std::make_unique<OsmesaContext>(candidate);
+#else
+  throw std::runtime_error("built without OSMesa");
+#endif
+}
+
+ContextSearch use_first_context(const ContextRequest& request,
+                                const std::function<void(std::unique_ptr<GlContext>)>& use) {
+  std::vector<ContextCandidate> candidates = list_context_candidates();
+  std::erase_if(candidates, [&](const ContextCandidate& candidate) {
+    return candidate.path == ContextPath::osmesa ? !request.osmesa : !request.egl;
+  });
+  Search search(use);
+  if (candidates.empty()) search.fail("OSMesa", "built without OSMesa");
+  if (!request.device.empty()) try_preferred(candidates, request.device, search);
+  for (const ContextCandidate& candidate : candidates) {
+    if (search.found()) break;
+    search.attempt(candidate, [](const ContextInfo&) { return std::string(); });
+  }
+  return search.result();
+}
+
+}  // namespace trapeze

@@ -1,0 +1,116 @@
+// Headless OpenGL contexts, without a window system: EGL devices, EGL surfaceless, OSMesa.
+//
+// All are desktop OpenGL 4.3 core or later. EGL's default display is never asked for: it may start
+// looking for an X server. EGL displays are initialized once and stay so until the process ends,
+// since a display is one object in the whole process, whoever asked for it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/gl/gl_functions.h"
+
+namespace trapeze {
+
+enum class ContextPath { egl_device, egl_software_device, egl_surfaceless, osmesa };
+
+/// "EGL device", "EGL software device", "EGL surfaceless" or "OSMesa".
+std::string_view name_of(ContextPath path);
+
+/// A way to a context that may or may not work.
+struct ContextCandidate {
+  ContextPath path = ContextPath::egl_surfaceless;
+  int device_index = -1;    // place in EGL's own list of devices; -1 where there is no device
+  std::string device_name;  // device file, or what the driver says; may be empty
+
+  /// For messages, such as "EGL device 0 (/dev/dri/renderD128)".
+  std::string text() const;
+};
+
+/// What a context turned out to be.
+struct ContextInfo {
+  ContextCandidate candidate;
+  std::string vendor;
+  std::string renderer;
+  std::string version;
+
+  /// True if the processor draws.
+  bool is_software() const;
+  /// One line for logs.
+  std::string text() const;
+};
+
+/// Thread-safety: current on one thread at a time, on any thread; make_current and release are
+/// called on that thread. All contexts of one share group see the same buffers, textures and
+/// programs. A context may be destroyed on any thread while it is current on none, and in any order
+/// within its group.
+class GlContext {
+ public:
+  virtual ~GlContext() = default;
+
+  /// Throws std::runtime_error if the device is lost or the context is current elsewhere.
+  virtual void make_current() = 0;
+  virtual void release() noexcept = 0;
+  /// A further context of the same share group. Throws std::runtime_error.
+  virtual std::unique_ptr<GlContext> create_shared() = 0;
+
+  const GlFunctions& gl() const { return gl_; }
+  const ContextInfo& info() const { return info_; }
+
+ protected:
+  /// Fills gl_ and info_, and throws std::runtime_error unless this is OpenGL 4.3 or later. The
+  /// context is current.
+  void inspect(GlFunctions::Lookup lookup, const ContextCandidate& candidate);
+
+ private:
+  GlFunctions gl_;
+  ContextInfo info_;
+};
+
+/// Makes a context current for the time of a scope.
+class CurrentContext {
+ public:
+  explicit CurrentContext(GlContext& context) : context_(context) { context.make_current(); }
+  ~CurrentContext() { context_.release(); }
+  CurrentContext(const CurrentContext&) = delete;
+  CurrentContext& operator=(const CurrentContext&) = delete;
+
+ private:
+  GlContext& context_;
+};
+
+/// What there is to try, best first: hardware devices, software devices, surfaceless, OSMesa.
+std::vector<ContextCandidate> list_context_candidates();
+
+/// Opens that one; it is current nowhere afterwards. Throws std::runtime_error with the reason.
+std::unique_ptr<GlContext> open_context(const ContextCandidate& candidate);
+
+struct ContextRequest {
+  bool egl = true;
+  bool osmesa = true;
+  /// The device to prefer: its index in EGL's list, or a part of its name or of the renderer's
+  /// name, in any case. Empty: no preference. A device that is preferred but does not work is
+  /// reported, and the others are tried.
+  std::string device;
+};
+
+/// One candidate and why it was not taken.
+struct ContextFailure {
+  std::string candidate;
+  std::string reason;
+};
+
+struct ContextSearch {
+  bool found = false;
+  std::vector<ContextFailure> failures;
+};
+
+/// Opens one candidate after another and hands each that opens to `use`, until one is taken without
+/// an exception. Never throws because of a candidate or its use: the reason is kept.
+ContextSearch use_first_context(const ContextRequest& request,
+                                const std::function<void(std::unique_ptr<GlContext>)>& use);
+
+}  // namespace trapeze

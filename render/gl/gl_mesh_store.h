@@ -1,0 +1,72 @@
+// The trapezoids of meshes in the memory of a GL device, uploaded once for a whole share group.
+//
+// A trapezoid is stored with its own copy of the ten integers that make it up (levels of top and
+// bottom, both ends of both sides): 40 bytes, read in one place, where three indexed arrays would
+// take about 30 and four dependent reads. Meshes are cut into chunks of equal numbers of
+// trapezoids, uploaded when they are first drawn; so no index outgrows 32 bits and no buffer the
+// limits of the device, however large the mesh.
+//
+// Thread-safety: all functions may be called from all threads; those that take `gl` need a context
+// of the share group current on the calling thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "core/mesh/trapezoid_mesh.h"
+#include "render/gl/gl_functions.h"
+
+namespace trapeze {
+
+class GlMeshStore {
+ public:
+  static constexpr int kTexelsPerTrapezoid = 5;  // of two 32-bit integers each
+
+  struct Chunk {
+    GLuint buffer = 0;
+    GLuint texture = 0;  // a buffer texture, GL_RG32I
+  };
+  using ChunkPointer = std::shared_ptr<const Chunk>;
+
+  explicit GlMeshStore(const GlFunctions& gl);
+
+  /// Trapezoids in a chunk: chunk i begins at trapezoid i * chunk_size().
+  std::uint32_t chunk_size() const { return chunk_size_; }
+
+  /// That chunk, ready to be drawn from in any context of the group. Throws std::runtime_error if
+  /// the device has no memory left.
+  ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index);
+
+  /// The buffer of that chunk of a mesh that changes: it has room for chunk_size() trapezoids,
+  /// which the caller writes. Nobody may draw from it meanwhile, and draws that follow find the
+  /// chunk under the id. Throws like chunk().
+  GLuint changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
+
+  /// Lets go of the chunks of a mesh; a draw in progress still finds those that it holds.
+  void forget(std::uint64_t mesh_id);
+
+  /// Gives the memory of chunks that were let go of back to the device.
+  void delete_forgotten(const GlFunctions& gl);
+
+ private:
+  // Names of chunks that nobody holds any more, until a thread with a context comes by.
+  struct Graveyard {
+    std::mutex mutex;
+    std::vector<GLuint> buffers;
+    std::vector<GLuint> textures;
+  };
+
+  ChunkPointer& place(std::uint64_t mesh_id, std::uint32_t index);
+  ChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids) const;
+  ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;
+
+  std::uint32_t chunk_size_ = 0;
+  std::shared_ptr<Graveyard> graveyard_ = std::make_shared<Graveyard>();
+  std::mutex mutex_;
+  std::unordered_map<std::uint64_t, std::vector<ChunkPointer>> meshes_;  // by MeshView::id
+};
+
+}  // namespace trapeze

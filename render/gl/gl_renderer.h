@@ -1,0 +1,114 @@
+// Draws coverage with OpenGL: exact area, not multisampling. See gl_shader.h for how.
+//
+// A compute shader adds areas up as integers in a buffer, which is read back and summed up to 8
+// bits here. Rasterizing strips and points with additive blending gives the same pictures, but
+// costs a software device ten times as much for each trapezoid.
+//
+// On a GPU tasks that are drawn together share one buffer, one after the other: the fixed cost of a
+// pass, which is what a light tile costs, is paid once for all. A processor draws one task at a
+// time: it pays little for a pass, and the differences of one picture stay in its cache.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/coverage/coverage.h"
+#include "render/gl/gl_context.h"
+#include "render/gl/gl_mesh_store.h"
+
+namespace trapeze {
+
+/// The context is current only inside of draw, so the renderer may move between threads.
+class GlRenderer final : public CoverageRenderer {
+ public:
+  /// `store` is that of the context's share group. Throws std::runtime_error if the device cannot
+  /// do what is needed.
+  GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMeshStore> store);
+  ~GlRenderer() override;
+  GlRenderer(const GlRenderer&) = delete;
+  GlRenderer& operator=(const GlRenderer&) = delete;
+
+  using CoverageRenderer::draw;
+  DrawTimes draw(std::span<const CoverageTask> tasks) override;
+  bool gains_by_company() const override { return gains_by_company_; }
+  /// Has tasks drawn together, or one at a time, instead of as it suits the device.
+  void set_company(bool gains) { gains_by_company_ = gains; }
+  void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
+  std::string_view name() const override;
+  std::string description() const override { return context_->info().text(); }
+
+  GlContext& context() { return *context_; }
+
+ private:
+  struct Program {
+    GLuint name = 0;
+    GLint first = -1;
+    GLint count = -1;
+    GLint origin = -1;
+    GLint pixels_per_cell = -1;
+    GLint first_row = -1;
+    GLint size = -1;
+    GLint place = -1;
+  };
+
+  // Some rows of a picture; all of them if the buffer has room.
+  struct Band {
+    const CoverageTask* task = nullptr;
+    int first_row = 0;
+    int rows = 0;
+    std::size_t place = 0;  // of its first pixel in the buffer
+
+    std::size_t pixels() const {
+      return static_cast<std::size_t>(task->view.width) * static_cast<std::size_t>(rows);
+    }
+  };
+
+  // Some of indices_, drawn by one call: trapezoids of one chunk of a mesh.
+  struct Batch {
+    std::size_t band = 0;
+    std::uint64_t mesh_id = 0;
+    std::uint32_t number = 0;  // of the chunk
+    GlMeshStore::ChunkPointer chunk;
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+
+  Program make_program();
+  void delete_objects() noexcept;
+  void draw_task(const CoverageTask& task, DrawTimes& times);
+  void draw_band(Band band, DrawTimes& times);
+  void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count,
+              DrawTimes& times);
+  void run_pass(DrawTimes& times);
+  void unmap();
+  void finish_pass(DrawTimes& times);
+  void set_last_band_aside(DrawTimes& times);
+  void prepare_buffers();
+  void run_batches();
+  void set_band(const Band& band);
+  void resolve(const Band& band);
+
+  std::unique_ptr<GlContext> context_;
+  std::shared_ptr<GlMeshStore> store_;
+  const GlFunctions& gl_;
+  bool gains_by_company_;
+  Program program_;
+  std::size_t room_ = 0;  // pixels in a pass
+  GLuint index_buffer_ = 0;
+  GLuint differences_buffer_ = 0;
+  std::size_t differences_size_ = 0;  // pixels; all are zero between passes
+
+  // Of the pass being put together.
+  std::vector<std::uint32_t> indices_;
+  std::vector<Batch> batches_;
+  std::vector<Band> bands_;
+  std::size_t used_ = 0;                 // pixels
+  std::span<std::int32_t> differences_;  // mapped
+  std::vector<std::int64_t> sums_;       // of earlier passes, of the first band; or empty
+  std::vector<float> row_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,140 @@
+#include "render/gl/gl_shader.h"
+
+namespace trapeze::gl_shader {
+namespace {
+
+// Levels are heights in pixels counted from the top of the band of rows that is drawn. Coordinates
+// named "local" are pixels counted from the corner of a whole pixel beside the side, so that single
+// precision is relative to that and not to the picture.
+constexpr const char* kTrapezoid = R"(
+layout(binding = 0) uniform isamplerBuffer trapezoids;
+layout(std430, binding = INDICES) readonly buffer Indices { uint indices[]; };
+layout(std430, binding = DIFFERENCES) buffer Differences { int differences[]; };
+
+uniform uint first;             // of the indices
+uniform uint count;             // of them
+uniform dvec2 origin;           // of the picture, in cells
+uniform double pixels_per_cell;
+uniform double first_row;       // of the band, in the picture
+uniform ivec2 size;             // of the band, in pixels
+uniform int place;              // of its first pixel among the differences
+
+struct Side {
+  float x;      // a point of the line; local
+  float y;
+  float slope;  // pixels east for each one south
+  int column;   // where local coordinates begin
+};
+
+// A line that comes from beyond the picture is seen from where it enters; one that never does is
+// replaced by a vertical line beyond the border, which covers the same pixels.
+Side side_at(int ends, dvec2 levels, double row) {
+  dvec2 upper = dvec2(texelFetch(trapezoids, ends).xy);
+  dvec2 along = dvec2(texelFetch(trapezoids, ends + 1).xy) - upper;
+  double slope = along.x / along.y;
+  dvec2 start = (upper - origin) * pixels_per_cell - dvec2(0.0LF, first_row);
+  double x_top = start.x + (levels.x - start.y) * slope;
+  double x = clamp(x_top, -1.0LF, double(size.x) + 1.0LF);
+  double y = levels.x;
+  if (x != x_top) {
+    double down = (x - x_top) / slope;
+    if (down >= 0.0LF && down <= levels.y - levels.x) {
+      y += down;
+    } else {
+      slope = 0.0LF;
+    }
+  }
+  double column = floor(clamp(x, 0.0LF, double(size.x)));
+  return Side(float(x - column), float(y - row), float(slope), int(column));
+}
+
+float x_at(Side side, float y) {
+  return side.x + (y - side.y) * side.slope;
+}
+
+// Of a row in which a side runs from low to high: the part of the pixel at `column` and of all west
+// of it that lies east of the side, as a share of the row's height. All local.
+float share_up_to(int column, float low, float high) {
+  float span = high - low;
+  float east = float(column) + 1.0;
+  // There the quotient loses more digits than the bend is worth.
+  if (span < 1e-3) return clamp(east - 0.5 * (low + high), 0.0, 1.0);
+  vec2 u = vec2(east - low, east - high);
+  vec2 within = clamp(u, 0.0, 1.0);
+  vec2 integral = 0.5 * within * within + max(u - 1.0, 0.0);
+  return (integral.x - integral.y) / span;
+}
+
+// Adds what lies east of a side in one row. `cells` is where the row begins; the height of the row
+// that the trapezoid has is given in units, and so is `whole`, which is that height rounded.
+void add_row(Side side, int sign, float from_x, float to_x, int cells, float height, float rounding,
+             int whole) {
+  float low = min(from_x, to_x);
+  float high = max(from_x, to_x);
+  int west_end = -side.column;
+  int east_end = size.x - side.column;
+  int column = int(clamp(floor(low), float(west_end), float(east_end)));
+  int last = int(clamp(floor(high), float(west_end), float(east_end)));
+  if (column >= east_end) return;
+  cells += side.column;
+  int sum = int(height * share_up_to(column, low, high) + rounding);
+  atomicAdd(differences[cells + column], sign * sum);
+  for (++column; column <= last && column < east_end; ++column) {
+    int next = int(height * share_up_to(column, low, high) + rounding);
+    atomicAdd(differences[cells + column], sign * (next - sum));
+    sum = next;
+  }
+  if (column < east_end) atomicAdd(differences[cells + column], sign * (whole - sum));
+}
+
+// From 0 to 1, the same for both sides of a trapezoid and wherever in the mesh it is.
+float rounding_of(ivec2 top_and_bottom, ivec2 north_west) {
+  uvec2 mixed = uvec2(top_and_bottom.x, north_west.x) * uvec2(2654435769u, 2246822519u);
+  return float(((mixed.x ^ mixed.y) * 3266489917u) >> 8) * (1.0 / 16777216.0);
+}
+
+void main() {
+  if (gl_GlobalInvocationID.x >= 2u * count) return;
+  uint index = indices[first + (gl_GlobalInvocationID.x >> 1)];
+  bool is_right = (gl_GlobalInvocationID.x & 1u) != 0u;
+  int sign = is_right ? -1 : 1;
+  int texel = int(index) * 5;
+  ivec2 top_and_bottom = texelFetch(trapezoids, texel).xy;
+  dvec2 levels = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell - first_row;
+  levels = dvec2(max(levels.x, 0.0LF), min(levels.y, double(size.y)));
+  if (levels.x >= levels.y) return;
+
+  double row = floor(levels.x);
+  Side side = side_at(texel + (is_right ? 3 : 1), levels, row);
+  float rounding = rounding_of(top_and_bottom, texelFetch(trapezoids, texel + 1).xy);
+  int cells = place + int(row) * size.x;
+  float y = float(levels.x - row);
+  float bottom = float(levels.y - row);
+  float x = x_at(side, y);
+  while (y < bottom) {
+    float next_y = min(floor(y) + 1.0, bottom);
+    float next_x = x_at(side, next_y);
+    float height = (next_y - y) * UNITS;
+    int whole = int(height + rounding);
+    add_row(side, sign, x, next_x, cells, height, rounding, whole);
+    y = next_y;
+    x = next_x;
+    cells += size.x;
+  }
+}
+)";
+
+std::string define(const char* name, const std::string& value) {
+  return std::string("#define ") + name + ' ' + value + '\n';
+}
+
+}  // namespace
+
+std::string source() {
+  return "#version 430 core\n" + define("UNITS", std::to_string(kUnitsPerPixel) + ".0") +
+         define("INDICES", std::to_string(kIndicesBinding)) +
+         define("DIFFERENCES", std::to_string(kDifferencesBinding)) +
+         "layout(local_size_x = " + std::to_string(kGroup) + ") in;\n" + kTrapezoid;
+}
+
+}  // namespace trapeze::gl_shader

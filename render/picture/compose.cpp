@@ -1,0 +1,496 @@
+#include "render/picture/compose.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kLevels = 256;
+
+// Premultiplied, 0..1.
+struct Paint {
+  float r = 0;
+  float g = 0;
+  float b = 0;
+  float a = 0;
+  // Within a layer only: how much of the pixel its classes cover, and how many there are.
+  float covered = 0;
+  float classes = 0;
+};
+
+Paint to_paint(Rgba colour, float coverage) {
+  const float a = static_cast<float>(colour.a) / 255.0f * coverage;
+  const float scale = a / 255.0f;
+  return {static_cast<float>(colour.r) * scale, static_cast<float>(colour.g) * scale,
+          static_cast<float>(colour.b) * scale, a};
+}
+
+// `above` times a factor, and `below` times a factor.
+Paint mixed(const Paint& above, float of_above, const Paint& below, float of_below) {
+  return {above.r * of_above + below.r * of_below,
+          above.g * of_above + below.g * of_below,
+          above.b * of_above + below.b * of_below,
+          above.a * of_above + below.a * of_below,
+          below.covered,
+          below.classes};
+}
+
+Paint over(const Paint& above, const Paint& below) {
+  return mixed(above, 1, below, 1.0f - above.a);
+}
+
+Paint beside(const Paint& one, float coverage, const Paint& other) {
+  Paint sum = mixed(one, 1, other, 1);
+  sum.covered += coverage;
+  sum.classes += 1;
+  return sum;
+}
+
+// A pattern's paint, wherever the classes below it are.
+Paint within(const Paint& above, const Paint& below) {
+  return mixed(above, below.covered, below, 1.0f - above.a);
+}
+
+// Where classes overlap, each has its share. And where they join, each level was rounded; the pixel
+// is wholly covered all the same.
+Paint settled(const Paint& sum) {
+  constexpr float kHalfLevel = 0.501f / 255;  // and what the sum lost in rounding
+  const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfLevel * sum.classes;
+  if (!is_whole && sum.covered <= 1) return sum;
+  const float share = 1 / sum.covered;
+  Paint paint = mixed(sum, share, {}, 0);
+  paint.covered = 1;
+  return paint;
+}
+
+std::uint8_t to_byte(float share) {
+  return static_cast<std::uint8_t>(std::clamp(share, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+
+Rgba to_rgba(const Paint& paint) {
+  const std::uint8_t a = to_byte(paint.a);
+  if (a == 0) return kTransparent;
+  const float scale = 1.0f / paint.a;
+  return {to_byte(paint.r * scale), to_byte(paint.g * scale), to_byte(paint.b * scale), a};
+}
+
+// The paint of one class at every level of coverage.
+std::array<Paint, kLevels> paints_of(Rgba colour, float opacity = 1) {
+  std::array<Paint, kLevels> paints;
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    paints[level] = to_paint(colour, static_cast<float>(level) / 255.0f * opacity);
+  }
+  return paints;
+}
+
+float share_of(std::uint8_t level) {
+  return static_cast<float>(level) / 255.0f;
+}
+
+std::uint32_t to_bits(Rgba colour) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &colour, sizeof bits);
+  return bits;
+}
+
+// Eight pixels at once: most of a tile is flat.
+constexpr std::size_t kBlock = 8;
+constexpr std::uint64_t kEachByte = 0x0101010101010101;
+
+std::uint64_t block_at(const std::uint8_t* levels) {
+  std::uint64_t block = 0;
+  std::memcpy(&block, levels, sizeof block);
+  return block;
+}
+
+// From keys to numbers, by open addressing.
+class NumberTable {
+ public:
+  NumberTable() : slots_(512) {}
+
+  // The number of the key; 0, to be set, if it is new.
+  std::uint32_t& operator[](std::uint64_t key) {
+    if (count_ * 2 >= slots_.size()) grow();
+    Slot& slot = find(key);
+    if (slot.generation != generation_) {
+      slot = {key, 0, generation_};
+      ++count_;
+    }
+    return slot.number;
+  }
+
+  // Forgets all keys.
+  void clear() {
+    count_ = 0;
+    if (++generation_ != 0) return;
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+    generation_ = 1;
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    std::uint32_t number = 0;
+    std::uint32_t generation = 0;  // it is empty if this is not the table's
+  };
+
+  Slot& find(std::uint64_t key) {
+    std::size_t i = (key * 0x9e3779b97f4a7c15) >> 40 & (slots_.size() - 1);
+    while (slots_[i].generation == generation_ && slots_[i].key != key) {
+      i = (i + 1) & (slots_.size() - 1);
+    }
+    return slots_[i];
+  }
+
+  void grow() {
+    std::vector<Slot> old(slots_.size() * 2);
+    old.swap(slots_);
+    for (const Slot& slot : old) {
+      if (slot.generation == generation_) find(slot.key) = slot;
+    }
+  }
+
+  std::vector<Slot> slots_;
+  std::size_t count_ = 0;
+  std::uint32_t generation_ = 1;
+};
+
+}  // namespace
+
+// A picture being painted. Pixels that have met the same paints at the same levels share a mixture,
+// so that colours are computed once a mixture and not once a pixel; and a block of pixels that are
+// all the same is looked at as one.
+class Composer::Canvas {
+ public:
+  void begin(int width, int height, Rgba background) {
+    width_ = width;
+    height_ = height;
+    size_ = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    mixtures_.assign(1, to_paint(background, 1));
+    blocks_.assign((size_ + kBlock - 1) / kBlock, 0);
+    pixels_.resize(blocks_.size() * kBlock);
+  }
+
+  /// Changes every pixel, by mix(mixture, level). Nothing is changed where the level is 0.
+  template <typename Mix>
+  void paint(const Coverage* coverage, const Mix& mix) {
+    if (coverage == nullptr) {
+      for (Paint& mixture : mixtures_) mixture = mix(mixture, std::uint8_t{255});
+      return;
+    }
+    mixed_.clear();
+    rows_.clear();
+    row_of_.assign(mixtures_.size(), kNoRow);
+    const std::uint8_t* levels = coverage->pixels().data();
+    const std::size_t whole_blocks = size_ / kBlock;
+    for (std::size_t i = 0; i < whole_blocks; ++i, levels += kBlock) paint_block(i, levels, mix);
+    if (whole_blocks < blocks_.size()) {
+      std::array<std::uint8_t, kBlock> rest{};
+      std::copy_n(levels, size_ - whole_blocks * kBlock, rest.begin());
+      paint_block(whole_blocks, rest.data(), mix);
+    }
+    last_key_ = 0;  // what it stands for ends with the layer
+  }
+
+  /// Changes every pixel, by mix(mixture, level, level of the pattern). Nothing is changed where
+  /// the level is 0.
+  template <typename Mix>
+  void paint(const Coverage* coverage, const Coverage& pattern, const Mix& mix) {
+    mixed_.clear();
+    last_key_ = 0;
+    const std::uint8_t* patterns = pattern.pixels().data();
+    const std::uint8_t* levels = coverage == nullptr ? nullptr : coverage->pixels().data();
+    for (std::size_t i = 0; i < size_; i += kBlock) {
+      const std::size_t count = std::min(kBlock, size_ - i);
+      const bool is_empty = levels != nullptr && count == kBlock && block_at(levels + i) == 0;
+      if (is_empty) continue;
+      std::uint32_t& block = blocks_[i / kBlock];
+      if (block != kMixed) std::fill_n(pixels_.data() + i, kBlock, block);
+      block = kMixed;
+      for (std::size_t k = i; k < i + count; ++k) {
+        const std::uint8_t level = levels == nullptr ? 255 : levels[k];
+        if (level == 0) continue;
+        const std::uint32_t below = pixels_[k];
+        pixels_[k] = number_of(std::uint64_t{below} << 16 | std::uint64_t{level} << 8 | patterns[k],
+                               [&] { return mix(mixtures_[below], level, patterns[k]); });
+      }
+    }
+    last_key_ = 0;
+  }
+
+  /// Changes the mixtures themselves, by change(mixture).
+  template <typename Change>
+  void change_all(const Change& change) {
+    for (Paint& mixture : mixtures_) mixture = change(mixture);
+  }
+
+  /// Paints another canvas of the same size over this one, with that opacity.
+  void paint_over(const Canvas& other, float opacity) {
+    mixed_.clear();
+    last_key_ = 0;
+    const auto mix_pixel = [&](std::uint32_t below, std::uint32_t above) {
+      // Counted from 1, so that no key is that of nothing.
+      return number_of(std::uint64_t{below} << 32 | (above + 1), [&] {
+        return over(mixed(other.mixtures_[above], opacity, {}, 0), mixtures_[below]);
+      });
+    };
+    const bool begins_empty = other.mixtures_[0].a == 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const std::uint32_t above = other.blocks_[i];
+      if (above == 0 && begins_empty) continue;
+      if (above != kMixed && blocks_[i] != kMixed) {
+        blocks_[i] = mix_pixel(blocks_[i], above);
+        continue;
+      }
+      std::uint32_t* pixels = pixels_.data() + i * kBlock;
+      const std::uint32_t* others = other.pixels_.data() + i * kBlock;
+      if (blocks_[i] != kMixed) std::fill_n(pixels, kBlock, blocks_[i]);
+      blocks_[i] = kMixed;
+      for (std::size_t k = 0; k < kBlock; ++k) {
+        pixels[k] = mix_pixel(pixels[k], above == kMixed ? others[k] : above);
+      }
+    }
+    last_key_ = 0;
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  void finish(Picture& picture) {
+    picture.width = width_;
+    picture.height = height_;
+    picture.palette.clear();
+    picture.indices.clear();
+    picture.pixels.clear();
+    if (!to_indices(picture)) to_colours(picture);
+  }
+
+ private:
+  static constexpr std::uint32_t kMixed = 0xffffffff;  // a block of several mixtures
+  static constexpr std::uint16_t kNoIndex = 0xffff;    // a mixture that was not met yet
+  static constexpr std::uint32_t kNoRow = 0xffffffff;
+  static constexpr std::size_t kMostRows = 1024;  // a megabyte
+
+  template <typename Mix>
+  void paint_block(std::size_t i, const std::uint8_t* levels, const Mix& mix) {
+    const std::uint64_t block = block_at(levels);
+    if (block == 0) return;
+    std::uint32_t& mixture = blocks_[i];
+    if (mixture != kMixed && block == (block & 0xff) * kEachByte) {
+      mixture = mixture_for(mixture, levels[0], mix);
+      return;
+    }
+    std::uint32_t* pixels = pixels_.data() + i * kBlock;
+    if (mixture != kMixed) std::fill_n(pixels, kBlock, mixture);
+    mixture = kMixed;
+    for (std::size_t k = 0; k < kBlock; ++k) {
+      if (levels[k] != 0) pixels[k] = mixture_for(pixels[k], levels[k], mix);
+    }
+  }
+
+  // What becomes of a mixture at that level.
+  template <typename Mix>
+  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t level, const Mix& mix) {
+    std::uint32_t& row = row_of_[below];
+    if (row == kNoRow) {
+      if (rows_.size() == kMostRows * kLevels) {
+        return number_of(std::uint64_t{below} << 8 | level,
+                         [&] { return mix(mixtures_[below], level); });
+      }
+      row = static_cast<std::uint32_t>(rows_.size());
+      rows_.resize(rows_.size() + kLevels);
+    }
+    std::uint32_t& number = rows_[row + level];
+    if (number == 0) number = add(mix(mixtures_[below], level));
+    return number;
+  }
+
+  std::uint32_t add(const Paint& mixture) {
+    mixtures_.push_back(mixture);
+    return static_cast<std::uint32_t>(mixtures_.size() - 1);
+  }
+
+  // The mixture of that key, which make() makes if it is new.
+  template <typename Make>
+  std::uint32_t number_of(std::uint64_t key, const Make& make) {
+    if (key == last_key_) return last_mixture_;
+    std::uint32_t& number = mixed_[key];
+    if (number == 0) number = add(make());
+    last_key_ = key;
+    return last_mixture_ = number;
+  }
+
+  // False if there are too many colours.
+  bool to_indices(Picture& picture) {
+    index_of_.assign(mixtures_.size(), kNoIndex);
+    indices_by_colour_.clear();
+    picture.indices.resize(pixels_.size());
+    const bool is_done = translate(picture.indices.data(), [&](std::uint32_t mixture) {
+      std::uint16_t& index = index_of_[mixture];
+      if (index == kNoIndex) index = index_of(to_rgba(mixtures_[mixture]), picture.palette);
+      return index;
+    });
+    picture.indices.resize(is_done ? size_ : 0);
+    if (!is_done) picture.palette.clear();
+    return is_done;
+  }
+
+  void to_colours(Picture& picture) {
+    colours_.resize(mixtures_.size());
+    std::transform(mixtures_.begin(), mixtures_.end(), colours_.begin(), to_rgba);
+    picture.pixels.resize(pixels_.size());
+    translate(picture.pixels.data(), [&](std::uint32_t mixture) { return colours_[mixture]; });
+    picture.pixels.resize(size_);
+  }
+
+  // kLevels if the palette is full.
+  std::uint16_t index_of(Rgba colour, std::vector<Rgba>& palette) {
+    std::uint32_t& number = indices_by_colour_[to_bits(colour)];  // counted from 1
+    if (number == 0) {
+      if (palette.size() == kLevels) return kLevels;
+      palette.push_back(colour);
+      number = static_cast<std::uint32_t>(palette.size());
+    }
+    return static_cast<std::uint16_t>(number - 1);
+  }
+
+  // Writes what `value_of` says of every pixel's mixture. Ends, false, when that is kLevels.
+  template <typename T, typename ValueOf>
+  bool translate(T* out, ValueOf value_of) const {
+    for (std::size_t i = 0; i < blocks_.size(); ++i, out += kBlock) {
+      const std::uint32_t* pixels = pixels_.data() + i * kBlock;
+      const std::size_t count = blocks_[i] == kMixed ? kBlock : 1;
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto value = value_of(count == 1 ? blocks_[i] : pixels[k]);
+        if constexpr (std::is_integral_v<T>) {
+          if (value == kLevels) return false;
+        }
+        out[k] = static_cast<T>(value);
+      }
+      if (count == 1) std::fill_n(out + 1, kBlock - 1, out[0]);
+    }
+    return true;
+  }
+
+  int width_ = 0;
+  int height_ = 0;
+  std::size_t size_ = 0;               // in pixels
+  std::vector<Paint> mixtures_;        // of number 0: what it begins with
+  std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
+  std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
+  // For the layer of now: what becomes of a mixture at each level, and where to look for that by
+  // mixture; of mixtures beyond the first so many, by mixture below and level.
+  std::vector<std::uint32_t> rows_;
+  std::vector<std::uint32_t> row_of_;
+  NumberTable mixed_;
+  std::uint64_t last_key_ = 0;
+  std::uint32_t last_mixture_ = 0;
+  std::vector<std::uint16_t> index_of_;  // by mixture
+  std::vector<Rgba> colours_;            // by mixture
+  NumberTable indices_by_colour_;
+};
+
+namespace {
+
+void require_size(const Coverage* coverage, int width, int height) {
+  if (coverage == nullptr) return;
+  if (coverage->width() != width || coverage->height() != height) {
+    throw std::invalid_argument("a coverage is not as large as the picture");
+  }
+}
+
+void require_size(const PaintedLayer& layer, int width, int height) {
+  for (const PaintedClass& one : layer.classes) require_size(one.coverage, width, height);
+  for (const PaintedClass& one : layer.lines) require_size(one.coverage, width, height);
+  require_size(layer.pattern, width, height);
+}
+
+/// How a colour is laid over what is there.
+auto laid_over(Rgba colour, double opacity = 1) {
+  return [paints = paints_of(colour, static_cast<float>(opacity))](
+             const Paint& below, std::uint8_t level) { return over(paints[level], below); };
+}
+
+/// How a colour with the layer's pattern in it is laid over what is there.
+auto patterned(Rgba colour, const PaintedLayer& layer) {
+  return [fills = paints_of(colour), patterns = paints_of(layer.pattern_colour),
+          opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t level,
+                                                       std::uint8_t pattern_level) {
+    const Paint fill = beside(fills[level], share_of(level), {});
+    return over(mixed(within(patterns[pattern_level], fill), opacity, {}, 0), below);
+  };
+}
+
+}  // namespace
+
+Rgba Picture::at(int column, int row) const {
+  const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(column);
+  return is_indexed() ? palette[indices[i]] : pixels[i];
+}
+
+std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes) {
+  std::vector<PaintedLayer> layers(classes.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) layers[i].classes = classes.subspan(i, 1);
+  return layers;
+}
+
+Composer::Composer() : canvas_(std::make_unique<Canvas>()), layer_(std::make_unique<Canvas>()) {}
+Composer::~Composer() = default;
+Composer::Composer(Composer&&) noexcept = default;
+Composer& Composer::operator=(Composer&&) noexcept = default;
+
+void Composer::compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
+                       Picture& picture) {
+  canvas_->begin(width, height, background);
+  for (const PaintedLayer& layer : layers) {
+    require_size(layer, width, height);
+    paint(layer);
+  }
+  canvas_->finish(picture);
+}
+
+void Composer::paint(const PaintedLayer& layer) {
+  const bool is_separable = layer.lines.empty() || layer.opacity == 1;
+  if (layer.classes.size() > 1 || !is_separable) return paint_together(layer);
+  for (const PaintedClass& only : layer.classes) {
+    if (layer.pattern != nullptr) {
+      canvas_->paint(only.coverage, *layer.pattern, patterned(only.colour, layer));
+    } else if (only.colour.a > 0) {
+      canvas_->paint(only.coverage, laid_over(only.colour, layer.opacity));
+    }
+  }
+  for (const PaintedClass& line : layer.lines) {
+    canvas_->paint(line.coverage, laid_over(line.colour));
+  }
+}
+
+void Composer::paint_together(const PaintedLayer& layer) {
+  layer_->begin(canvas_->width(), canvas_->height(), kTransparent);
+  for (const PaintedClass& one : layer.classes) {
+    layer_->paint(one.coverage,
+                  [paints = paints_of(one.colour)](const Paint& below, std::uint8_t level) {
+                    return beside(paints[level], share_of(level), below);
+                  });
+  }
+  layer_->change_all(settled);
+  if (layer.pattern != nullptr) {
+    layer_->paint(layer.pattern, [paints = paints_of(layer.pattern_colour)](const Paint& below,
+                                                                            std::uint8_t level) {
+      return within(paints[level], below);
+    });
+  }
+  for (const PaintedClass& line : layer.lines) {
+    layer_->paint(line.coverage, laid_over(line.colour));
+  }
+  canvas_->paint_over(*layer_, static_cast<float>(layer.opacity));
+}
+
+}  // namespace trapeze

@@ -1,0 +1,75 @@
+// From coverages and colours to a picture.
+//
+// Composition is "source over" in sRGB values, as browsers do it, in floating point, rounded once.
+// Classes of one layer are summed by area instead, so that neighbours leave no line between them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "render/coverage/coverage.h"
+#include "render/picture/colour.h"
+
+namespace trapeze {
+
+/// A picture in one of two forms: a palette with one index a pixel, or, where the palette is empty,
+/// one colour a pixel. Row 0 is the northernmost; colours are not premultiplied.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<Rgba> palette;          // at most 256; may hold colours that no pixel has
+  std::vector<std::uint8_t> indices;  // into the palette
+  std::vector<Rgba> pixels;
+
+  bool is_indexed() const { return !palette.empty(); }
+  Rgba at(int column, int row) const;
+};
+
+/// Polygons, or lines, of one colour. Looks at memory of the caller.
+struct PaintedClass {
+  const Coverage* coverage = nullptr;  // null: every pixel is wholly covered
+  Rgba colour;                         // its opacity included
+};
+
+/// A layer as it is put together: classes of polygons, whose colours mix by the area that each
+/// covers; the pattern over them; lines over that, the first one lowest; and of all this so much as
+/// the opacity says. Looks at memory of the caller.
+struct PaintedLayer {
+  std::span<const PaintedClass> classes;
+  const Coverage* pattern = nullptr;  // null: none; counts where the classes cover
+  Rgba pattern_colour = kTransparent;
+  std::span<const PaintedClass> lines = {};
+  double opacity = 1;
+};
+
+/// Each class as a layer of its own, in this order; they look at the classes.
+std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes);
+
+/// Paints pictures one after the other, in memory that it keeps.
+///
+/// Thread-safety: one thread at a time.
+class Composer {
+ public:
+  Composer();
+  ~Composer();
+  Composer(Composer&&) noexcept;
+  Composer& operator=(Composer&&) noexcept;
+
+  /// Paints the layers, the first one lowest, over the background. The picture becomes width x
+  /// height, both at least 1; so large are all coverages (std::invalid_argument if not). It is
+  /// indexed if no more than 256 colours result.
+  void compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
+               Picture& picture);
+
+ private:
+  class Canvas;
+  void paint(const PaintedLayer& layer);
+  void paint_together(const PaintedLayer& layer);
+
+  std::unique_ptr<Canvas> canvas_;
+  std::unique_ptr<Canvas> layer_;  // for one that is put together before it is painted
+};
+
+}  // namespace trapeze

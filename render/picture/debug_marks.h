@@ -1,0 +1,48 @@
+// Marks over a picture that show how it came about (paper, Figure 7 f to j): the trapezoids, the
+// vertices that are kept, the faces and their junctions, the border of a tile and its numbers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "core/mesh/trapezoid_mesh.h"
+#include "render/coverage/coverage.h"
+#include "render/picture/compose.h"
+
+namespace trapeze {
+
+/// Gives the picture one colour a pixel, so that marks can be drawn on it.
+void spread_palette(Picture& picture);
+
+/// Draws thin lines along all sides of the trapezoids. `picture` is not indexed and of the view's
+/// size, here and below.
+void mark_mesh(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
+               Rgba colour, Picture& picture);
+
+/// Draws a small square at every vertex that is an end of an edge of the trapezoids.
+void mark_vertices(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
+                   Rgba colour, Picture& picture);
+
+/// The feature that a trapezoid of the mesh is a part of, by number.
+using FeatureOf = std::function<std::uint32_t(std::uint32_t trapezoid)>;
+
+/// Tints what the trapezoids cover, each feature in a colour of its own, which depends on its
+/// number only. None of them overlap.
+void mark_faces(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                const FeatureOf& feature_of, const View& view, Picture& picture);
+
+/// Draws a dot at every junction: a vertex around which lie three or more features, what is outside
+/// of all counting as one. `level_edges` are trapezoids without height that stand for edges, as
+/// Layer::select_level_edges names them. A vertex is judged rightly if both name all that touches
+/// it; so they are to be selected from a little around the picture.
+void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
+                    std::span<const TrapezoidRange> level_edges, const FeatureOf& feature_of,
+                    const View& view, Rgba colour, Picture& picture);
+
+/// Draws a line along the border of the picture, and the text in its upper left corner: digits,
+/// slashes, 'x' and spaces, five pixels high.
+void mark_border(std::string_view text, Rgba colour, Picture& picture);
+
+}  // namespace trapeze

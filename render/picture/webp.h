@@ -1,0 +1,17 @@
+// Pictures to lossless WebP, where libwebp was there when this was built.
+#pragma once
+
+#include <string>
+
+#include "render/picture/compose.h"
+
+namespace trapeze {
+
+/// Whether encode_webp() can be called.
+bool has_webp();
+
+/// No pixel changes, hidden colours included. Throws std::runtime_error if the picture has no
+/// pixels, has more than 16,383 a side, or libwebp fails. Thread-safe.
+std::string encode_webp(const Picture& picture);
+
+}  // namespace trapeze

@@ -1,0 +1,16 @@
+// Instead of webp.cpp where there is no libwebp.
+#include <stdexcept>
+
+#include "render/picture/webp.h"
+
+namespace trapeze {
+
+bool has_webp() {
+  return false;
+}
+
+std::string encode_webp(const Picture&) {
+  throw std::runtime_error("this program was built without libwebp");
+}
+
+}  // namespace trapeze

@@ -1,0 +1,221 @@
+#include "render/software/software_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "render/coverage/stopwatch.h"
+
+namespace trapeze {
+
+// Turns cells into pixels of the picture.
+struct SoftwareRenderer::Frame {
+  std::int64_t origin_x;
+  std::int64_t origin_y;
+  double pixels_per_cell;
+  double width;
+  double height;
+
+  // The subtraction is exact, so the error is that of one multiplication: 2^-22 pixel at worst.
+  double x(std::int32_t cells) const {
+    return static_cast<double>(cells - origin_x) * pixels_per_cell;
+  }
+  double y(std::int32_t cells) const {
+    return static_cast<double>(cells - origin_y) * pixels_per_cell;
+  }
+};
+
+// A straight piece of an edge, in pixels; y_top < y_bottom.
+struct SoftwareRenderer::Piece {
+  double x_top;
+  double y_top;
+  double x_bottom;
+  double y_bottom;
+};
+
+namespace {
+
+// For 0 <= value, where it is cheaper than std::floor.
+int truncate(double value) {
+  return static_cast<int>(value);
+}
+
+}  // namespace
+
+DrawTimes SoftwareRenderer::draw(std::span<const CoverageTask> tasks) {
+  DrawTimes times;
+  for (const CoverageTask& task : tasks) draw(task, times);
+  return times;
+}
+
+void SoftwareRenderer::draw(const CoverageTask& task, DrawTimes& times) {
+  const View& view = task.view;
+  view.check();
+  prepare(view);
+  const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
+                    static_cast<double>(view.width), static_cast<double>(view.height)};
+  {
+    const Stopwatch stopwatch(times.draw_ms);
+    for (const MeshPart& part : task.parts) add(part, frame);
+  }
+  const Stopwatch stopwatch(times.resolve_ms);
+  task.out->resize(view.width, view.height);
+  resolve(*task.out);
+}
+
+std::string SoftwareRenderer::description() const {
+  return "software renderer (exact area, one thread)";
+}
+
+void SoftwareRenderer::prepare(const View& view) {
+  if (view.width == width_ && view.height == height_) return;
+  width_ = view.width;
+  height_ = view.height;
+  stride_ = static_cast<std::size_t>(width_) + 2;
+  differences_.assign(stride_ * static_cast<std::size_t>(height_), 0.0f);
+  touched_.assign(static_cast<std::size_t>(height_), Touched{width_, -1});
+}
+
+void SoftwareRenderer::add(const MeshPart& part, const Frame& frame) {
+  for (const TrapezoidRange& range : part.ranges) {
+    for (const MeshTrapezoid& trapezoid : part.mesh.trapezoids.subspan(range.first, range.count)) {
+      add_trapezoid(part.mesh, trapezoid, frame);
+    }
+  }
+}
+
+void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid,
+                                     const Frame& frame) {
+  const std::int32_t top = mesh.vertices[trapezoid.top].y;
+  const std::int32_t bottom = mesh.vertices[trapezoid.bottom].y;
+  if (top == bottom) return;
+  const double y_top = std::max(frame.y(top), 0.0);
+  const double y_bottom = std::min(frame.y(bottom), frame.height);
+  if (y_top >= y_bottom) return;
+
+  const MeshEdge& left = mesh.edges[trapezoid.left];
+  const MeshEdge& right = mesh.edges[trapezoid.right];
+  const Point left_upper = mesh.vertices[left.upper];
+  const Point left_lower = mesh.vertices[left.lower];
+  const Point right_upper = mesh.vertices[right.upper];
+  const Point right_lower = mesh.vertices[right.lower];
+  // Either side may be the western one: where they have changed places, the area is negative.
+  if (frame.x(std::max({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) <= 0) return;
+  if (frame.x(std::min({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) >= frame.width)
+    return;
+
+  add_side(left_upper, left_lower, y_top, y_bottom, 1.0f, frame);
+  add_side(right_upper, right_lower, y_top, y_bottom, -1.0f, frame);
+}
+
+// Adds the part of the edge between two heights. The edge is not level there: the trapezoid that
+// it bounds has a height, and the edge spans it.
+void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
+                                const Frame& frame) {
+  const double dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
+  const double dy = static_cast<double>(std::int64_t{lower.y} - upper.y);
+  const double slope = dx / dy;
+  const double x = frame.x(upper.x);
+  const double y = frame.y(upper.y);
+  const Piece piece{x + (y_top - y) * slope, y_top, x + (y_bottom - y) * slope, y_bottom};
+  const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
+  if (low >= 0 && high <= frame.width) {
+    add_piece(piece, sign);
+  } else {
+    add_clipped(piece, sign);
+  }
+}
+
+// Off the picture an edge counts as if it ran along the border that it is beyond: what is right of
+// it is then the whole row, or nothing.
+void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
+  const double width = width_;
+  const Piece clamped{std::clamp(piece.x_top, 0.0, width), piece.y_top,
+                      std::clamp(piece.x_bottom, 0.0, width), piece.y_bottom};
+  Piece inside = clamped;
+  if (clamped.x_top != clamped.x_bottom) {
+    const double rows_per_column = (piece.y_bottom - piece.y_top) / (piece.x_bottom - piece.x_top);
+    const auto y_where_x_is = [&](double x) {
+      return std::clamp(piece.y_top + (x - piece.x_top) * rows_per_column, piece.y_top,
+                        piece.y_bottom);
+    };
+    if (clamped.x_top != piece.x_top) inside.y_top = y_where_x_is(clamped.x_top);
+    if (clamped.x_bottom != piece.x_bottom) inside.y_bottom = y_where_x_is(clamped.x_bottom);
+    add_piece({clamped.x_top, piece.y_top, clamped.x_top, inside.y_top}, sign);
+    add_piece({clamped.x_bottom, inside.y_bottom, clamped.x_bottom, piece.y_bottom}, sign);
+  }
+  add_piece(inside, sign);
+}
+
+// Adds a piece that lies in the picture, row by row; one without height adds nothing.
+void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
+  if (!(piece.y_top < piece.y_bottom)) return;
+  const int first = truncate(piece.y_top);
+  if (piece.y_bottom <= first + 1) {
+    add_row(first, piece.x_top, piece.x_bottom, piece.y_bottom - piece.y_top, sign);
+    return;
+  }
+  const double slope = (piece.x_bottom - piece.x_top) / (piece.y_bottom - piece.y_top);
+  // Rounding must not carry a position out of the picture.
+  const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
+  double y = piece.y_top;
+  double x = piece.x_top;
+  for (int row = first; y < piece.y_bottom; ++row) {
+    const double next_y = std::min(row + 1.0, piece.y_bottom);
+    const double next_x = std::clamp(piece.x_top + (next_y - piece.y_top) * slope, low, high);
+    add_row(row, x, next_x, next_y - y, sign);
+    x = next_x;
+    y = next_y;
+  }
+}
+
+// Adds a piece that stays within one row: `height` of it is spread evenly from x_from to x_to. In
+// the column that holds it, what lies right of the piece is covered; in all columns further east
+// the full height is, which the running sum carries on.
+void SoftwareRenderer::add_row(int row, double x_from, double x_to, double height, float sign) {
+  const double low = std::min(x_from, x_to);
+  const double high = std::max(x_from, x_to);
+  const int first = truncate(low);
+  const int last = truncate(high);
+  Touched& touched = touched_[static_cast<std::size_t>(row)];
+  touched.first = std::min(touched.first, first);
+  touched.last = std::max(touched.last, last);
+  float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
+
+  const auto add_to = [cells, sign](int column, double part, double middle) {
+    const double west = middle - column;  // share of the column that stays uncovered
+    cells[column] += sign * static_cast<float>(part * (1.0 - west));
+    cells[column + 1] += sign * static_cast<float>(part * west);
+  };
+  if (first == last) {
+    add_to(first, height, 0.5 * (low + high));
+    return;
+  }
+  const double height_per_column = height / (high - low);
+  double x = low;
+  for (int column = first; column <= last; ++column) {
+    const double next_x = std::min(column + 1.0, high);
+    add_to(column, (next_x - x) * height_per_column, 0.5 * (x + next_x));
+    x = next_x;
+  }
+}
+
+// Sums rows up and leaves the differences cleared for the next picture.
+void SoftwareRenderer::resolve(Coverage& out) {
+  for (int row = 0; row < height_; ++row) {
+    Touched& touched = touched_[static_cast<std::size_t>(row)];
+    std::uint8_t* levels = out.row_begin(row);
+    std::memset(levels, 0, static_cast<std::size_t>(width_));
+    if (touched.first > touched.last) continue;
+    // Beyond the column after the last touched one all edges are passed and nothing is covered.
+    const int end = std::min(touched.last + 2, width_);
+    float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
+    if (touched.first < end)
+      take_levels({cells + touched.first, cells + end}, levels + touched.first);
+    std::fill(cells + std::max(end, touched.first), cells + touched.last + 2, 0.0f);
+    touched = {width_, -1};
+  }
+}
+
+}  // namespace trapeze

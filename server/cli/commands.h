@@ -1,0 +1,90 @@
+// The commands of the program, one function each. They return the exit status and throw
+// std::exception for what main reports: a file, a port, a renderer that does not work.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/adapt/adaptable_graph.h"
+#include "core/borders/coverage_groups.h"
+#include "server/config/config.h"
+
+namespace trapeze {
+
+/// None if the name is empty. Throws std::runtime_error that says what --coverage takes.
+std::optional<CoverageMode> coverage_or_throw(const std::string& name);
+
+/// What is done about polygons that share borders.
+struct CoverageArguments {
+  std::string
+      mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
+  std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
+};
+/// Sets what is to become of a source. Throws std::runtime_error that says what is wrong.
+void apply(const CoverageArguments& arguments, GeneralizationOptions& options);
+
+struct ServeArguments {
+  std::string config;                    // may be empty
+  std::vector<ConfigOverride> settings;  // what the command line says, which goes before all else
+  std::vector<std::string> files;        // instead of the layers of the configuration
+  bool is_verbose = false;               // whatever log.level says
+};
+/// What is configured by the file, the environment and the command line.
+LoadedConfig load_serve_config(const ServeArguments& arguments);
+int run_serve(const ServeArguments& arguments);
+
+/// Tells all that is wrong with a configuration; 1 if anything is.
+int run_config_check(const std::string& path);
+/// Prints what is configured, with the origin of each value.
+int run_config_print(const ServeArguments& arguments);
+int run_config_schema();
+
+struct CheckArguments {
+  std::vector<std::string> files;
+  CoverageArguments coverage;
+};
+int run_check(const CheckArguments& arguments);
+
+struct PrepareArguments {
+  std::vector<std::string> files;
+  std::string output;  // a folder, made if it is not there
+  std::string weights = "douglas-peucker";
+  CoverageArguments coverage;
+  SourceSelection selection;  // of each file
+};
+int run_prepare(const PrepareArguments& arguments);
+
+struct ExportArguments {
+  std::string file;
+  int zoom = 0;
+  double simplify = 0.25;  // pixels, as tiles are drawn
+  std::string topology = "strict";
+  std::string weights = "douglas-peucker";
+  CoverageArguments coverage;
+  std::string crs = "EPSG:4326";
+  bool overwrite = false;
+  std::string output;
+};
+int run_export(const ExportArguments& arguments);
+
+struct RenderArguments {
+  std::vector<std::string> files;  // bottom first
+  std::string tile;                // Z/X/Y
+  int scale = 1;
+  std::string style;  // a query string
+  std::string renderer = "auto";
+  std::string device;
+  std::string output;
+};
+int run_render(const RenderArguments& arguments);
+
+struct BenchArguments {
+  std::string name;
+  std::vector<std::string> options;  // for the benchmark
+};
+/// Becomes the program trapeze-NAME: benchmarks need libraries that whoever serves does not.
+/// Returns never.
+int run_bench(const BenchArguments& arguments);
+
+}  // namespace trapeze

@@ -1,0 +1,116 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+#include "core/io/load/open_layer.h"
+#include "server/cli/commands.h"
+#include "server/data/load_progress.h"
+
+namespace trapeze {
+namespace {
+
+/// Versions of trapezoids over all tolerances, and the dust that small polygons leave.
+void print_history(const Layer& layer, const LoadReport& report) {
+  const Layer::Size size = layer.size();
+  const double vertices = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
+  fmt::print("  trapezoids            {} versions, {:.2f} per vertex\n", size.trapezoids,
+             static_cast<double>(size.trapezoids) / vertices);
+  fmt::print("  dust                  {} motes, {:.2f} per vertex\n", size.motes,
+             static_cast<double>(size.motes) / vertices);
+}
+
+void print_memory(const Layer& layer, const LoadReport& report) {
+  const std::size_t graphs = layer.memory();
+  const double per_vertex =
+      report.vertices == 0 ? 0 : static_cast<double>(graphs) / static_cast<double>(report.vertices);
+  fmt::print("  memory of graphs      {} bytes, {:.1f} per vertex\n", graphs, per_vertex);
+  fmt::print("  memory of attributes  {} bytes\n", layer.features().memory());
+}
+
+/// Polygons that share borders, if that was asked for.
+void print_coverage(const CoverageCounts& counts) {
+  if (counts.groups == 0 && counts.apart == 0) return;
+  fmt::print("  coverages             {} groups with {} features\n", counts.groups,
+             counts.features);
+  fmt::print("    shared edges        {}\n", counts.shared_edges);
+  fmt::print("    junctions           {}\n", counts.junctions);
+  fmt::print("    noded               {} groups\n", counts.noded);
+  fmt::print("    overlaps            {} pairs of features\n", counts.overlaps);
+  fmt::print("    gaps                {}, {} others filled\n", counts.gaps, counts.filled);
+  fmt::print("    snapped             {} vertices\n", counts.snapped);
+  fmt::print("    apart               {} features that overlap by too much\n", counts.apart);
+}
+
+void print_notes(const LoadReport& report) {
+  for (const FeatureNote& note : report.notes) {
+    fmt::print("  feature {}: {}\n", note.id, note.reason);
+  }
+}
+
+void print_report(const LoadReport& report, const Layer& layer) {
+  fmt::print("{} ({})\n", report.path, report.origin());
+  fmt::print("  features              {}\n", report.features);
+  fmt::print("    loaded              {}\n", report.loaded);
+  fmt::print("      of these repaired {}\n", report.repaired);
+  fmt::print("    not polygons        {}\n", report.other_geometry);
+  fmt::print("    empty               {}\n", report.empty);
+  fmt::print("    skipped             {}\n", report.skipped);
+  fmt::print("  polygons              {}\n", report.polygons);
+  fmt::print("  rings                 {} ({} collapsed)\n", report.rings, report.collapsed_rings);
+  fmt::print("  vertices              {} ({} in the source)\n", report.vertices,
+             report.source_vertices);
+  print_coverage(report.coverage);
+  print_history(layer, report);
+  print_memory(layer, report);
+  fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
+             report.read_seconds);
+  print_notes(report);
+}
+
+/// False if the file cannot be read.
+bool check_file(const std::string& file, const CoverageArguments& coverage) {
+  LoadedLayer loaded;
+  try {
+    LoadProgress progress(file);
+    OpenOptions options;
+    options.coverage = coverage_or_throw(coverage.mode);
+    options.close_gaps = coverage.close_gaps;
+    options.progress = [&progress](double share) { progress.show(share); };
+    loaded = open_layer(file, options);
+  } catch (const std::exception& error) {
+    // Reported here and not by main, so that the files after this one are checked too.
+    fmt::print(stderr, "trapeze: {}\n", error.what());
+    return false;
+  }
+  print_report(loaded.report, *loaded.layer);
+  return true;
+}
+
+}  // namespace
+
+std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const auto coverage = coverage_from_name(name);
+  if (!coverage) throw std::runtime_error("--coverage takes auto, on or off");
+  return coverage;
+}
+
+void apply(const CoverageArguments& arguments, GeneralizationOptions& options) {
+  options.coverage = coverage_or_throw(arguments.mode).value_or(kUsualCoverage);
+  options.close_gaps = arguments.close_gaps.value_or(0);
+  if (options.close_gaps > 0 && options.coverage == CoverageMode::off) {
+    throw std::runtime_error("--close-gaps needs --coverage auto or on");
+  }
+}
+
+int run_check(const CheckArguments& arguments) {
+  bool is_all_read = true;
+  for (const std::string& file : arguments.files) {
+    is_all_read &= check_file(file, arguments.coverage);
+  }
+  return is_all_read ? 0 : 1;
+}
+
+}  // namespace trapeze

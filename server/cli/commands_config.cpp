@@ -1,0 +1,36 @@
+#include <algorithm>
+#include <iostream>
+
+#include "server/cli/commands.h"
+#include "server/config/config.h"
+#include "server/config/config_print.h"
+
+namespace trapeze {
+
+int run_config_check(const std::string& path) {
+  const LoadedConfig loaded = load_config(path, {});
+  if (!loaded.problems.empty()) {
+    std::cerr << problems_text(loaded.problems) << '\n';
+    return 1;
+  }
+  const std::size_t layers = loaded.config.layers.size();
+  std::cout << path << ": nothing is wrong; " << layers << (layers == 1 ? " layer\n" : " layers\n");
+  return 0;
+}
+
+int run_config_print(const ServeArguments& arguments) {
+  const LoadedConfig loaded = load_serve_config(arguments);
+  if (!loaded.problems.empty()) {
+    std::cerr << problems_text(loaded.problems) << '\n';
+    return 1;
+  }
+  std::cout << print_config(loaded);
+  return 0;
+}
+
+int run_config_schema() {
+  std::cout << config_schema();
+  return 0;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,92 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "core/grid/tolerance.h"
+#include "core/grid/web_mercator.h"
+#include "core/io/export/export_layer.h"
+#include "server/cli/commands.h"
+#include "server/data/load_progress.h"
+
+namespace trapeze {
+namespace {
+
+constexpr double kPixelsPerTile = 256;
+
+/// The tolerance of a tile at this zoom: a level of the ladder, as the server draws it.
+double epsilon_of(int zoom, double pixels) {
+  const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
+  return epsilon_of_level(nearest_level(pixels * cells_per_pixel));
+}
+
+template <class T>
+T known(const std::optional<T>& value, const char* words) {
+  if (!value) throw std::runtime_error(words);
+  return *value;
+}
+
+std::optional<Topology> topology_from_name(const std::string& name) {
+  if (name == "strict") return Topology::strict;
+  if (name == "fast") return Topology::fast;
+  return std::nullopt;
+}
+
+ExportOptions options_from(const ExportArguments& arguments) {
+  if (arguments.zoom < 0 || arguments.zoom > kMaxZoom) {
+    throw std::runtime_error(fmt::format("--zoom takes a whole number from 0 to {}", kMaxZoom));
+  }
+  if (!std::isfinite(arguments.simplify) || arguments.simplify < 0) {
+    throw std::runtime_error("--simplify takes a number of pixels, 0 or more");
+  }
+  ExportOptions options;
+  options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
+  options.generalization.topology =
+      known(topology_from_name(arguments.topology), "--topology takes strict or fast");
+  options.generalization.weights =
+      known(weight_rule_from_name(arguments.weights),
+            "--weights takes douglas-peucker, raised-parents or effective-area");
+  apply(arguments.coverage, options.generalization);
+  options.crs = known(export_crs_from_name(arguments.crs), "--crs takes EPSG:4326 or EPSG:3857");
+  options.overwrite = arguments.overwrite;
+  return options;
+}
+
+void print_if_any(const char* what, std::size_t count) {
+  if (count > 0) fmt::print("  {}: {}\n", what, count);
+}
+
+void print_report(const ExportReport& report, const std::string& output) {
+  fmt::print(
+      "{} ({}): {} features with {} polygons; {} of {} vertices kept, {} of these held by the "
+      "topology test; {} features left out as too small\n",
+      output, report.driver, report.written, report.polygons, report.vertices, report.all_vertices,
+      report.held, report.too_small);
+  print_if_any("features that are no polygons", report.other_geometry);
+  print_if_any("features smaller than the grid, or outside the world", report.empty);
+  print_if_any("features skipped", report.skipped);
+  print_if_any("features that crossed themselves and were noded", report.crossed);
+  print_if_any("polygons given vertices on long edges, to be valid in degrees", report.subdivided);
+  print_if_any("polygons with too many holes to check them in degrees", report.unchecked);
+  print_if_any("features that are not valid in degrees, but are in EPSG:3857", report.invalid);
+  for (const FeatureNote& note : report.notes) {
+    fmt::print("  feature {}: {}\n", note.id, note.reason);
+  }
+}
+
+}  // namespace
+
+int run_export(const ExportArguments& arguments) {
+  ExportOptions options = options_from(arguments);
+  ExportReport report;
+  {
+    LoadProgress progress(arguments.file);
+    options.progress = [&progress](double share) { progress.show(share); };
+    report = export_layer(arguments.file, arguments.output, options);
+  }
+  print_report(report, arguments.output);
+  return 0;
+}
+
+}  // namespace trapeze

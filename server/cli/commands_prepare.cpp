@@ -1,0 +1,94 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "core/io/prepared/prepared_file.h"
+#include "core/io/prepared/prepared_layer.h"
+#include "core/io/source/source_stamp.h"
+#include "server/cli/commands.h"
+#include "server/config/config.h"
+#include "server/data/dataset.h"
+#include "server/data/load_progress.h"
+
+namespace trapeze {
+namespace {
+
+constexpr const char* kExtension = ".trapeze";
+
+WeightRule weights_or_throw(const std::string& name) {
+  const auto rule = weight_rule_from_name(name);
+  if (!rule) {
+    throw std::runtime_error("--weights takes douglas-peucker, raised-parents or effective-area");
+  }
+  return *rule;
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(fmt::format("--output takes a folder; {} cannot be one{}", folder,
+                                         error ? ": " + error.message() : ""));
+  }
+}
+
+LoadedLayer load(const std::string& file, const LoadOptions& how) {
+  LoadProgress progress(file);
+  LoadOptions options = how;
+  options.progress = [&progress](double share) { progress.show(share); };
+  return load_layer(file, options);
+}
+
+void prepare(const std::string& file, const LoadOptions& how, const std::string& output) {
+  if (is_prepared_file(file)) {
+    throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
+  }
+  // Before the file is read, so that a change from here on is noticed now or later.
+  const SourceStamp source = stamp_source(file);
+  const LoadedLayer loaded = load(file, how);
+  const std::string change = change_since(source, file);
+  if (!change.empty()) {
+    throw std::runtime_error(file + ": has changed while it was read: " + change);
+  }
+  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source);
+  const LoadReport& report = loaded.report;
+  fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
+             report.features, report.vertices,
+             static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
+  if (report.repaired > 0 || report.skipped > 0) {
+    fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",
+               report.repaired, report.skipped, output);
+  }
+  if (source.files.empty()) {
+    fmt::print("  changes of {} will not be noticed: it is no file of this machine\n", source.path);
+  }
+}
+
+}  // namespace
+
+int run_prepare(const PrepareArguments& arguments) {
+  LoadOptions how;
+  how.generalization.weights = weights_or_throw(arguments.weights);
+  apply(arguments.coverage, how.generalization);
+  how.selection = arguments.selection;
+  const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
+  make_folder(arguments.output);
+  bool is_all_prepared = true;
+  for (const LayerConfig& layer : layers) {
+    const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
+    try {
+      prepare(layer.file, how, output.string());
+    } catch (const std::exception& error) {
+      // Reported here and not by main, so that the files after this one are prepared too.
+      fmt::print(stderr, "trapeze: {}\n", error.what());
+      is_all_prepared = false;
+    }
+  }
+  return is_all_prepared ? 0 : 1;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,110 @@
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/base/build_id.h"
+#include "server/cli/commands.h"
+#include "server/config/config.h"
+#include "server/config/config_settings.h"
+#include "server/service/service.h"
+
+namespace trapeze {
+namespace {
+
+/// Layers are not drawn, nor announced, beyond the last zoom that is answered.
+void limit_zooms(Config& config) {
+  for (LayerConfig& layer : config.layers) {
+    layer.max_zoom = std::max(layer.min_zoom, std::min(layer.max_zoom, config.limits.zoom));
+  }
+}
+
+Config configure(const ServeArguments& arguments) {
+  LoadedConfig loaded = load_serve_config(arguments);
+  if (!loaded.problems.empty()) throw std::runtime_error(problems_text(loaded.problems));
+  if (loaded.config.layers.empty()) {
+    throw std::runtime_error(
+        "there is nothing to serve: name files, or a configuration with "
+        "[[layer]] by --config");
+  }
+  limit_zooms(loaded.config);
+  return std::move(loaded.config);
+}
+
+/// Finds out before the socket is open what would only fail after the other files were loaded.
+void check_files_exist(const std::vector<LayerConfig>& layers) {
+  for (const LayerConfig& layer : layers) {
+    const std::string& file = layer.file_to_open();
+    std::error_code error;
+    if (is_file_path(file) && !std::filesystem::exists(file, error)) {
+      throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name, file));
+    }
+  }
+}
+
+void warn_of_other_changes(const Config& running, const Config& now) {
+  for (const auto& setting : config_settings()) {
+    if (setting.get(running) == setting.get(now)) continue;
+    spdlog::warn("{} has changed: that takes a new start of the server", setting.name());
+  }
+  const auto is_same = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.canonical_text() == b.second.canonical_text();
+  };
+  if (!std::ranges::equal(running.styles, now.styles, is_same)) {
+    spdlog::warn("styles have changed: that takes a new start of the server");
+  }
+}
+
+LayerSource layer_source(const ServeArguments& arguments, const Config& running) {
+  const auto layers = [arguments, running] {
+    Config now = configure(arguments);
+    check_files_exist(now.layers);
+    warn_of_other_changes(running, now);
+    return std::move(now.layers);
+  };
+  return {layers, arguments.config};
+}
+
+[[noreturn]] void end_now() {
+  // Reading a large file cannot be interrupted, and nobody waits for its result any more. The
+  // thread that reads must not meet objects that are being destroyed: so none are.
+  spdlog::info("stopped while loading");
+  std::quick_exit(0);
+}
+
+}  // namespace
+
+LoadedConfig load_serve_config(const ServeArguments& arguments) {
+  std::vector<ConfigOverride> overrides = environment_overrides(environ);
+  overrides.insert(overrides.end(), arguments.settings.begin(), arguments.settings.end());
+  LoadedConfig loaded = load_config(arguments.config, overrides);
+  if (arguments.files.empty()) return loaded;
+  loaded.config.layers = layers_of_files(arguments.files);
+  for (const LayerConfig& layer : loaded.config.layers) {
+    for (const char* key : {"name", "file", "title"}) {
+      loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = "FILE";
+    }
+  }
+  return loaded;
+}
+
+int run_serve(const ServeArguments& arguments) {
+  const Config config = configure(arguments);
+  if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
+  spdlog::info("trapeze {} (build {})", version(), build_id());
+  if (!arguments.config.empty()) spdlog::info("configuration: {}", arguments.config);
+  check_files_exist(config.layers);
+  Service service(config, layer_source(arguments, config));
+  service.act_on_signals();
+  service.run();
+  if (service.is_loading()) end_now();
+  spdlog::info("stopped");
+  return 0;
+}
+
+}  // namespace trapeze

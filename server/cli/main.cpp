@@ -1,0 +1,370 @@
+// The command line: reads it, calls the command, reports what went wrong.
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/borders/gap_closing.h"
+#include "server/base/build_id.h"
+#include "server/cli/commands.h"
+#include "server/config/config_settings.h"
+#include "server/styles/parameter_table.h"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Trapeze serves maps of polygons as PNG tiles, and simplifies while it draws.\n\n"
+    "Examples:\n"
+    "  trapeze serve countries.fgb lakes.gpkg      tiles at "
+    "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
+    "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
+    "  trapeze config check trapeze.toml           all that is wrong with it\n"
+    "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
+    "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
+    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
+    "file\n"
+    "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
+
+constexpr const char* kServeFooter =
+    "\nExamples:\n"
+    "  trapeze serve countries.fgb                 "
+    "http://localhost:8080/tiles/countries/0/0/0.png\n"
+    "  trapeze serve --port 9000 --address 127.0.0.1 buildings.fgb water.fgb\n"
+    "  trapeze serve --config trapeze.toml --workers 4\n\n"
+    "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json "
+    "(TileJSON),\n"
+    "/catalog, /health, /ready, /metrics, and the viewer at /. SIGTERM and SIGINT end the server "
+    "in\n"
+    "order, SIGHUP lets it read its layers again.";
+
+constexpr const char* kConfigFooter =
+    "\nExamples:\n"
+    "  trapeze config check trapeze.toml           every mistake with its line and column\n"
+    "  trapeze config print --config trapeze.toml --port 9000\n"
+    "  trapeze config schema                       for editors that complete and check\n\n"
+    "The command line goes before the environment (TRAPEZE_TABLE_KEY, TRAPEZE_SERVER_PORT for\n"
+    "server.port), and that before the file, in whose strings ${NAME} is a variable.";
+
+constexpr const char* kCheckFooter =
+    "\nExample:\n"
+    "  trapeze check countries.fgb buildings.shp\n\n"
+    "The exit status is 1 if a file cannot be read; repaired and skipped features are only listed.";
+
+constexpr const char* kPrepareFooter =
+    "\nExamples:\n"
+    "  trapeze prepare buildings.gpkg water.fgb --output prepared\n"
+    "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n\n"
+    "A prepared file holds a layer as it is served: it is mapped and not built again, servers on\n"
+    "one machine share its memory, and tiles and their ETags are those of FILE. It is refused if "
+    "it\n"
+    "is damaged, if FILE has changed since, or if this version of Trapeze builds layers "
+    "otherwise:\n"
+    "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
+    "under a running server without harm; write into it by no other means.";
+
+constexpr const char* kExportFooter =
+    "\nExamples:\n"
+    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg\n"
+    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n\n"
+    "The polygons are those that tiles of that zoom are drawn from; attributes are kept, and the\n"
+    "field trapeze_id holds the id of each feature in FILE. What is too small to be left at that\n"
+    "tolerance is left out and counted. With --topology strict all polygons are valid.";
+
+constexpr const char* kRenderFooter =
+    "\nExamples:\n"
+    "  trapeze render countries.fgb --tile 3/4/2 --output tile.png\n"
+    "  trapeze render land.fgb lakes.fgb --tile 0/0/0 --scale 2 \\\n"
+    "      --style 'lakes.fill=6fa8c9&background=white' --output world.png";
+
+constexpr const char* kBenchFooter =
+    "\nExamples:\n"
+    "  trapeze bench experiment                    the paper's experiment\n"
+    "  trapeze bench experiment --help             what it can be asked for\n\n"
+    "Benchmarks are programs of their own, trapeze-NAME in the folder bench beside this program:\n"
+    "they need libraries that this one does not. They are built with the release preset.";
+
+constexpr const char* kRendererHelp =
+    "What draws: auto, egl, osmesa or software (auto tries them in this order)";
+constexpr const char* kDeviceHelp = "The EGL device to prefer: its index, or a part of its name";
+
+trapeze::ConfigOverride parse_assignment(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const bool is_known = std::ranges::any_of(
+      trapeze::config_settings(), [&name](const auto& setting) { return setting.name() == name; });
+  if (equals == std::string::npos || !is_known) {
+    throw CLI::ValidationError(
+        "--set", text + " is no TABLE.KEY=VALUE of a setting; `trapeze config print` shows them");
+  }
+  return {name, text.substr(equals + 1), "--set " + name};
+}
+
+/// An option that is a setting of the configuration.
+void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const std::string& option,
+                 const std::string& setting, const char* type, const char* help) {
+  command
+      .add_option_function<std::string>(
+          option,
+          [&arguments, option, setting](const std::string& value) {
+            arguments.settings.push_back({setting, value, option});
+          },
+          help)
+      ->type_name(type);
+}
+
+void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
+  command.add_option("FILE", arguments.files,
+                     "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
+                     "a layer named after it. Instead of the layers of the configuration.");
+  command
+      .add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
+      ->type_name("FILE");
+  add_setting(command, arguments, "--port", "server.port", "N",
+              "Port, 8080 if not set; 0 takes any free one");
+  add_setting(command, arguments, "--address", "server.address", "IP",
+              "Address to listen on, 0.0.0.0 if not set");
+  add_setting(command, arguments, "--threads", "server.threads", "N",
+              "Threads for connections, 2 if not set");
+  add_setting(command, arguments, "--workers", "server.workers", "N",
+              "Threads that draw, one a core if not set");
+  add_setting(command, arguments, "--renderer", "server.renderer", "NAME", kRendererHelp);
+  add_setting(command, arguments, "--device", "server.device", "DEVICE", kDeviceHelp);
+  add_setting(command, arguments, "--web-root", "server.web_root", "DIR",
+              "Folder of the viewer, served at /");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&arguments](const std::vector<std::string>& assignments) {
+            for (const std::string& text : assignments) {
+              arguments.settings.push_back(parse_assignment(text));
+            }
+          },
+          "Any setting of the configuration: limits.connections=100; may be given several times")
+      ->type_name("TABLE.KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
+  CLI::App* serve = app.add_subcommand("serve", "Serve tiles over HTTP");
+  serve->footer(kServeFooter);
+  add_settings(*serve, arguments);
+}
+
+void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& arguments) {
+  CLI::App* config = app.add_subcommand("config", "Check or show a configuration");
+  config->footer(kConfigFooter);
+  config->require_subcommand(1);
+  config->add_subcommand("check", "Tell all that is wrong with a configuration")
+      ->add_option("FILE", path, "Configuration (TOML)")
+      ->required();
+  CLI::App* print =
+      config->add_subcommand("print",
+                             "Print what `serve` would do with the same options, with the "
+                             "origin of each value");
+  add_settings(*print, arguments);
+  config->add_subcommand("schema", "Print the JSON Schema of configurations");
+}
+
+void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage) {
+  command
+      .add_option(
+          "--coverage", coverage.mode,
+          "Whether polygons that share borders keep them in common: auto, on or off; as the "
+          "setting of layers")
+      ->type_name("NAME");
+  command
+      .add_option(
+          "--close-gaps", coverage.close_gaps,
+          "With --coverage: close gaps and overlaps between polygons of up to so many metres "
+          "on the ground")
+      ->check(CLI::Range(0.0, trapeze::kWidestGap))
+      ->type_name("METRES");
+}
+
+void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
+  CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
+  check->footer(kCheckFooter);
+  check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
+  add_coverage(*check, arguments.coverage);
+}
+
+void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
+  CLI::App* prepare =
+      app.add_subcommand("prepare", "Save layers in files that are served without building them");
+  prepare->footer(kPrepareFooter);
+  prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads")
+      ->required();
+  prepare
+      ->add_option(
+          "--weights", arguments.weights,
+          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
+          "effective-area")
+      ->type_name("NAME");
+  add_coverage(*prepare, arguments.coverage);
+  prepare
+      ->add_option("--source-layer", arguments.selection.layer,
+                   "The layer or table of FILE; all that hold polygons if not set")
+      ->type_name("NAME");
+  prepare
+      ->add_option("--where", arguments.selection.where,
+                   "A condition on features in SQL, such as \"height > 20\"")
+      ->type_name("SQL");
+  prepare
+      ->add_option("--attributes", arguments.selection.attributes,
+                   "The attributes that are kept, with commas between them; all if not set")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  prepare
+      ->add_option("--output", arguments.output,
+                   "The folder to write into; each file is named after FILE, and ends in .trapeze")
+      ->required()
+      ->type_name("DIR");
+}
+
+void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("export", "Write the polygons of a zoom into a file for other programs");
+  command->footer(kExportFooter);
+  command->add_option("FILE", arguments.file, "A file of polygons")->required();
+  command->add_option("--zoom", arguments.zoom, "The zoom whose tiles show these polygons, 0 to 24")
+      ->required()
+      ->type_name("Z");
+  command
+      ->add_option("--simplify", arguments.simplify,
+                   "Tolerance in pixels, 0.25 if not set, as tiles are drawn; 0 removes nothing")
+      ->type_name("PX");
+  command
+      ->add_option("--topology", arguments.topology,
+                   "strict (if not set) or fast: without the test that keeps polygons from "
+                   "crossing themselves; what crosses is noded")
+      ->type_name("NAME");
+  command
+      ->add_option(
+          "--weights", arguments.weights,
+          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
+          "effective-area")
+      ->type_name("NAME");
+  add_coverage(*command, arguments.coverage);
+  command
+      ->add_option("--crs", arguments.crs,
+                   "EPSG:4326 (degrees, if not set) or EPSG:3857 (metres, the map as it is drawn)")
+      ->type_name("NAME");
+  command->add_flag("--overwrite", arguments.overwrite, "Replace OUT if it exists");
+  command
+      ->add_option("--output", arguments.output,
+                   "The file to write: .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson (GeoJSON)")
+      ->required()
+      ->type_name("OUT");
+}
+
+void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
+  CLI::App* render = app.add_subcommand("render", "Draw one tile into a file");
+  render->footer(kRenderFooter);
+  render->add_option("FILE", arguments.files, "Files of polygons, each a layer, the lowest first")
+      ->required();
+  render->add_option("--tile", arguments.tile, "Zoom, column and row of the tile")
+      ->required()
+      ->type_name("Z/X/Y");
+  render->add_option("--scale", arguments.scale, "Pixels in 256ths of a tile's side, 1 to 4")
+      ->check(CLI::Range(1, 4))
+      ->type_name("N");
+  render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
+      ->type_name("QUERY");
+  render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
+  render->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
+  render->add_option("--output", arguments.output, "The PNG to write")
+      ->required()
+      ->type_name("F.png");
+}
+
+/// What follows the name of a benchmark is for the benchmark, --help included.
+std::optional<trapeze::BenchArguments> bench_arguments(int argc, char** argv) {
+  if (argc < 3 || std::string_view(argv[1]) != "bench" || argv[2][0] == '-') return std::nullopt;
+  return trapeze::BenchArguments{argv[2], {argv + 3, argv + argc}};
+}
+
+/// For help, and for want of a name.
+void add_bench(CLI::App& app, std::string& name) {
+  CLI::App* bench =
+      app.add_subcommand("bench", "Run a benchmark: trapeze bench NAME [OPTION OF NAME ...]");
+  bench->footer(kBenchFooter);
+  bench->add_option("NAME", name, "The benchmark; what follows it is for the benchmark")
+      ->required();
+}
+
+/// For those who edit the README: not in the help.
+void add_parameters(CLI::App& app) {
+  app.add_subcommand("parameters", "Print the table of query parameters as Markdown")->group("");
+}
+
+int run(int argc, char** argv) {
+  if (const auto benchmark = bench_arguments(argc, argv)) return trapeze::run_bench(*benchmark);
+  CLI::App app(kDescription, "trapeze");
+  app.require_subcommand(0, 1);  // none is reported below, with what there is
+  app.set_version_flag("--version", "trapeze " + trapeze::version());
+  bool is_verbose = false;
+  app.add_flag("--verbose", is_verbose, "Log every request");
+  app.fallthrough();
+  trapeze::ServeArguments serve;
+  trapeze::CheckArguments check;
+  trapeze::PrepareArguments prepare;
+  trapeze::ExportArguments to_export;
+  trapeze::RenderArguments render;
+  std::string bench;
+  std::string config_path;
+  trapeze::ServeArguments config;
+  add_serve(app, serve);
+  add_config(app, config_path, config);
+  add_check(app, check);
+  add_prepare(app, prepare);
+  add_export(app, to_export);
+  add_render(app, render);
+  add_bench(app, bench);
+  add_parameters(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  if (app.get_subcommands().empty()) {
+    std::cerr << app.help();
+    return 1;
+  }
+  if (is_verbose) spdlog::set_level(spdlog::level::debug);
+  serve.is_verbose = is_verbose;
+  if (app.got_subcommand("serve")) return trapeze::run_serve(serve);
+  if (app.got_subcommand("parameters")) {
+    std::cout << trapeze::parameter_table();
+    return 0;
+  }
+  if (const CLI::App* command = app.get_subcommand("config"); command->parsed()) {
+    if (command->got_subcommand("check")) return trapeze::run_config_check(config_path);
+    if (command->got_subcommand("print")) return trapeze::run_config_print(config);
+    return trapeze::run_config_schema();
+  }
+  if (app.got_subcommand("check")) return trapeze::run_check(check);
+  if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
+  if (app.got_subcommand("export")) return trapeze::run_export(to_export);
+  if (app.got_subcommand("bench")) return trapeze::run_bench({bench, {}});
+  return trapeze::run_render(render);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}

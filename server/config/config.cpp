@@ -1,0 +1,509 @@
+#include "server/config/config.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "server/base/url.h"
+#include "server/config/config_settings.h"
+#include "server/config/expand_variables.h"
+#include "server/styles/style_book.h"
+#include "server/styles/style_parameters.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kVariablePrefix = "TRAPEZE_";
+
+std::string position_text(const std::string& path, const toml::source_position& position) {
+  return fmt::format("{}:{}:{}", path, position.line, position.column);
+}
+
+std::string relative_to_config(const std::string& config_path, const std::string& path) {
+  if (!is_file_path(path)) return path;
+  return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
+}
+
+/// Whether the value, which has the right type, is one that the setting takes; if so it is set.
+template <typename Owner>
+bool assign(const Setting<Owner>& setting, Owner& owner, const SettingValue& value) {
+  const auto is_within = [&setting](double number) {
+    return number >= setting.min && number <= setting.max;  // false for NaN
+  };
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    if (!is_within(static_cast<double>(*integer))) return false;
+  }
+  if (const auto* number = std::get_if<double>(&value); number && !is_within(*number)) return false;
+  return setting.set(owner, value);
+}
+
+/// Turns tables of TOML into settings, and goes on after what is wrong.
+class ConfigReader {
+ public:
+  ConfigReader(const std::string& path, LoadedConfig& loaded) : path_(path), loaded_(loaded) {}
+
+  void read(const toml::table& root) {
+    for (const auto& [key, node] : root) {
+      if (key.str() == "layer") {
+        read_layers(node);
+      } else if (key.str() == "styles") {
+        read_styles(node);
+      } else if (is_table_of_settings(key.str())) {
+        read_table(key.str(), node);
+      } else {
+        fail(key.source().begin,
+             fmt::format("unknown key {}; allowed here are server, limits, log, admin, "
+                         "styles, layer",
+                         key.str()));
+      }
+    }
+  }
+
+ private:
+  void fail(const toml::source_position& position, std::string what) {
+    loaded_.problems.push_back({position_text(path_, position), std::move(what)});
+  }
+  void fail(const toml::node& node, std::string what) {
+    fail(node.source().begin, std::move(what));
+  }
+
+  static bool is_table_of_settings(std::string_view name) {
+    return std::ranges::find(config_settings(), name, &Setting<Config>::table) !=
+           config_settings().end();
+  }
+
+  void read_table(std::string_view name, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) {
+      return fail(node, fmt::format("{} takes a table, begun by [{}]", name, name));
+    }
+    std::vector<Setting<Config>> here;
+    std::ranges::copy_if(config_settings(), std::back_inserter(here),
+                         [name](const auto& setting) { return setting.table == name; });
+    read_settings(*table, here, loaded_.config, std::string(name));
+  }
+
+  /// `other_key` is read by somebody else.
+  template <typename Owner>
+  void read_settings(const toml::table& table, const std::vector<Setting<Owner>>& settings,
+                     Owner& owner, const std::string& name, std::string_view other_key = {}) {
+    for (const auto& [key, node] : table) {
+      if (!other_key.empty() && key.str() == other_key) continue;
+      const auto setting = std::ranges::find(settings, key.str(), &Setting<Owner>::key);
+      if (setting == settings.end()) {
+        fail_unknown(key, settings, name, other_key);
+      } else if (read_setting(*setting, node, owner)) {
+        loaded_.origins[name + "." + setting->key] =
+            fmt::format("{}:{}", path_, node.source().begin.line);
+      }
+    }
+  }
+
+  template <typename Owner>
+  void fail_unknown(const toml::key& key, const std::vector<Setting<Owner>>& settings,
+                    const std::string& name, std::string_view other_key) {
+    std::string allowed;
+    for (const auto& setting : settings) {
+      allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", setting.key);
+    }
+    if (!other_key.empty()) allowed += fmt::format(", {}", other_key);
+    fail(key.source().begin,
+         fmt::format("unknown key {}.{}; allowed here are {}", name, key.str(), allowed));
+  }
+
+  template <typename Owner>
+  bool read_setting(const Setting<Owner>& setting, const toml::node& node, Owner& owner) {
+    const std::size_t before = loaded_.problems.size();
+    const auto value = value_of(setting.type, node);
+    if (loaded_.problems.size() > before) return false;  // a variable that is not set
+    if (value && assign(setting, owner, with_path(setting, *value))) return true;
+    const toml::node* item = value ? refused_item(setting, node, owner) : nullptr;
+    fail(item == nullptr ? node : *item, fmt::format("{} takes {}", setting.name(), setting.takes));
+    return false;
+  }
+
+  /// The first item of a list that is not taken; null if it is no list.
+  template <typename Owner>
+  const toml::node* refused_item(const Setting<Owner>& setting, const toml::node& node,
+                                 Owner owner) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return nullptr;
+    const auto refused = std::ranges::find_if(*array, [&](const toml::node& item) {
+      return !setting.set(owner, std::vector<std::string>{expanded(item)});
+    });
+    return refused == array->end() ? nullptr : &*refused;
+  }
+
+  template <typename Owner>
+  SettingValue with_path(const Setting<Owner>& setting, const SettingValue& value) const {
+    if (setting.type != SettingType::path) return value;
+    const auto& text = std::get<std::string>(value);
+    const bool is_word = std::ranges::find(setting.choices, text) != setting.choices.end();
+    return is_word ? value : SettingValue(relative_to_config(path_, text));
+  }
+
+  /// Nothing if the node has another type.
+  std::optional<SettingValue> value_of(SettingType type, const toml::node& node) {
+    switch (type) {
+      case SettingType::boolean:
+        return node.is_boolean() ? std::optional<SettingValue>(node.as_boolean()->get())
+                                 : std::nullopt;
+      case SettingType::integer:
+        return node.is_integer() ? std::optional<SettingValue>(node.as_integer()->get())
+                                 : std::nullopt;
+      case SettingType::number:
+        return node.is_number() ? std::optional<SettingValue>(*node.value<double>()) : std::nullopt;
+      case SettingType::text:
+      case SettingType::path:
+        return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
+      case SettingType::list:
+        return list_of(node);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<SettingValue> list_of(const toml::node& node) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return std::nullopt;
+    std::vector<std::string> items;
+    for (const toml::node& item : *array) {
+      if (!item.is_string()) return std::nullopt;
+      items.push_back(expanded(item));
+    }
+    return items;
+  }
+
+  std::string expanded(const toml::node& node) {
+    auto text = expand_variables(node.as_string()->get(),
+                                 [](const std::string& name) { return std::getenv(name.c_str()); });
+    if (!text.problem.empty()) fail(node, text.problem);
+    return std::move(text.text);
+  }
+
+  void read_layers(const toml::node& node) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return fail(node, "layers are tables, each begun by [[layer]]");
+    for (const toml::node& item : *array) {
+      const toml::table* table = item.as_table();
+      if (table == nullptr) {
+        fail(item, "layers are tables, each begun by [[layer]]");
+      } else {
+        read_layer(*table);
+      }
+    }
+  }
+
+  void read_layer(const toml::table& table) {
+    LayerConfig layer;
+    const std::string name = table.get("name") != nullptr && table.get("name")->is_string()
+                                 ? fmt::format("layer.{}", table.get("name")->as_string()->get())
+                                 : "layer";
+    const std::size_t before = loaded_.problems.size();
+    read_settings(table, layer_settings(), layer, name, "style");
+    if (const toml::node* style = table.get("style")) layer.style = read_layer_style(*style);
+    if (table.get("name") == nullptr) {
+      fail(table, "every [[layer]] needs a name of 1 to 64 letters, digits, '_' or '-'");
+    }
+    const bool is_readable = loaded_.problems.size() == before;
+    if (is_readable && layer.file_to_open().empty()) {
+      fail(table, fmt::format("layer \"{}\" needs a file", layer.name));
+    }
+    if (!layer.prepared.empty() && !layer.selection.is_all()) {
+      fail(table,
+           fmt::format("layer \"{}\" is prepared: select from its source with the options of "
+                       "`trapeze prepare`, and not by source_layer, where or attributes",
+                       layer.name));
+    }
+    if (layer.min_zoom > layer.max_zoom) {
+      fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
+    }
+    if (layer.title.empty()) layer.title = layer.name;
+    keep(std::move(layer), table.source().begin);
+  }
+
+  void keep(LayerConfig layer, const toml::source_position& position) {
+    const auto [first, is_new] = lines_.emplace(layer.name, position.line);
+    if (!is_new && !layer.name.empty()) {
+      fail(position, fmt::format("layer \"{}\" is defined twice, first in line {}", layer.name,
+                                 first->second));
+    }
+    loaded_.config.layers.push_back(std::move(layer));
+  }
+
+  /// As the value is written in a query; nothing for what has no place there.
+  std::optional<std::string> query_text_of(const toml::node& node) {
+    if (node.is_string()) return expanded(node);
+    if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    const toml::array* list = node.as_array();
+    if (list == nullptr) return std::nullopt;
+    std::string joined;
+    for (const toml::node& item : *list) {
+      const auto text = item.is_array() ? std::nullopt : query_text_of(item);
+      if (!text) return std::nullopt;
+      if (!joined.empty()) joined.push_back(',');
+      joined += *text;
+    }
+    return joined;
+  }
+
+  /// Style parameters by their names, in which '_' may stand for '-', as pairs of a query. Tables
+  /// are for one layer each, if they are allowed.
+  void read_style_pairs(const toml::table& table, const std::string& layer, bool has_layers,
+                        std::vector<QueryPair>& pairs) {
+    for (const auto& [key, node] : table) {
+      if (has_layers && node.is_table()) {
+        if (!is_url_name(key.str())) {
+          fail(key.source().begin, fmt::format("\"{}\" cannot name a layer", key.str()));
+          continue;
+        }
+        read_style_pairs(*node.as_table(), std::string(key.str()), false, pairs);
+      } else if (auto pair = read_style_pair(key, node, layer, has_layers)) {
+        pairs.push_back(std::move(*pair));
+      }
+    }
+  }
+
+  std::optional<QueryPair> read_style_pair(const toml::key& key, const toml::node& node,
+                                           const std::string& layer, bool has_layers) {
+    std::string name(key.str());
+    std::ranges::replace(name, '_', '-');
+    const StyleParameter* parameter = find_style_parameter(name);
+    const bool is_for_all_layers = layer.empty() && has_layers;
+    if (parameter == nullptr || parameter->id == ParameterId::style ||
+        (!parameter->is_per_layer && !is_for_all_layers)) {
+      fail(key.source().begin, fmt::format("a style does not know \"{}\"", key.str()));
+      return std::nullopt;
+    }
+    const auto text = query_text_of(node);
+    const QueryPair pair(layer.empty() ? name : layer + "." + name, text.value_or(""));
+    if (text && make_style({pair}, layer.empty() ? Names() : Names{layer})) return pair;
+    fail(node, fmt::format("{} takes {}", key.str(), describe_values(*parameter)));
+    return std::nullopt;
+  }
+
+  using Names = std::vector<std::string>;
+
+  static std::optional<StyleQuery> make_style(const std::vector<QueryPair>& pairs,
+                                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (std::holds_alternative<Problem>(style)) return std::nullopt;
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  StyleQuery read_layer_style(const toml::node& node) {
+    std::vector<QueryPair> pairs;
+    if (const toml::table* table = node.as_table()) {
+      read_style_pairs(*table, {}, false, pairs);
+    } else {
+      fail(node, "layer.style takes a table");
+    }
+    return style_or_problem(node, pairs, {});
+  }
+
+  /// Of pairs that are right one by one.
+  StyleQuery style_or_problem(const toml::node& node, const std::vector<QueryPair>& pairs,
+                              const Names& layers) {
+    auto style = StyleQuery::parse(pairs, layers);
+    if (const auto* problem = std::get_if<Problem>(&style)) {
+      fail(node, problem->detail);  // set twice, as fill_opacity and fill-opacity
+      return {};
+    }
+    return std::move(std::get<StyleQuery>(style));
+  }
+
+  void read_styles(const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return fail(node, "styles are tables, begun by [styles.NAME]");
+    for (const auto& [key, style] : *table) read_named_style(std::string(key.str()), style);
+  }
+
+  void read_named_style(const std::string& name, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (!is_url_name(name) || name == StyleBook::kDefaultName || table == nullptr) {
+      return fail(node, fmt::format("styles are tables, each begun by [styles.NAME] with a name of "
+                                    "1 to 64 letters, digits, '_' or '-' other than \"{}\"",
+                                    StyleBook::kDefaultName));
+    }
+    std::vector<QueryPair> pairs;
+    read_style_pairs(*table, {}, true, pairs);
+    Names layers;
+    for (const auto& [layer, style] : *table) {
+      if (style.is_table()) layers.emplace_back(layer.str());
+    }
+    loaded_.config.styles.emplace(name, style_or_problem(node, pairs, layers));
+  }
+
+  const std::string& path_;
+  LoadedConfig& loaded_;
+  std::unordered_map<std::string, toml::source_index> lines_;  // of layers, by name
+};
+
+/// `parse` gives the table of what is called `path`.
+template <typename Parse>
+void read_toml(const std::string& path, Parse parse, LoadedConfig& loaded) {
+  try {
+    const toml::table root = parse();
+    ConfigReader(path, loaded).read(root);
+  } catch (const toml::parse_error& error) {
+    // Position 0:0 means that the file could not be opened, not that its text is wrong.
+    const auto position = error.source().begin;
+    const std::string what(error.description());
+    loaded.problems.push_back(position.line == 0
+                                  ? ConfigProblem{path, "cannot read the configuration: " + what}
+                                  : ConfigProblem{position_text(path, position), what});
+  }
+}
+
+template <typename Number>
+std::optional<SettingValue> number_in(const std::string& text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::vector<std::string> words_in(std::string_view text) {
+  std::vector<std::string> words;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    words.emplace_back(text.substr(0, comma));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return words;
+}
+
+/// The value that a text means for a setting of that type; nothing if it means none.
+std::optional<SettingValue> value_in(SettingType type, const std::string& text) {
+  switch (type) {
+    case SettingType::boolean:
+      if (text != "true" && text != "false") return std::nullopt;
+      return text == "true";
+    case SettingType::integer:
+      return number_in<std::int64_t>(text);
+    case SettingType::number:
+      return number_in<double>(text);
+    case SettingType::text:
+    case SettingType::path:
+      return text;
+    case SettingType::list:
+      return words_in(text);
+  }
+  return std::nullopt;
+}
+
+void apply(const ConfigOverride& change, LoadedConfig& loaded) {
+  for (const auto& setting : config_settings()) {
+    if (setting.name() != change.setting) continue;
+    const auto value = value_in(setting.type, change.value);
+    if (value && assign(setting, loaded.config, *value)) {
+      loaded.origins[change.setting] = change.origin;
+    } else {
+      const bool is_list = setting.type == SettingType::list;
+      loaded.problems.push_back(
+          {change.origin,
+           fmt::format("takes {}{}", setting.takes, is_list ? ", with commas between them" : "")});
+    }
+  }
+}
+
+std::string variable_of(const Setting<Config>& setting) {
+  std::string name = fmt::format("{}{}_{}", kVariablePrefix, setting.table, setting.key);
+  std::ranges::transform(name, name.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  return name;
+}
+
+std::string layer_name_of_file(const std::string& file) {
+  std::filesystem::path path(file);
+  if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
+  std::string name = path.stem().string().substr(0, kMaxUrlNameLength);
+  for (char& c : name) {
+    if (!is_url_name(std::string_view(&c, 1))) c = '_';
+  }
+  return name.empty() ? "layer" : name;
+}
+
+}  // namespace
+
+bool is_file_path(const std::string& source) {
+  const std::size_t colon = source.find(':');
+  return !source.empty() && !source.starts_with("/vsi") &&
+         (colon == std::string::npos || source.find('/') < colon);
+}
+
+LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides) {
+  LoadedConfig loaded;
+  if (!path.empty()) {
+    read_toml(
+        path, [&path] { return toml::parse_file(path); }, loaded);
+  }
+  for (const ConfigOverride& change : overrides) apply(change, loaded);
+  return loaded;
+}
+
+LoadedConfig load_config_text(std::string_view text, const std::string& path) {
+  LoadedConfig loaded;
+  read_toml(
+      path, [text] { return toml::parse(text); }, loaded);
+  return loaded;
+}
+
+std::vector<ConfigOverride> environment_overrides(const char* const* environment) {
+  std::vector<ConfigOverride> overrides;
+  for (; *environment != nullptr; ++environment) {
+    const std::string_view entry = *environment;
+    const std::size_t equals = entry.find('=');
+    if (!entry.starts_with(kVariablePrefix) || equals == std::string_view::npos) continue;
+    const std::string name(entry.substr(0, equals));
+    const auto setting = std::ranges::find(config_settings(), name, variable_of);
+    if (setting == config_settings().end()) continue;  // others may have their own variables
+    overrides.push_back({setting->name(), std::string(entry.substr(equals + 1)), name});
+  }
+  return overrides;
+}
+
+Config read_config(const std::string& path) {
+  LoadedConfig loaded = load_config(path, {});
+  if (!loaded.problems.empty()) throw std::runtime_error(problems_text(loaded.problems));
+  return std::move(loaded.config);
+}
+
+std::string problems_text(const std::vector<ConfigProblem>& problems) {
+  std::string text;
+  for (const ConfigProblem& problem : problems) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.where, problem.what);
+  }
+  return text;
+}
+
+std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files) {
+  std::vector<LayerConfig> layers;
+  for (const std::string& file : files) {
+    LayerConfig layer;
+    layer.name = layer_name_of_file(file);
+    layer.title = layer.name;
+    layer.file = file;
+    const auto same = std::ranges::find(layers, layer.name, &LayerConfig::name);
+    if (same != layers.end()) {
+      throw std::runtime_error(
+          fmt::format("{} and {} would both be the layer \"{}\"; rename one, or name them in a "
+                      "configuration",
+                      same->file, file, layer.name));
+    }
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+}  // namespace trapeze

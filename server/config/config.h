@@ -1,0 +1,155 @@
+// What to serve and how, from a TOML file, the environment and the command line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/adapt/vertex_weight.h"
+#include "core/borders/coverage_groups.h"
+#include "core/grid/web_mercator.h"
+#include "core/io/source/source_selection.h"
+#include "render/make_renderer.h"
+#include "render/picture/colour.h"
+#include "server/http/client_address.h"
+#include "server/styles/style_parameters.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+
+struct LayerConfig {
+  std::string name;           // is_url_name() holds
+  std::string file;           // empty only if `prepared` is set
+  SourceSelection selection;  // of the file
+  std::string prepared;       // a prepared file of it, which is served in its place; may be empty
+  std::string title;          // the name if not set
+  std::string attribution;
+  std::string description;
+  StyleQuery style;  // where a request says nothing; for all layers, so without their names
+  std::vector<ParameterId> locked;       // what requests cannot set for the layer
+  std::optional<WeightRule> weights;     // unset: as a file was prepared, else Douglas-Peucker
+  std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
+  std::optional<double> close_gaps;      // metres; unset: as a file was prepared, else 0
+  int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
+  int max_zoom = kMaxZoom;
+
+  const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }
+};
+
+struct ServerConfig {
+  std::string address = "0.0.0.0";
+  std::uint16_t port = 8080;      // 0: any free port
+  unsigned threads = 2;           // for sockets
+  unsigned workers = 0;           // for drawing; 0: one a core
+  std::size_t queue = 256;        // tiles that may wait for a worker
+  unsigned deadline_ms = 10'000;  // a tile that waits longer is given up
+  unsigned batch = 8;             // tiles drawn in one pass, at most
+  unsigned cache_mb = 256;        // of memory for tiles that were drawn; 0: none are kept
+  std::string cache_control = "public, max-age=3600";  // of tiles
+  unsigned posted_styles_mb = 16;                      // of memory for styles that are posted
+  RendererOptions renderer;
+  std::string public_url;  // of the server as the world sees it, without a '/' at the end
+  // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
+  // written without a port holds for every port. Not looked at if there is a public_url.
+  std::vector<std::string> allowed_hosts;
+  std::string web_root;  // folder of the viewer, empty for none
+  bool metrics = true;   // whether /metrics is there; it always is at the admin address
+  std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
+  unsigned watch_ms = 2000;                   // between looks at the files, for changes; 0: none
+  unsigned drain_delay_ms = 0;                // told to stop, it goes on so long, being not ready
+  unsigned drain_timeout_ms = 10'000;         // and then waits so long for what is under way
+};
+
+struct LimitsConfig {
+  std::size_t connections = 1024;
+  std::size_t connections_per_address = 256;
+  std::uint32_t header_bytes = 8192;            // request line and header together
+  std::size_t target_bytes = kMaxTargetLength;  // path and query together
+  std::uint32_t body_bytes = 16 * 1024;         // of a request that has one
+  std::size_t layers = kMaxLayersPerTile;       // of one tile
+  int scale = kMaxScale;
+  int zoom = kMaxZoom;
+  unsigned idle_timeout_ms = 30'000;   // until a request begins
+  unsigned read_timeout_ms = 10'000;   // from its first byte to its last
+  unsigned write_timeout_ms = 30'000;  // for a whole response
+  double drawn_per_second = 0;  // tiles not in the cache, for one address; 0: as many as it likes
+  double drawn_burst = 2000;    // so many of them at once
+};
+
+enum class LogFormat { text, json };
+
+struct LogConfig {
+  std::string level = "info";  // the least that is logged, in the words of spdlog
+  std::string access;          // "stdout", "stderr", a file, or empty: no log of requests
+  LogFormat access_format = LogFormat::text;
+};
+
+/// A second address, for those who run the server.
+struct AdminConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;  // 0: there is none
+};
+
+struct Config {
+  ServerConfig server;
+  LimitsConfig limits;
+  LogConfig log;
+  AdminConfig admin;
+  std::map<std::string, StyleQuery> styles;  // by name, for which is_url_name() holds
+  std::vector<LayerConfig> layers;           // names are unique
+};
+
+/// What is wrong with a configuration, where, and what is allowed.
+struct ConfigProblem {
+  std::string where;  // "trapeze.toml:4:8", "TRAPEZE_SERVER_PORT", "--port"
+  std::string what;
+};
+
+/// A value from outside of the file, which goes before it.
+struct ConfigOverride {
+  std::string setting;  // "server.port"
+  std::string value;
+  std::string origin;  // how messages call it: "TRAPEZE_SERVER_PORT", "--port"
+};
+
+struct LoadedConfig {
+  Config config;                        // with defaults for what is wrong
+  std::vector<ConfigProblem> problems;  // in the order of the file, then of the overrides
+  /// Where each setting that is not a default comes from: "server.port" from "trapeze.toml:4".
+  std::map<std::string, std::string> origins;
+};
+
+/// Reads a TOML file, unless `path` is empty, and then applies the overrides, the later before the
+/// earlier. Finds all that is wrong (of what is not TOML, the first). Relative paths in the file
+/// are meant from its own folder, those of overrides from the working directory. In all strings of
+/// the file, ${NAME} is replaced by that variable of the environment, ${NAME:-words} by the words
+/// if it is not set, and $$ by $.
+LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides);
+
+/// The same of a text, as if it stood in a file of that path, and without overrides. Never throws
+/// for what is wrong with it.
+LoadedConfig load_config_text(std::string_view text, const std::string& path);
+
+/// The overrides of an environment of "NAME=value" strings that ends with a null: for each setting
+/// TABLE.KEY, the variable TRAPEZE_TABLE_KEY.
+std::vector<ConfigOverride> environment_overrides(const char* const* environment);
+
+/// Reads a TOML file alone. Throws std::runtime_error with all problems, one a line.
+Config read_config(const std::string& path);
+
+/// All problems, one a line: "trapeze.toml:4:8: server.port takes ...".
+std::string problems_text(const std::vector<ConfigProblem>& problems);
+
+/// Whether the source of a layer is a file, and not within an archive or in a database, which GDAL
+/// opens by names of its own ("/vsizip/...", "PG:...").
+bool is_file_path(const std::string& source);
+
+/// Makes a layer of each file, named after it; characters that a layer name cannot hold become '_'.
+/// Throws std::runtime_error if two files would get one name.
+std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files);
+
+}  // namespace trapeze

@@ -1,0 +1,46 @@
+// What a layer, or several served together, come to: titles, bounds, zooms, as documents tell them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/grid/grid.h"
+#include "core/grid/web_mercator.h"
+#include "server/base/problem.h"
+#include "server/data/dataset.h"
+
+namespace trapeze {
+
+/// West, south, east, north in degrees, to about a centimetre.
+using GeographicBounds = std::array<double, 4>;
+
+constexpr GeographicBounds kWorldBounds = {-180, -kMaxLatitude, 180, kMaxLatitude};
+
+/// Rounded to about a centimetre, which is what the grid resolves: shorter to read.
+double round_degrees(double degrees);
+
+/// The box is not empty.
+GeographicBounds bounds_in_degrees(const Box& box);
+
+struct LayerSummary {
+  std::string title;  // of all layers that differ, with commas, here and in the next two
+  std::string description;
+  std::string attribution;
+  Box box;  // empty if no layer has polygons
+  int min_zoom = kMaxZoom;
+  int max_zoom = 0;
+
+  /// Those of the world if there is nothing.
+  GeographicBounds bounds() const;
+};
+
+/// The problem is 404 for a name that is not in the dataset.
+OrProblem<LayerSummary> summarize_layers(std::span<const std::string> names,
+                                         const Dataset& dataset);
+
+/// The problem to answer with for a layer name that is not in the dataset.
+Problem unknown_layer(const std::string& name, const Dataset& dataset);
+
+}  // namespace trapeze

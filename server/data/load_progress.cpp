@@ -1,0 +1,60 @@
+#include "server/data/load_progress.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/io/source/source_name.h"
+
+namespace trapeze {
+namespace {
+
+constexpr auto kBarInterval = std::chrono::milliseconds(100);
+constexpr auto kLineInterval = std::chrono::seconds(5);
+constexpr int kBarWidth = 40;
+
+}  // namespace
+
+LoadProgress::LoadProgress(const std::string& name)
+    : name_(name_of_source(name)),
+      is_terminal_(isatty(STDERR_FILENO) != 0),
+      begin_(Clock::now()),
+      next_(begin_ + (is_terminal_ ? Clock::duration(kBarInterval) : kLineInterval)) {}
+
+LoadProgress::~LoadProgress() {
+  if (is_bar_shown_) std::fputs("\r\x1b[K", stderr);
+}
+
+void LoadProgress::show(double share) {
+  const auto now = Clock::now();
+  if (now < next_) return;
+  if (is_terminal_) {
+    next_ = now + kBarInterval;
+    draw_bar(share);
+    is_bar_shown_ = true;
+  } else {
+    next_ = now + kLineInterval;
+    log_line(share);
+  }
+}
+
+void LoadProgress::draw_bar(double share) const {
+  const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth);
+  const std::string bar = std::string(full, '#') + std::string(kBarWidth - full, '.');
+  const std::string percent = share < 0 ? "  ?" : fmt::format("{:3.0f}", share * 100);
+  fmt::print(stderr, "\r\x1b[K{} [{}] {} %", name_, bar, percent);
+  std::fflush(stderr);
+}
+
+void LoadProgress::log_line(double share) const {
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+  if (share < 0) {
+    spdlog::info("loading {}: {:.0f} s so far", name_, seconds);
+  } else {
+    spdlog::info("loading {}: {:.0f} % after {:.0f} s", name_, share * 100, seconds);
+  }
+}
+
+}  // namespace trapeze

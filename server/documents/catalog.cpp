@@ -1,0 +1,150 @@
+#include "server/documents/catalog.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/grid/web_mercator.h"
+#include "server/base/json_text.h"
+#include "server/data/layer_summary.h"
+#include "server/tiles/layer_style.h"
+
+namespace trapeze {
+namespace {
+
+std::string_view name_of(FieldType type) {
+  switch (type) {
+    case FieldType::integer:
+      return "integer";
+    case FieldType::real:
+      return "number";
+    case FieldType::text:
+      return "string";
+  }
+  return "string";
+}
+
+Json fields_json(const FeatureTable& features) {
+  Json fields = Json::array();
+  for (const Field& field : features.fields()) {
+    fields.push_back({{"name", field.name}, {"type", name_of(field.type)}});
+  }
+  return fields;
+}
+
+/// The style of a layer where a request does not say otherwise, in the words of the query
+/// parameters.
+Json style_json(const LayerConfig& config, std::size_t position) {
+  Rgba fill = default_fill(config, position);
+  const ParameterValue* set = config.style.find({}, ParameterId::fill_opacity);
+  const double opacity = (set != nullptr ? std::get<double>(*set) : 1.0) * fill.a / 255.0;
+  fill.a = 255;
+  Json json = {{"fill", css_colour(fill)}, {"fill-opacity", opacity}};
+  for (const auto& [name, value] : config.style.pairs()) {
+    if (!json.contains(name)) json[name] = value;
+  }
+  return json;
+}
+
+Json layer_json(const ServedLayer& served, std::size_t position, const std::string& base_url) {
+  const LayerConfig& config = served.config;
+  const Box& box = served.layer->bounds();
+  Json json;
+  json["name"] = config.name;
+  json["title"] = config.title;
+  json["attribution"] = config.attribution;
+  json["description"] = config.description;
+  json["bounds"] = box.is_empty() ? Json(nullptr) : Json(bounds_in_degrees(box));
+  json["minzoom"] = config.min_zoom;
+  json["maxzoom"] = config.max_zoom;
+  json["features"] = served.report.loaded;
+  json["polygons"] = served.report.polygons;
+  json["rings"] = served.report.rings;
+  json["vertices"] = served.report.vertices;
+  json["coverages"] = served.report.coverage.groups;
+  json["trapezoids"] = served.layer->mesh().trapezoids.size();
+  json["memory"] = served.layer->memory() + served.layer->features().memory();
+  json["repaired"] = served.report.repaired;
+  json["skipped"] = served.report.skipped;
+  json["style"] = style_json(config, position);
+  json["fields"] = fields_json(served.layer->features());
+  json["tilejson"] = fmt::format("{}/tiles/{}.json", base_url, config.name);
+  return json;
+}
+
+Json parameters_json() {
+  Json parameters = Json::array();
+  for (const StyleParameter& parameter : style_parameters()) {
+    parameters.push_back({{"name", parameter.name},
+                          {"takes", describe_values(parameter)},
+                          {"default", parameter.default_text},
+                          {"per_layer", parameter.is_per_layer},
+                          {"description", parameter.description}});
+  }
+  return parameters;
+}
+
+/// Middle of the bounds, and the zoom at which their width is about that of two tiles.
+Json center_json(const LayerSummary& summary) {
+  const auto [west, south, east, north] = summary.bounds();
+  const double width = std::max(east - west, 1e-6);
+  const int zoom = static_cast<int>(std::floor(std::log2(2 * 360 / width)));
+  return {round_degrees((west + east) / 2), round_degrees((south + north) / 2),
+          std::clamp(zoom, summary.min_zoom, summary.max_zoom)};
+}
+
+std::string style_part(const StyleQuery& style) {
+  const std::string text = style.canonical_text();
+  return text.empty() ? text : "?" + text;
+}
+
+std::string tiles_url(const TileJsonRequest& request, const std::string& base_url) {
+  return fmt::format("{}/tiles/{}/{{z}}/{{x}}/{{y}}.png{}", base_url,
+                     fmt::join(request.layers, ","), style_part(request.style));
+}
+
+std::string legend_url(const TileJsonRequest& request, const std::string& base_url) {
+  return fmt::format("{}/legend/{}.png{}", base_url, fmt::join(request.layers, ","),
+                     style_part(request.style));
+}
+
+}  // namespace
+
+std::string catalog_json(const Dataset& dataset, const std::string& renderer,
+                         const std::string& base_url) {
+  Json layers = Json::array();
+  for (std::size_t i = 0; i < dataset.layers().size(); ++i) {
+    layers.push_back(layer_json(dataset.layers()[i], i, base_url));
+  }
+  Json json;
+  json["layers"] = std::move(layers);
+  json["generation"] = dataset.generation();
+  json["renderer"] = renderer;
+  json["parameters"] = parameters_json();
+  return to_text(json);
+}
+
+OrProblem<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
+                                 const std::string& base_url) {
+  const auto summarized = summarize_layers(request.layers, dataset);
+  if (const auto* problem = std::get_if<Problem>(&summarized)) return *problem;
+  const auto& summary = std::get<LayerSummary>(summarized);
+  Json json;
+  json["tilejson"] = "3.0.0";
+  json["name"] = summary.title;
+  json["description"] = summary.description;
+  json["attribution"] = summary.attribution;
+  json["scheme"] = "xyz";
+  json["format"] = "png";
+  json["tiles"] = {tiles_url(request, base_url)};
+  json["minzoom"] = summary.min_zoom;
+  json["maxzoom"] = summary.max_zoom;
+  json["bounds"] = summary.bounds();
+  json["center"] = center_json(summary);
+  json["legend"] = legend_url(request, base_url);
+  json["vector_layers"] = Json::array();  // TileJSON 3.0 wants it always; these are pictures
+  return to_text(json);
+}
+
+}  // namespace trapeze

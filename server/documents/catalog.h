@@ -1,0 +1,23 @@
+// Documents that describe what is served, as JSON text.
+#pragma once
+
+#include <string>
+
+#include "server/base/problem.h"
+#include "server/data/dataset.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+
+/// {"layers": [...], "generation": ..., "renderer": ..., "parameters": [...]}. The bounds of a
+/// layer without polygons are null. `base_url` is how this server is reached, without a '/' at the
+/// end.
+std::string catalog_json(const Dataset& dataset, const std::string& renderer,
+                         const std::string& base_url);
+
+/// TileJSON 3.0 of the layers together, the style of the request in its tile URLs. The problem is
+/// 404 for an unknown layer.
+OrProblem<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
+                                 const std::string& base_url);
+
+}  // namespace trapeze

@@ -1,0 +1,35 @@
+// Documents about the layers that are made anew for every request: what they are made from, and
+// what comes out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/base/url.h"
+#include "server/data/dataset.h"
+#include "server/styles/style_book.h"
+
+namespace trapeze {
+
+struct DocumentRequest {
+  const Dataset& dataset;
+  const StyleBook& styles;
+  std::string base_url;           // how this server is reached, without a '/' at the end
+  std::vector<std::string> path;  // decoded segments, hostile
+  std::vector<QueryPair> query;   // hostile; what its style says is in it
+
+  /// The value of the first pair of that name, or null.
+  const std::string* find(std::string_view name) const {
+    for (const auto& [key, value] : query) {
+      if (key == name) return &value;
+    }
+    return nullptr;
+  }
+};
+
+struct Document {
+  std::string content_type;
+  std::string bytes;
+};
+
+}  // namespace trapeze

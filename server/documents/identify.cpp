@@ -1,0 +1,165 @@
+#include "server/documents/identify.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/layer/features_at.h"
+#include "render/coverage/coverage.h"
+#include "server/base/json_text.h"
+#include "server/data/layer_summary.h"
+#include "server/tiles/layer_style.h"
+#include "server/tiles/tile_plan.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
+
+struct IdentifyRequest {
+  std::vector<std::string> layers;  // bottom first
+  Point place;
+  std::optional<double> zoom;
+  StyleQuery style;
+};
+
+std::optional<double> parse_number(std::string_view text, double min, double max) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!(number >= min && number <= max)) return std::nullopt;  // written so that NaN fails
+  return number;
+}
+
+/// The cell that holds the place; of those on the edge of the world the last.
+Point cell_of(LonLat place) {
+  const auto to_cell = [](double position) {
+    return static_cast<std::int32_t>(
+        std::clamp<double>(std::floor(position), kGridMin, kGridMax - 1));
+  };
+  const GridPosition position = grid_from_lonlat(place);
+  return {to_cell(position.x), to_cell(position.y)};
+}
+
+OrProblem<Point> parse_place(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma != std::string::npos) {
+    const std::string_view view = text;
+    const auto lon = parse_number(view.substr(0, comma), -180, 180);
+    const auto lat = parse_number(view.substr(comma + 1), -kMaxLatitude, kMaxLatitude);
+    if (lon && lat) return cell_of({*lon, *lat});
+  }
+  const std::string takes = fmt::format(
+      "longitude and latitude in degrees: -180 to 180, -{0:.5f} to {0:.5f}", kMaxLatitude);
+  return Problem{400, fmt::format("The path ends with {}: {}.", takes, kPattern), "lon,lat", text,
+                 takes};
+}
+
+OrProblem<std::optional<double>> parse_zoom(const DocumentRequest& request) {
+  const std::string* text = request.find("z");
+  if (text == nullptr) return std::optional<double>();
+  if (const auto zoom = parse_number(*text, 0, kMaxZoom)) return zoom;
+  const std::string takes = fmt::format("a number from 0 to {}", kMaxZoom);
+  return Problem{400, fmt::format("The parameter z takes {}.", takes), "z", *text, takes};
+}
+
+OrProblem<IdentifyRequest> parse_request(const DocumentRequest& request) {
+  if (request.path.size() != 3) {
+    return Problem{404, fmt::format("There is nothing here. Features are at {}.", kPattern)};
+  }
+  auto layers = parse_layer_list(request.path[1]);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  auto place = parse_place(request.path[2]);
+  if (auto* problem = std::get_if<Problem>(&place)) return std::move(*problem);
+  auto zoom = parse_zoom(request);
+  if (auto* problem = std::get_if<Problem>(&zoom)) return std::move(*problem);
+  IdentifyRequest parsed{std::move(std::get<0>(layers)), std::get<0>(place), std::get<0>(zoom), {}};
+  auto style = StyleQuery::parse(request.query, parsed.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  parsed.style = std::move(std::get<0>(style));
+  return parsed;
+}
+
+Level level_of(const IdentifyRequest& request, const LayerConfig& layer) {
+  if (!request.zoom) return 0;
+  const double cells_per_pixel =
+      static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
+  const StyleQuery query = request.style.with_defaults(layer.name, layer.style);
+  return nearest_level(tolerance_in_pixels(query, layer.name) * cells_per_pixel);
+}
+
+bool is_drawn(const IdentifyRequest& request, const LayerConfig& config) {
+  return !request.zoom ||
+         (*request.zoom >= config.min_zoom && std::floor(*request.zoom) <= config.max_zoom);
+}
+
+GeographicBounds bounds_of_feature(const Layer& layer, std::uint32_t row) {
+  Rings outline;
+  layer.append_outline(row, outline);
+  Box box;
+  for (const Point p : outline.points) box.include(p);
+  return bounds_in_degrees(box);
+}
+
+Json feature_json(const ServedLayer& served, std::uint32_t row) {
+  const FeatureTable& features = served.layer->features();
+  Json properties = Json::object();
+  for (std::size_t field = 0; field < features.fields().size(); ++field) {
+    properties[features.fields()[field].name] =
+        to_json(features.value(row, static_cast<int>(field)));
+  }
+  Json json;
+  json["type"] = "Feature";
+  json["id"] = features.id(row);
+  json["layer"] = served.config.name;
+  json["bbox"] = bounds_of_feature(*served.layer, row);
+  json["geometry"] = nullptr;
+  json["properties"] = std::move(properties);
+  return json;
+}
+
+/// The rows of the features that are found, or what is wrong with the style.
+OrProblem<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
+                                                const ServedLayer& served, std::size_t position) {
+  const auto style = layer_style(request.style, served, position);
+  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
+  auto rows = features_at(*served.layer, request.place, level_of(request, served.config));
+  const FeatureClassifier classifier(std::get<LayerStyle>(style).classing,
+                                     served.layer->features());
+  std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });
+  return rows;
+}
+
+}  // namespace
+
+OrProblem<Document> identify_document(const DocumentRequest& request) {
+  const auto parsed = parse_request(request);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+  const auto& identify = std::get<IdentifyRequest>(parsed);
+  Json features = Json::array();
+  std::size_t matched = 0;
+  for (auto name = identify.layers.rbegin(); name != identify.layers.rend(); ++name) {
+    const auto position = request.dataset.find(*name);
+    if (!position) return unknown_layer(*name, request.dataset);
+    const ServedLayer& served = request.dataset.layers()[*position];
+    if (!served.is_whole()) return damaged_layer(served);
+    const auto rows = find_rows(identify, served, *position);
+    if (const auto* problem = std::get_if<Problem>(&rows)) return *problem;
+    for (const std::uint32_t row : std::get<0>(rows)) {
+      if (++matched <= kMaxIdentified) features.push_back(feature_json(served, row));
+    }
+  }
+  Json json;
+  json["type"] = "FeatureCollection";
+  json["numberMatched"] = matched;
+  json["numberReturned"] = features.size();
+  json["features"] = std::move(features);
+  return Document{"application/geo+json", to_text(json)};
+}
+
+}  // namespace trapeze

@@ -1,0 +1,13 @@
+// What the colours of a map mean.
+#pragma once
+
+#include "server/base/problem.h"
+#include "server/documents/document.h"
+
+namespace trapeze {
+
+/// /legend/{layers}.json, or /legend/{layers}[@2x].png, in the style of the query: for each layer,
+/// the topmost first, its title and one entry for each way in which its polygons are drawn.
+OrProblem<Document> legend_document(const DocumentRequest& request);
+
+}  // namespace trapeze

@@ -1,0 +1,368 @@
+#include "server/documents/ogc_api.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "core/grid/web_mercator.h"
+#include "server/base/json_text.h"
+#include "server/data/layer_summary.h"
+#include "server/documents/openapi.h"
+#include "server/documents/tile_matrix_set.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kJsonType = "application/json";
+constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
+constexpr std::string_view kPngType = "image/png";
+constexpr std::string_view kTilesetsRelation =
+    "http://www.opengis.net/def/rel/ogc/1.0/tilesets-map";
+constexpr std::string_view kTilingSchemeRelation =
+    "http://www.opengis.net/def/rel/ogc/1.0/tiling-scheme";
+constexpr std::string_view kTilingSchemesRelation =
+    "http://www.opengis.net/def/rel/ogc/1.0/tiling-schemes";
+constexpr std::string_view kDegreesCrsUri = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
+
+// Only what holds.
+constexpr std::array<std::string_view, 16> kConformance = {
+    "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
+    "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/json",
+    "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/oas30",
+    "http://www.opengis.net/spec/ogcapi-common-2/1.0/conf/collections",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/tileset",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/tilesets-list",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/dataset-tilesets",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/geodata-tilesets",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/collections-selection",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/png",
+    "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/oas30",
+    "http://www.opengis.net/spec/tms/2.0/conf/tilematrixset",
+    "http://www.opengis.net/spec/tms/2.0/conf/json-tilematrixset",
+    "http://www.opengis.net/spec/tms/2.0/conf/json-tilesetmetadata"};
+
+Json link(std::string_view relation, std::string_view type, std::string_view title,
+          const std::string& href) {
+  return {{"rel", relation}, {"type", type}, {"title", title}, {"href", href}};
+}
+
+Problem nothing_here() {
+  return {404, "There is nothing here. The beginning is /ogc."};
+}
+
+Problem unknown_matrix_set(const std::string& name) {
+  return {404, "There is no such tile matrix set.", "tileMatrixSet", name,
+          std::string(kTileMatrixSet)};
+}
+
+/// A resource below /ogc that has tiles: one collection, or the dataset with all or some of them.
+struct TiledResource {
+  std::string path;                 // "/collections/lakes", or empty for the dataset
+  std::vector<std::string> layers;  // bottom first
+  std::string selection;            // "collections=a,b" if only some were asked for
+};
+
+OrProblem<TiledResource> tiled_collection(const std::string& name, const Dataset& dataset) {
+  if (!dataset.find(name)) return unknown_layer(name, dataset);
+  return TiledResource{"/collections/" + name, {name}, {}};
+}
+
+OrProblem<TiledResource> tiled_dataset(const DocumentRequest& request) {
+  TiledResource resource;
+  if (const std::string* selection = request.find("collections")) {
+    auto layers = parse_layer_list(*selection);
+    if (auto* problem = std::get_if<Problem>(&layers)) {
+      problem->parameter = "collections";
+      return std::move(*problem);
+    }
+    resource.layers = std::move(std::get<0>(layers));
+    resource.selection = fmt::format("collections={}", fmt::join(resource.layers, ","));
+    return resource;
+  }
+  for (const ServedLayer& layer : request.dataset.layers()) {
+    resource.layers.push_back(layer.config.name);
+  }
+  if (resource.layers.size() > kMaxLayersPerTile) {
+    return Problem{400,
+                   fmt::format("A tile shows at most {} layers, and here are {}: choose some.",
+                               kMaxLayersPerTile, resource.layers.size()),
+                   "collections", "", "layer names, separated by commas"};
+  }
+  return resource;
+}
+
+/// What must follow the path of a link to keep the resource and its style.
+OrProblem<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
+  const auto style = StyleQuery::parse(request.query, resource.layers);
+  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  const std::string text = std::get<StyleQuery>(style).canonical_text();
+  std::string query = resource.selection;
+  if (!query.empty() && !text.empty()) query += '&';
+  query += text;
+  return query.empty() ? query : "?" + query;
+}
+
+std::string tiles_url(const DocumentRequest& request, const TiledResource& resource) {
+  return fmt::format("{}/ogc{}/map/tiles", request.base_url, resource.path);
+}
+
+std::string matrix_set_url(const DocumentRequest& request) {
+  return fmt::format("{}/ogc/tileMatrixSets/{}", request.base_url, kTileMatrixSet);
+}
+
+Json landing_page(const DocumentRequest& request) {
+  const std::string root = request.base_url + "/ogc";
+  Json links = Json::array();
+  links.push_back(link("self", kJsonType, "This document", root));
+  links.push_back(link("service-desc", kOpenApiType, "Definition of the API", root + "/api"));
+  links.push_back(
+      link("conformance", kJsonType, "Conformance classes that hold here", root + "/conformance"));
+  links.push_back(link("http://www.opengis.net/def/rel/ogc/1.0/conformance", kJsonType,
+                       "Conformance classes that hold here", root + "/conformance"));
+  links.push_back(link("data", kJsonType, "The layers", root + "/collections"));
+  links.push_back(link("http://www.opengis.net/def/rel/ogc/1.0/data", kJsonType, "The layers",
+                       root + "/collections"));
+  links.push_back(
+      link(kTilesetsRelation, kJsonType, "Map tiles of all layers together", root + "/map/tiles"));
+  links.push_back(
+      link(kTilingSchemesRelation, kJsonType, "Tile matrix sets", root + "/tileMatrixSets"));
+  return {{"title", "Trapeze"},
+          {"description", "Maps of polygons as tiles, simplified while they are drawn"},
+          {"links", links}};
+}
+
+Json collection_json(const ServedLayer& served, const DocumentRequest& request) {
+  const LayerConfig& config = served.config;
+  const std::string url = fmt::format("{}/ogc/collections/{}", request.base_url, config.name);
+  Json json;
+  json["id"] = config.name;
+  json["title"] = config.title;
+  if (!config.description.empty()) json["description"] = config.description;
+  if (!config.attribution.empty()) json["attribution"] = config.attribution;
+  const Box& box = served.layer->bounds();
+  const GeographicBounds bounds = box.is_empty() ? kWorldBounds : bounds_in_degrees(box);
+  json["extent"] = {{"spatial", {{"bbox", Json::array({Json(bounds)})}, {"crs", kDegreesCrsUri}}}};
+  json["dataType"] = "map";
+  json["crs"] = Json::array({kTileCrsUri});
+  json["links"] =
+      Json::array({link("self", kJsonType, "This layer", url),
+                   link(kTilesetsRelation, kJsonType, "Map tiles", url + "/map/tiles")});
+  return json;
+}
+
+Json collections_json(const DocumentRequest& request) {
+  Json collections = Json::array();
+  for (const ServedLayer& served : request.dataset.layers()) {
+    collections.push_back(collection_json(served, request));
+  }
+  const Json self = link("self", kJsonType, "This document", request.base_url + "/ogc/collections");
+  return {{"links", Json::array({self})}, {"collections", collections}};
+}
+
+/// What the list of tilesets and the tileset itself both say.
+Json tileset_head(const LayerSummary& summary) {
+  return {{"title", summary.title},
+          {"dataType", "map"},
+          {"crs", kTileCrsUri},
+          {"tileMatrixSetURI", kTileMatrixSetUri}};
+}
+
+OrProblem<Json> tilesets_json(const TiledResource& resource, const DocumentRequest& request) {
+  const auto summary = summarize_layers(resource.layers, request.dataset);
+  if (const auto* problem = std::get_if<Problem>(&summary)) return *problem;
+  const auto query = query_of(resource, request);
+  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
+  const std::string url = tiles_url(request, resource);
+  const std::string tileset_url =
+      fmt::format("{}/{}{}", url, kTileMatrixSet, std::get<std::string>(query));
+  Json tileset = tileset_head(std::get<LayerSummary>(summary));
+  tileset["links"] = Json::array(
+      {link("self", kJsonType, "The tileset", tileset_url),
+       link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request))});
+  const Json self = link("self", kJsonType, "This document", url + std::get<std::string>(query));
+  return Json{{"links", Json::array({self})}, {"tilesets", Json::array({tileset})}};
+}
+
+Json bounding_box(const GeographicBounds& bounds) {
+  return {{"lowerLeft", {bounds[0], bounds[1]}},
+          {"upperRight", {bounds[2], bounds[3]}},
+          {"crs", kDegreesCrsUri}};
+}
+
+Json limits_json(const LayerSummary& summary) {
+  Json limits = Json::array();
+  for (int zoom = summary.min_zoom; zoom <= summary.max_zoom; ++zoom) {
+    const Box world{kGridMin, kGridMin, kGridMax, kGridMax};
+    const TileLimits l = tile_limits(summary.box.is_empty() ? world : summary.box, zoom);
+    limits.push_back({{"tileMatrix", std::to_string(zoom)},
+                      {"minTileRow", l.min_row},
+                      {"maxTileRow", l.max_row},
+                      {"minTileCol", l.min_column},
+                      {"maxTileCol", l.max_column}});
+  }
+  return limits;
+}
+
+OrProblem<Json> tileset_json(const TiledResource& resource, const std::string& matrix_set,
+                             const DocumentRequest& request) {
+  if (matrix_set != kTileMatrixSet) return unknown_matrix_set(matrix_set);
+  const auto summarized = summarize_layers(resource.layers, request.dataset);
+  if (const auto* problem = std::get_if<Problem>(&summarized)) return *problem;
+  const auto query = query_of(resource, request);
+  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
+  const auto& summary = std::get<LayerSummary>(summarized);
+  const std::string url = fmt::format("{}/{}", tiles_url(request, resource), kTileMatrixSet);
+  Json json = tileset_head(summary);
+  if (!summary.description.empty()) json["description"] = summary.description;
+  if (!summary.attribution.empty()) json["attribution"] = summary.attribution;
+  json["boundingBox"] = bounding_box(summary.bounds());
+  json["tileMatrixSetLimits"] = limits_json(summary);
+  Json item = link("item", kPngType, "The tiles",
+                   url + "/{tileMatrix}/{tileRow}/{tileCol}" + std::get<std::string>(query));
+  item["templated"] = true;
+  json["links"] = Json::array(
+      {link("self", kJsonType, "This document", url + std::get<std::string>(query)),
+       link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request)), item});
+  return json;
+}
+
+Json matrix_sets_json(const DocumentRequest& request) {
+  const std::string url = matrix_set_url(request);
+  const Json set = {{"id", kTileMatrixSet},
+                    {"title", kTileMatrixSetTitle},
+                    {"uri", kTileMatrixSetUri},
+                    {"crs", kTileCrsUri},
+                    {"links", Json::array({link("self", kJsonType, kTileMatrixSetTitle, url)})}};
+  return {{"tileMatrixSets", Json::array({set})}};
+}
+
+/// In the terms of version 2 of the standard. What version 1 called otherwise is there under its
+/// old name too: GDAL 3.6, which is that of Debian 12, knows no other.
+Json matrix_set_json(const DocumentRequest& request) {
+  const Json north_west = {-kMercatorHalfSide, kMercatorHalfSide};
+  Json matrices = Json::array();
+  for (int zoom = 0; zoom <= kMaxZoom; ++zoom) {
+    matrices.push_back({{"id", std::to_string(zoom)},
+                        {"identifier", std::to_string(zoom)},
+                        {"scaleDenominator", scale_denominator(zoom)},
+                        {"cellSize", cell_size(zoom)},
+                        {"cornerOfOrigin", "topLeft"},
+                        {"pointOfOrigin", north_west},
+                        {"topLeftCorner", north_west},
+                        {"tileWidth", kTilePixels},
+                        {"tileHeight", kTilePixels},
+                        {"matrixWidth", 1 << zoom},
+                        {"matrixHeight", 1 << zoom}});
+  }
+  Json json;
+  json["id"] = kTileMatrixSet;
+  json["title"] = kTileMatrixSetTitle;
+  json["uri"] = kTileMatrixSetUri;
+  json["crs"] = kTileCrsUri;
+  json["supportedCRS"] = kTileCrsUri;
+  json["orderedAxes"] = {"X", "Y"};
+  json["boundingBox"] = {{"lowerLeft", {-kMercatorHalfSide, -kMercatorHalfSide}},
+                         {"upperRight", {kMercatorHalfSide, kMercatorHalfSide}},
+                         {"crs", kTileCrsUri},
+                         {"orderedAxes", {"X", "Y"}}};
+  json["wellKnownScaleSet"] = kTileScaleSetUri;
+  json["tileMatrices"] = matrices;
+  json["links"] =
+      Json::array({link("self", kJsonType, kTileMatrixSetTitle, matrix_set_url(request))});
+  return json;
+}
+
+/// Whether the path below /ogc is the pattern, in which "*" stands for any one segment.
+bool is_path(std::span<const std::string> path, std::initializer_list<std::string_view> pattern) {
+  return std::ranges::equal(path, pattern, [](std::string_view segment, std::string_view wanted) {
+    return wanted == "*" || segment == wanted;
+  });
+}
+
+std::span<const std::string> path_below_ogc(const DocumentRequest& request) {
+  auto path = std::span(request.path).subspan(1);
+  if (!path.empty() && path.back().empty()) path = path.first(path.size() - 1);  // "/ogc/"
+  return path;
+}
+
+/// The resource that a path of tiles begins with.
+OrProblem<TiledResource> tiled_resource(std::span<const std::string> path,
+                                        const DocumentRequest& request) {
+  return path[0] == "collections" ? tiled_collection(path[1], request.dataset)
+                                  : tiled_dataset(request);
+}
+
+std::optional<Problem> check_format(const DocumentRequest& request, std::string_view format) {
+  const std::string* asked = request.find("f");
+  if (asked == nullptr || *asked == format) return std::nullopt;
+  return Problem{400, fmt::format("The parameter f takes {} here.", format), "f", *asked,
+                 std::string(format)};
+}
+
+OrProblem<Json> find_json(const DocumentRequest& request) {
+  const auto path = path_below_ogc(request);
+  if (is_path(path, {})) return landing_page(request);
+  if (is_path(path, {"conformance"})) return Json{{"conformsTo", kConformance}};
+  if (is_path(path, {"collections"})) return collections_json(request);
+  if (is_path(path, {"collections", "*"})) {
+    const auto position = request.dataset.find(path[1]);
+    if (!position) return unknown_layer(path[1], request.dataset);
+    return collection_json(request.dataset.layers()[*position], request);
+  }
+  if (is_path(path, {"tileMatrixSets"})) return matrix_sets_json(request);
+  if (is_path(path, {"tileMatrixSets", "*"})) {
+    if (path[1] != kTileMatrixSet) return unknown_matrix_set(path[1]);
+    return matrix_set_json(request);
+  }
+  const bool is_list =
+      is_path(path, {"map", "tiles"}) || is_path(path, {"collections", "*", "map", "tiles"});
+  const bool is_tileset = is_path(path, {"map", "tiles", "*"}) ||
+                          is_path(path, {"collections", "*", "map", "tiles", "*"});
+  if (!is_list && !is_tileset) return nothing_here();
+  const auto resource = tiled_resource(path, request);
+  if (const auto* problem = std::get_if<Problem>(&resource)) return *problem;
+  return is_list ? tilesets_json(std::get<TiledResource>(resource), request)
+                 : tileset_json(std::get<TiledResource>(resource), path.back(), request);
+}
+
+OrProblem<TileRequest> tile_of(std::span<const std::string> path, const DocumentRequest& request) {
+  if (auto problem = check_format(request, "png")) return std::move(*problem);
+  auto resource = tiled_resource(path, request);
+  if (auto* problem = std::get_if<Problem>(&resource)) return std::move(*problem);
+  const auto numbers = path.last(4);  // tile matrix set, tile matrix, row, column
+  if (numbers[0] != kTileMatrixSet) return unknown_matrix_set(numbers[0]);
+  const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2]);
+  if (const auto* problem = std::get_if<Problem>(&tile)) return *problem;
+  TileRequest parsed{
+      std::move(std::get<TiledResource>(resource).layers), std::get<TileId>(tile), 1, {}};
+  auto style = StyleQuery::parse(request.query, parsed.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  parsed.style = std::move(std::get<StyleQuery>(style));
+  return parsed;
+}
+
+}  // namespace
+
+OrProblem<Document> ogc_document(const DocumentRequest& request) {
+  if (auto problem = check_format(request, "json")) return std::move(*problem);
+  if (is_path(path_below_ogc(request), {"api"})) {
+    return Document{std::string(kOpenApiType), openapi_json(request.base_url)};
+  }
+  const auto json = find_json(request);
+  if (const auto* problem = std::get_if<Problem>(&json)) return *problem;
+  return Document{std::string(kJsonType), to_text(std::get<Json>(json))};
+}
+
+std::optional<OrProblem<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
+  const auto path = path_below_ogc(request);
+  const bool is_tile = is_path(path, {"map", "tiles", "*", "*", "*", "*"}) ||
+                       is_path(path, {"collections", "*", "map", "tiles", "*", "*", "*", "*"});
+  if (!is_tile) return std::nullopt;
+  return tile_of(path, request);
+}
+
+}  // namespace trapeze

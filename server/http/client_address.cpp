@@ -1,0 +1,102 @@
+#include "server/http/client_address.h"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace trapeze {
+namespace {
+
+constexpr std::array<std::uint8_t, 12> kIpv4Prefix = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
+constexpr std::size_t kLimitedIpv6Bytes = 8;  // a /64
+
+bool is_trusted(const ClientAddress& address, std::span<const AddressRange> trusted) {
+  return std::ranges::any_of(
+      trusted, [&address](const AddressRange& range) { return range.contains(address); });
+}
+
+std::string_view trim(std::string_view text) {
+  while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
+  while (text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
+  return text;
+}
+
+std::optional<int> parse_bits(std::string_view text, int most) {
+  int bits = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bits);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (bits < 0 || bits > most) return std::nullopt;
+  return bits;
+}
+
+}  // namespace
+
+bool ClientAddress::is_ipv4() const {
+  return std::equal(kIpv4Prefix.begin(), kIpv4Prefix.end(), bytes.begin());
+}
+
+std::optional<ClientAddress> parse_address(std::string_view text) {
+  const std::string terminated(text);
+  if (terminated.find('\0') != std::string::npos) return std::nullopt;
+  ClientAddress address;
+  if (inet_pton(AF_INET6, terminated.c_str(), address.bytes.data()) == 1) return address;
+  std::ranges::copy(kIpv4Prefix, address.bytes.begin());
+  if (inet_pton(AF_INET, terminated.c_str(), &address.bytes[kIpv4Prefix.size()]) == 1) {
+    return address;
+  }
+  return std::nullopt;
+}
+
+std::string address_text(const ClientAddress& address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const bool is_ipv4 = address.is_ipv4();
+  inet_ntop(is_ipv4 ? AF_INET : AF_INET6, address.bytes.data() + (is_ipv4 ? kIpv4Prefix.size() : 0),
+            text.data(), text.size());
+  return text.data();
+}
+
+bool AddressRange::contains(const ClientAddress& address) const {
+  const auto whole = static_cast<std::size_t>(bits / 8);
+  if (!std::equal(first.bytes.begin(), first.bytes.begin() + static_cast<std::ptrdiff_t>(whole),
+                  address.bytes.begin())) {
+    return false;
+  }
+  const int rest = bits % 8;
+  return rest == 0 || (first.bytes[whole] ^ address.bytes[whole]) >> (8 - rest) == 0;
+}
+
+std::optional<AddressRange> parse_address_range(std::string_view text) {
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto first = parse_address(text.substr(0, slash));
+  if (!first) return std::nullopt;
+  if (slash == text.size()) return AddressRange{*first, 128};
+  const bool is_ipv4 = first->is_ipv4() && text.find(':') == std::string_view::npos;
+  const auto bits = parse_bits(text.substr(slash + 1), is_ipv4 ? 32 : 128);
+  if (!bits) return std::nullopt;
+  return AddressRange{*first, *bits + (is_ipv4 ? 96 : 0)};
+}
+
+ClientAddress client_behind(const ClientAddress& peer, std::string_view forwarded_for,
+                            std::span<const AddressRange> trusted) {
+  ClientAddress client = peer;
+  // From the right: each proxy has appended whom it heard from.
+  while (!forwarded_for.empty() && is_trusted(client, trusted)) {
+    const std::size_t comma = forwarded_for.rfind(',');
+    const bool is_last = comma == std::string_view::npos;
+    const auto said = parse_address(trim(forwarded_for.substr(is_last ? 0 : comma + 1)));
+    if (!said) break;
+    client = *said;
+    forwarded_for = is_last ? std::string_view() : forwarded_for.substr(0, comma);
+  }
+  return client;
+}
+
+ClientAddress limited_address(const ClientAddress& address) {
+  if (address.is_ipv4()) return address;
+  ClientAddress limited = address;
+  std::fill(limited.bytes.begin() + kLimitedIpv6Bytes, limited.bytes.end(), std::uint8_t{0});
+  return limited;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,50 @@
+#include "server/http/http_message.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace trapeze {
+namespace {
+
+constexpr double kLongestRetrySeconds = 3600;
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  const std::size_t end = text.find_last_not_of(" \t") + 1;
+  return begin < end ? text.substr(begin, end - begin) : std::string_view();
+}
+
+}  // namespace
+
+HttpResponse problem_response(const Problem& problem) {
+  HttpResponse response;
+  response.status = problem.status;
+  response.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>(problem_json(problem));
+  if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
+HttpResponse problem_response(const Problem& problem, std::chrono::duration<double> retry_after) {
+  HttpResponse response = problem_response(problem);
+  std::erase_if(response.headers, [](const auto& header) { return header.first == "Retry-After"; });
+  const double seconds = std::clamp(std::ceil(retry_after.count()), 1.0, kLongestRetrySeconds);
+  response.headers.emplace_back("Retry-After", std::to_string(static_cast<int>(seconds)));
+  return response;
+}
+
+bool matches_entity_tag(std::string_view if_none_match, std::string_view entity_tag) {
+  if (trim(if_none_match) == "*") return true;
+  // Our own tags hold no comma, so splitting at commas can only break tags that are not ours.
+  while (!if_none_match.empty()) {
+    const std::size_t comma = std::min(if_none_match.find(','), if_none_match.size());
+    std::string_view tag = trim(if_none_match.substr(0, comma));
+    if (tag.starts_with("W/")) tag.remove_prefix(2);
+    if (tag == entity_tag) return true;
+    if_none_match.remove_prefix(std::min(comma + 1, if_none_match.size()));
+  }
+  return false;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,624 @@
+#include "server/http/http_server.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <csignal>
+#include <ctime>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "server/base/build_id.h"
+
+namespace trapeze {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace net = boost::asio;
+using tcp = net::ip::tcp;
+using ErrorCode = beast::error_code;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
+constexpr std::size_t kFirstRead = 2048;                   // most requests come as a whole
+// A connection that is closed while the client still sends would be reset, and the response lost:
+// so what it sends is read and thrown away for a little while.
+constexpr auto kLingerTime = std::chrono::seconds(1);
+constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
+// Connections above the limit that are told so; those beyond are dropped without a word.
+constexpr std::size_t kMaxRefusals = 64;
+constexpr auto kRefusalPause = std::chrono::seconds(1);
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+std::string http_date(std::time_t time) {
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  std::array<char, 40> text{};
+  const std::size_t length =
+      std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
+  return {text.data(), length};
+}
+
+bool is_http_error(const ErrorCode& error) {
+  return error.category() == http::make_error_code(http::error::bad_version).category();
+}
+
+ClientAddress client_address(const net::ip::address& address) {
+  ClientAddress client;
+  client.bytes = address.is_v4()
+                     ? net::ip::make_address_v6(net::ip::v4_mapped, address.to_v4()).to_bytes()
+                     : address.to_v6().to_bytes();
+  return client;
+}
+
+std::string_view view_of(beast::string_view view) {
+  return {view.data(), view.size()};
+}
+
+tcp::endpoint endpoint_of(const HttpServerOptions& options) {
+  ErrorCode error;
+  const auto address = net::ip::make_address(options.address, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on \"{}\": an IPv4 or IPv6 address is needed", options.address));
+  }
+  return {address, options.port};
+}
+
+}  // namespace
+
+/// Everything that connections share. It outlives them: those that wait for a worker hold it.
+class HttpServer::State : public std::enable_shared_from_this<State> {
+ public:
+  State(const HttpServerOptions& options, Handler handler, Observer observer);
+
+  void run();
+  void stop();
+  void stop_on_signals();
+  void act_on_hangup(std::function<void()> act);
+
+  std::uint16_t port() const { return port_; }
+  const HttpServerOptions& options() const { return options_; }
+  const Handler& handler() const { return handler_; }
+  const Observer& observer() const { return observer_; }
+  bool is_stopping() const { return is_leaving_; }
+  /// Whether connections are to end with the request that they answer.
+  bool is_draining() const { return is_draining_; }
+  bool is_trusted(const ClientAddress& peer) const;
+  std::size_t connections() const;
+  std::uint64_t refusals() const { return refusals_; }
+
+  void enter(Connection& connection);
+  void leave(Connection& connection);
+
+ private:
+  void open();
+  void accept();
+  void on_accepted(const ErrorCode& error, tcp::socket socket);
+  void admit(tcp::socket socket);
+  void wait_for_signal();
+  void wait_for_hangup();
+  void begin_draining();
+  void finish();
+
+  const HttpServerOptions options_;
+  const Handler handler_;
+  const Observer observer_;
+  std::function<void()> on_hangup_;
+  std::uint16_t port_ = 0;
+  std::atomic<bool> is_leaving_ = false;
+  std::atomic<bool> is_draining_ = false;
+  std::atomic<std::uint64_t> refusals_ = 0;
+
+  mutable std::mutex mutex_;  // guards the three below
+  std::unordered_set<Connection*> connections_;
+  std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> connections_of_;
+  bool has_run_ = false;
+
+  // Last, so that what still is in its queues when it goes finds the rest alive.
+  net::io_context io_;
+  net::strand<net::io_context::executor_type> control_;  // for everything below
+  net::executor_work_guard<net::io_context::executor_type> work_;
+  tcp::acceptor acceptor_;
+  net::steady_timer accept_timer_;
+  net::steady_timer drain_timer_;
+  net::signal_set signals_;
+  net::signal_set hangups_;
+};
+
+/// One client. Reads a request, answers it, and only then reads the next: so pipelined requests
+/// are answered in order. Everything happens on the strand of its stream.
+class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(State& state, tcp::socket socket, const ClientAddress& peer)
+      : state_(state),
+        peer_(peer),
+        is_trusted_(state.is_trusted(peer)),
+        stream_(std::move(socket)) {}
+  ~Connection() { state_.leave(*this); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// From any thread, once.
+  void start();
+  void refuse(const Problem& problem);
+  const ClientAddress& peer() const { return peer_; }
+  /// Closes the connection if it waits for a request; else it is closed after the response.
+  /// From any thread.
+  void drain();
+
+ private:
+  void read();
+  void await_first_byte();
+  void read_request();
+  void on_read(const ErrorCode& error);
+  void answer_unreadable(const ErrorCode& error);
+  /// Whether it is the request line, and not the fields after it, that broke the limit.
+  bool is_request_line_too_long() const;
+  Problem target_too_long() const;
+  void handle(const http::request<http::string_body>& message);
+  ClientAddress client_of(const http::request<http::string_body>& message) const;
+  void send(HttpResponse response);
+  template <typename Body>
+  void write(http::response<Body> message, std::shared_ptr<const std::string> bytes);
+  void on_written(const ErrorCode& error, bool keep_alive);
+  void close_gently();
+  void discard_input();
+  void tell(const HttpResponse& response) const;
+
+  State& state_;
+  const ClientAddress peer_;
+  const bool is_trusted_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kMaxBuffer};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  bool is_reading_ = false;  // and nobody has asked for anything yet, if the buffer is empty
+
+  // The request being answered.
+  HttpRequest request_;
+  Clock::time_point begin_;
+  unsigned version_ = 11;
+  bool keep_alive_ = false;
+
+  std::array<char, 4096> discarded_{};
+  std::size_t discarded_bytes_ = 0;
+};
+
+void HttpServer::Connection::start() {
+  state_.enter(*this);
+  net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->read(); });
+}
+
+void HttpServer::Connection::refuse(const Problem& problem) {
+  state_.enter(*this);
+  net::dispatch(stream_.get_executor(), [self = shared_from_this(), problem] {
+    self->request_.client = self->peer_;
+    self->begin_ = Clock::now();
+    self->send(problem_response(problem, kRefusalPause));
+  });
+}
+
+void HttpServer::Connection::drain() {
+  net::post(stream_.get_executor(), [self = shared_from_this()] {
+    const bool is_idle =
+        self->is_reading_ && self->buffer_.size() == 0 && !self->parser_->got_some();
+    if (is_idle) self->stream_.close();
+  });
+}
+
+void HttpServer::Connection::read() {
+  if (state_.is_draining() && buffer_.size() == 0) return close_gently();
+  parser_.emplace();
+  parser_->header_limit(state_.options().header_limit);
+  parser_->body_limit(state_.options().body_limit);
+  is_reading_ = true;
+  if (buffer_.size() > 0) return read_request();
+  await_first_byte();
+}
+
+void HttpServer::Connection::await_first_byte() {
+  stream_.expires_after(state_.options().idle_timeout);
+  stream_.async_read_some(buffer_.prepare(kFirstRead),
+                          [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
+                            self->buffer_.commit(bytes);
+                            if (!error) return self->read_request();
+                            self->is_reading_ = false;
+                            if (error == net::error::eof) self->close_gently();
+                          });
+}
+
+// The time runs on from the first byte, however slowly the others come.
+void HttpServer::Connection::read_request() {
+  stream_.expires_after(state_.options().read_timeout);
+  http::async_read(stream_, buffer_, *parser_,
+                   [self = shared_from_this()](const ErrorCode& error, std::size_t) {
+                     self->is_reading_ = false;
+                     self->on_read(error);
+                   });
+}
+
+void HttpServer::Connection::on_read(const ErrorCode& error) {
+  begin_ = Clock::now();
+  stream_.expires_never();
+  if (error) return answer_unreadable(error);
+  handle(parser_->get());
+}
+
+void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
+  request_ = {};
+  request_.client = peer_;
+  keep_alive_ = false;
+  if (error == http::error::end_of_stream) return close_gently();
+  if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
+  Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
+  if (error == http::error::body_limit) {
+    problem = {413, fmt::format("The body of a request is at most {} bytes long.",
+                                state_.options().body_limit)};
+  } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    problem = is_request_line_too_long()
+                  ? target_too_long()
+                  : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
+                                             state_.options().header_limit)};
+  }
+  send(problem_response(problem));
+}
+
+bool HttpServer::Connection::is_request_line_too_long() const {
+  // The parser knows the target only once it has seen the end of the request line.
+  const auto target = parser_->get().target();
+  return target.empty() || target.size() > state_.options().target_limit;
+}
+
+Problem HttpServer::Connection::target_too_long() const {
+  return {414, fmt::format("A target is at most {} bytes long.", state_.options().target_limit)};
+}
+
+void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
+  const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
+  request_ = {text(message.method_string()),
+              text(message.target()),
+              text(message[http::field::host]),
+              text(message[http::field::if_none_match]),
+              message.body(),
+              client_of(message)};
+  version_ = message.version();
+  keep_alive_ = message.keep_alive();
+  if (version_ >= 11 && message.count(http::field::host) != 1) {
+    keep_alive_ = false;
+    return send(problem_response({400, "A request needs one Host header."}));
+  }
+  if (request_.target.size() > state_.options().target_limit) {
+    return send(problem_response(target_too_long()));
+  }
+  // The pair lets go of the connection before the state that the connection refers to.
+  auto held = std::pair(state_.shared_from_this(), shared_from_this());
+  // This is the boundary of a request: nothing that goes wrong in one may end the server.
+  try {
+    state_.handler()(request_, [held = std::move(held)](HttpResponse response) {
+      Connection& connection = *held.second;
+      net::post(connection.stream_.get_executor(),
+                [self = held.second, response = std::move(response)]() mutable {
+                  self->send(std::move(response));
+                });
+    });
+  } catch (const std::exception& error) {
+    spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
+    send(problem_response({500, "The request could not be answered."}));
+  }
+}
+
+ClientAddress HttpServer::Connection::client_of(
+    const http::request<http::string_body>& message) const {
+  if (!is_trusted_) return peer_;
+  std::string said;  // a header that comes several times is one list
+  const auto [first, last] = message.equal_range("X-Forwarded-For");
+  for (auto field = first; field != last; ++field) {
+    if (!said.empty()) said += ',';
+    said += view_of(field->value());
+  }
+  return client_behind(peer_, said, state_.options().trusted_proxies);
+}
+
+void HttpServer::Connection::send(HttpResponse response) {
+  tell(response);
+  http::response_header<> header;
+  header.version(version_);
+  header.result(static_cast<unsigned>(response.status));
+  header.set(http::field::date, http_date(std::time(nullptr)));
+  header.set(http::field::server, "trapeze/" + version());
+  for (const auto& [name, value] : response.headers) header.insert(name, value);
+  const bool keep_alive = keep_alive_ && !state_.is_draining();
+  const auto bytes = std::move(response.body);
+  if (bytes == nullptr || request_.method == "HEAD") {
+    http::response<http::empty_body> message(std::move(header));
+    if (bytes != nullptr) message.content_length(bytes->size());
+    message.keep_alive(keep_alive);
+    return write(std::move(message), nullptr);
+  }
+  http::response<http::span_body<const char>> message(std::move(header));
+  message.body() = {bytes->data(), bytes->size()};
+  message.content_length(bytes->size());
+  message.keep_alive(keep_alive);
+  write(std::move(message), bytes);
+}
+
+template <typename Body>
+void HttpServer::Connection::write(http::response<Body> message,
+                                   std::shared_ptr<const std::string> bytes) {
+  stream_.expires_after(state_.options().write_timeout);
+  auto kept = std::make_shared<http::response<Body>>(std::move(message));
+  http::async_write(
+      stream_, *kept,
+      [self = shared_from_this(), kept, bytes = std::move(bytes)](
+          const ErrorCode& error, std::size_t) { self->on_written(error, kept->keep_alive()); });
+}
+
+void HttpServer::Connection::on_written(const ErrorCode& error, bool keep_alive) {
+  if (error) return;  // the client has gone
+  if (keep_alive) return read();
+  close_gently();
+}
+
+void HttpServer::Connection::close_gently() {
+  ErrorCode ignored;  // it may have gone already
+  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  stream_.expires_after(kLingerTime);
+  discard_input();
+}
+
+void HttpServer::Connection::discard_input() {
+  stream_.async_read_some(net::buffer(discarded_),
+                          [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
+                            self->discarded_bytes_ += bytes;
+                            if (!error && self->discarded_bytes_ < kMaxLingerBytes)
+                              self->discard_input();
+                          });
+}
+
+void HttpServer::Connection::tell(const HttpResponse& response) const {
+  if (!state_.observer()) return;
+  const auto field = [this](http::field name) {
+    return parser_ ? view_of(parser_->get()[name]) : std::string_view();
+  };
+  state_.observer()({request_, response, Clock::now() - begin_, version_,
+                     field(http::field::referer), field(http::field::user_agent)});
+}
+
+HttpServer::State::State(const HttpServerOptions& options, Handler handler, Observer observer)
+    : options_(options),
+      handler_(std::move(handler)),
+      observer_(std::move(observer)),
+      io_(static_cast<int>(options.threads)),
+      control_(net::make_strand(io_)),
+      work_(net::make_work_guard(io_)),
+      acceptor_(control_),
+      accept_timer_(control_),
+      drain_timer_(control_),
+      signals_(control_),
+      hangups_(control_) {
+  open();
+}
+
+void HttpServer::State::open() {
+  const tcp::endpoint endpoint = endpoint_of(options_);
+  try {
+    acceptor_.open(endpoint.protocol());
+    acceptor_.set_option(net::socket_base::reuse_address(true));
+    acceptor_.bind(endpoint);
+    acceptor_.listen();
+    port_ = acceptor_.local_endpoint().port();
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("cannot listen on {} port {}: {}", options_.address,
+                                         options_.port, error.code().message()));
+  }
+}
+
+void HttpServer::State::run() {
+  net::post(control_, [this] { accept(); });
+  std::vector<std::thread> threads;
+  for (unsigned i = 1; i < options_.threads; ++i) threads.emplace_back([this] { io_.run(); });
+  io_.run();
+  for (std::thread& thread : threads) thread.join();
+  const std::lock_guard lock(mutex_);
+  has_run_ = true;
+}
+
+void HttpServer::State::accept() {
+  if (is_draining_) return;
+  acceptor_.async_accept(net::make_strand(io_), [this](const ErrorCode& error, tcp::socket socket) {
+    on_accepted(error, std::move(socket));
+  });
+}
+
+void HttpServer::State::on_accepted(const ErrorCode& error, tcp::socket socket) {
+  if (is_draining_) return;
+  if (!error) {
+    admit(std::move(socket));
+    return accept();
+  }
+  // Most likely there are no more file descriptors: trying again at once would only burn time.
+  spdlog::warn("cannot accept a connection: {}", error.message());
+  accept_timer_.expires_after(kAcceptPause);
+  accept_timer_.async_wait([this](const ErrorCode& cancelled) {
+    if (!cancelled) accept();
+  });
+}
+
+void HttpServer::State::admit(tcp::socket socket) {
+  ErrorCode error;
+  const auto remote = socket.remote_endpoint(error);
+  if (error) return;  // it has gone already
+  const ClientAddress peer = client_address(remote.address());
+  const auto [count, count_of_peer] = [this, &peer] {
+    const std::lock_guard lock(mutex_);
+    const auto found = connections_of_.find(limited_address(peer));
+    return std::pair(connections_.size(), found == connections_of_.end() ? 0 : found->second);
+  }();
+  const bool is_full = count >= options_.max_connections;
+  const bool is_greedy = count_of_peer >= options_.max_connections_per_address && !is_trusted(peer);
+  if (is_full || is_greedy) ++refusals_;
+  if (count >= options_.max_connections + kMaxRefusals) return;
+  if (is_greedy && count_of_peer >= options_.max_connections_per_address + kMaxRefusals) return;
+  socket.set_option(tcp::no_delay(true), error);  // only a matter of speed
+  auto connection = std::make_shared<Connection>(*this, std::move(socket), peer);
+  if (is_full) {
+    connection->refuse({503, "There are too many connections. Ask again."});
+  } else if (is_greedy) {
+    connection->refuse({429, "There are too many connections from your address. Ask again."});
+  } else {
+    connection->start();
+  }
+}
+
+bool HttpServer::State::is_trusted(const ClientAddress& peer) const {
+  return std::ranges::any_of(options_.trusted_proxies,
+                             [&peer](const AddressRange& range) { return range.contains(peer); });
+}
+
+std::size_t HttpServer::State::connections() const {
+  const std::lock_guard lock(mutex_);
+  return connections_.size();
+}
+
+void HttpServer::State::enter(Connection& connection) {
+  const std::lock_guard lock(mutex_);
+  if (connections_.insert(&connection).second)
+    ++connections_of_[limited_address(connection.peer())];
+}
+
+void HttpServer::State::leave(Connection& connection) {
+  const std::lock_guard lock(mutex_);
+  if (connections_.erase(&connection) > 0) {
+    const auto found = connections_of_.find(limited_address(connection.peer()));
+    if (--found->second == 0) connections_of_.erase(found);
+  }
+  if (is_draining_ && connections_.empty() && !has_run_) {
+    net::post(control_, [this] { finish(); });
+  }
+}
+
+void HttpServer::State::stop() {
+  net::post(control_, [this] {
+    if (is_draining_) return io_.stop();
+    if (is_leaving_ || options_.drain_delay.count() == 0) {
+      is_leaving_ = true;
+      return begin_draining();
+    }
+    is_leaving_ = true;
+    drain_timer_.expires_after(options_.drain_delay);
+    drain_timer_.async_wait([this](const ErrorCode& cancelled) {
+      if (!cancelled) begin_draining();
+    });
+  });
+}
+
+void HttpServer::State::begin_draining() {
+  std::vector<std::shared_ptr<Connection>> connections;
+  {
+    const std::lock_guard lock(mutex_);
+    is_draining_ = true;
+    for (Connection* connection : connections_) {
+      if (auto alive = connection->weak_from_this().lock()) connections.push_back(std::move(alive));
+    }
+    if (connections_.empty()) net::post(control_, [this] { finish(); });
+  }
+  ErrorCode ignored;  // closing cannot fail in a way that matters now
+  acceptor_.close(ignored);
+  accept_timer_.cancel();
+  for (const auto& connection : connections) connection->drain();
+  drain_timer_.expires_after(options_.drain_timeout);
+  drain_timer_.async_wait([this](const ErrorCode& cancelled) {
+    if (cancelled) return;
+    spdlog::warn("some requests did not end in time and are given up");
+    io_.stop();
+  });
+}
+
+void HttpServer::State::finish() {
+  drain_timer_.cancel();
+  signals_.cancel();
+  hangups_.cancel();
+  work_.reset();
+}
+
+void HttpServer::State::stop_on_signals() {
+  signals_.add(SIGINT);
+  signals_.add(SIGTERM);
+  wait_for_signal();
+}
+
+void HttpServer::State::wait_for_signal() {
+  signals_.async_wait([this](const ErrorCode& error, int signal) {
+    if (error) return;
+    spdlog::info("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
+                 is_draining_ ? "stopping at once" : "finishing what is under way");
+    stop();
+    wait_for_signal();
+  });
+}
+
+void HttpServer::State::act_on_hangup(std::function<void()> act) {
+  on_hangup_ = std::move(act);
+  hangups_.add(SIGHUP);
+  wait_for_hangup();
+}
+
+void HttpServer::State::wait_for_hangup() {
+  hangups_.async_wait([this](const ErrorCode& error, int) {
+    if (error) return;
+    on_hangup_();
+    wait_for_hangup();
+  });
+}
+
+HttpServer::HttpServer(const HttpServerOptions& options, Handler handler, Observer observer)
+    : state_(std::make_shared<State>(options, std::move(handler), std::move(observer))) {}
+
+HttpServer::~HttpServer() = default;
+
+std::uint16_t HttpServer::port() const {
+  return state_->port();
+}
+
+std::size_t HttpServer::connections() const {
+  return state_->connections();
+}
+
+std::uint64_t HttpServer::refusals() const {
+  return state_->refusals();
+}
+
+bool HttpServer::is_stopping() const {
+  return state_->is_stopping();
+}
+
+void HttpServer::run() {
+  state_->run();
+}
+
+void HttpServer::stop() {
+  state_->stop();
+}
+
+void HttpServer::stop_on_signals() {
+  state_->stop_on_signals();
+}
+
+void HttpServer::act_on_hangup(std::function<void()> act) {
+  state_->act_on_hangup(std::move(act));
+}
+
+}  // namespace trapeze

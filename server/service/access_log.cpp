@@ -1,0 +1,126 @@
+#include "server/service/access_log.h"
+
+#include <spdlog/async.h>
+#include <spdlog/fmt/chrono.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <ctime>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "server/base/json_text.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kMostWaitingLines = 8192;
+
+/// To stand between quotes: nothing in it ends them, or the line.
+std::string escaped(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      escaped += '\\';
+      escaped += c;
+    } else if (c >= ' ' && c <= '~') {
+      escaped += c;
+    } else {
+      escaped += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+  }
+  return escaped.empty() ? "-" : escaped;
+}
+
+std::size_t bytes_of(const Answered& answered) {
+  return answered.response.body == nullptr ? 0 : answered.response.body->size();
+}
+
+std::string text_line(const Answered& answered, std::time_t now) {
+  const HttpRequest& request = answered.request;
+  return fmt::format(
+      R"({} - - [{:%d/%b/%Y:%H:%M:%S} +0000] "{} {} HTTP/{}.{}" {} {} "{}" "{}" {:.6f} {})",
+      address_text(request.client), fmt::gmtime(now), escaped(request.method),
+      escaped(request.target), answered.version / 10, answered.version % 10,
+      answered.response.status, bytes_of(answered), escaped(answered.referer),
+      escaped(answered.user_agent), answered.duration.count(),
+      escaped(answered.response.header("X-Cache")));
+}
+
+std::string json_line(const Answered& answered, std::time_t now) {
+  const HttpRequest& request = answered.request;
+  Json line;
+  line["time"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  line["client"] = address_text(request.client);
+  line["method"] = request.method;
+  line["target"] = request.target;
+  line["host"] = request.host;
+  line["status"] = answered.response.status;
+  line["bytes"] = bytes_of(answered);
+  line["seconds"] = answered.duration.count();
+  const std::string_view cache = answered.response.header("X-Cache");
+  if (!cache.empty()) line["cache"] = cache;
+  if (!answered.referer.empty()) line["referer"] = answered.referer;
+  if (!answered.user_agent.empty()) line["user_agent"] = answered.user_agent;
+  return line.dump(-1, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string access_line(const Answered& answered, LogFormat format) {
+  const std::time_t now = std::time(nullptr);
+  return format == LogFormat::json ? json_line(answered, now) : text_line(answered, now);
+}
+
+AccessLog::AccessLog(std::string target, LogFormat format)
+    : target_(std::move(target)),
+      format_(format),
+      writer_(std::make_shared<spdlog::details::thread_pool>(kMostWaitingLines, 1)),
+      logger_(open_logger()) {}
+
+AccessLog::~AccessLog() = default;
+
+void AccessLog::write(const Answered& answered) {
+  logger()->info("{}", access_line(answered, format_));
+}
+
+void AccessLog::reopen() {
+  try {
+    auto opened = open_logger();
+    const std::lock_guard lock(mutex_);
+    logger_.swap(opened);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+}
+
+std::shared_ptr<spdlog::logger> AccessLog::logger() const {
+  const std::lock_guard lock(mutex_);
+  return logger_;
+}
+
+std::shared_ptr<spdlog::logger> AccessLog::open_logger() const {
+  spdlog::sink_ptr sink;
+  try {
+    if (target_ == "stdout") {
+      sink = std::make_shared<spdlog::sinks::stdout_sink_mt>();
+    } else if (target_ == "stderr") {
+      sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    } else {
+      sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(target_);
+    }
+  } catch (const spdlog::spdlog_ex& error) {
+    throw std::runtime_error(fmt::format("cannot write the log of requests: {}", error.what()));
+  }
+  auto opened = std::make_shared<spdlog::async_logger>(
+      "access", std::move(sink), writer_, spdlog::async_overflow_policy::overrun_oldest);
+  opened->set_pattern("%v");
+  opened->flush_on(spdlog::level::info);
+  return opened;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,55 @@
+// A line for every request that was answered.
+//
+// Thread-safety: all methods may be called from any thread. Lines are written by a thread of the
+// log's own: whoever answers requests never waits for a disk or a pipe. If it cannot keep up, the
+// oldest lines are lost.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "server/config/config.h"
+#include "server/http/http_server.h"
+
+namespace spdlog {
+class logger;
+namespace details {
+class thread_pool;
+}
+}  // namespace spdlog
+
+namespace trapeze {
+
+/// The line of an answer, without a line end. As text it is what web servers call the combined
+/// format, followed by the seconds it took and X-Cache ("-" if there is none); what is not
+/// printable ASCII is escaped, so nothing that a client sends can forge a line.
+std::string access_line(const Answered& answered, LogFormat format);
+
+class AccessLog {
+ public:
+  /// `target`: "stdout", "stderr", or the path of a file, to which lines are appended. Throws
+  /// std::runtime_error that names the file if it cannot be opened.
+  AccessLog(std::string target, LogFormat format);
+  ~AccessLog();
+  AccessLog(const AccessLog&) = delete;
+  AccessLog& operator=(const AccessLog&) = delete;
+
+  void write(const Answered& answered);
+
+  /// Opens the file anew, after it was renamed. If that fails, says so in the log of the server and
+  /// goes on with the old one.
+  void reopen();
+
+ private:
+  std::shared_ptr<spdlog::logger> open_logger() const;
+  std::shared_ptr<spdlog::logger> logger() const;
+
+  const std::string target_;
+  const LogFormat format_;
+  std::shared_ptr<spdlog::details::thread_pool> writer_;
+  mutable std::mutex mutex_;  // guards the one below
+  std::shared_ptr<spdlog::logger> logger_;
+};
+
+}  // namespace trapeze

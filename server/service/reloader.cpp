@@ -1,0 +1,195 @@
+#include "server/service/reloader.h"
+
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace trapeze {
+namespace {
+
+constexpr auto kTick = std::chrono::seconds(1);  // without a watch, only to tidy up
+
+// A shapefile is several files, of which one is named.
+constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
+
+void append_file(const std::string& path, std::vector<std::string>& files) {
+  if (!is_file_path(path)) return;
+  files.push_back(path);
+  const std::filesystem::path named(path);
+  if (named.extension() != ".shp") return;
+  for (const std::string_view ending : kBesideShapefile) {
+    files.push_back(std::filesystem::path(named).replace_extension(ending).string());
+  }
+}
+
+}  // namespace
+
+std::string state_of_files(const std::vector<std::string>& paths) {
+  std::string state;
+  for (const std::string& path : paths) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) {
+      state += "-;";
+      continue;
+    }
+    state += fmt::format("{}:{}:{}:{}.{};", status.st_dev, status.st_ino, status.st_size,
+                         status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+  }
+  return state;
+}
+
+/// Datasets that nobody uses any more, until the reloader lets go of them: destroying one takes too
+/// long for the thread that happens to be the last to hold it.
+struct Reloader::Retired {
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const Dataset>> datasets;
+};
+
+Reloader::Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
+                   TileService& tiles, Metrics& metrics, std::function<void()> give_up)
+    : source_(std::move(source)),
+      watch_(watch),
+      data_(data),
+      tiles_(tiles),
+      metrics_(metrics),
+      give_up_(std::move(give_up)),
+      retired_(std::make_shared<Retired>()),
+      thread_([this] { work(); }) {}
+
+Reloader::~Reloader() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void Reloader::reload() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_asked_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Reloader::rethrow_failure() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+std::string Reloader::last_problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
+void Reloader::work() {
+  if (!load_first()) return give_up_();
+  while (wait_for_a_reason()) load_again();
+}
+
+bool Reloader::load_first() {
+  try {
+    serve(source_.layers());
+  } catch (const std::exception&) {
+    metrics_.count_load(false);
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+  is_loading_ = false;
+  return data_.get() != nullptr;
+}
+
+void Reloader::load_again() {
+  is_loading_ = true;
+  try {
+    serve(source_.layers());
+    note("");
+  } catch (const std::exception& error) {
+    metrics_.count_load(false);
+    // Not tried again before something changes once more.
+    state_read_ = state_of_files(files_);
+    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", error.what());
+    note(error.what());
+  }
+  is_loading_ = false;
+}
+
+void Reloader::note(const std::string& problem) {
+  const std::lock_guard lock(mutex_);
+  problem_ = problem;
+}
+
+void Reloader::serve(const std::vector<LayerConfig>& layers) {
+  files_ = watched_files(layers);
+  state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
+  std::shared_ptr<const Dataset> loaded = Dataset::load(layers);
+  const Dataset* served = loaded.get();
+  data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
+               const std::lock_guard lock(retired->mutex);
+               retired->datasets.push_back(std::move(loaded));
+             }});
+  metrics_.count_load(true);
+  spdlog::info("ready: {} layers, generation {}", layers.size(), served->generation());
+}
+
+std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
+  std::vector<std::string> files;
+  append_file(source_.config, files);
+  for (const LayerConfig& layer : layers) {
+    append_file(layer.file, files);
+    append_file(layer.prepared, files);
+  }
+  return files;
+}
+
+/// False if the reloader is to end.
+bool Reloader::wait_for_a_reason() {
+  while (true) {
+    forget_retired();  // here, so that it is done however often somebody asks
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, watch_.count() > 0 ? watch_ : kTick,
+                     [this] { return is_stopping_ || is_asked_; });
+      if (is_stopping_) return false;
+      if (std::exchange(is_asked_, false)) {
+        spdlog::info("reading the layers again, as told");
+        return true;
+      }
+    }
+    if (watch_.count() > 0 && has_settled_change()) {
+      spdlog::info("reading the layers again, as files have changed");
+      return true;
+    }
+  }
+}
+
+bool Reloader::has_settled_change() {
+  const std::string state = state_of_files(files_);
+  const bool has_settled = state == state_seen_;
+  state_seen_ = state;
+  return has_settled && state != state_read_;
+}
+
+void Reloader::forget_retired() {
+  std::vector<std::shared_ptr<const Dataset>> datasets;
+  {
+    const std::lock_guard lock(retired_->mutex);
+    datasets.swap(retired_->datasets);
+  }
+  if (datasets.empty()) return;
+  for (const auto& dataset : datasets) {
+    for (const ServedLayer& served : dataset->layers()) {
+      for (const std::uint64_t mesh : served.layer->mesh_ids()) tiles_.forget(mesh);
+    }
+  }
+  datasets.clear();
+  malloc_trim(0);  // what building took is not needed again soon
+}
+
+}  // namespace trapeze

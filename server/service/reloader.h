@@ -1,0 +1,98 @@
+// Reads the layers that are served, and reads them again when told to or when their files change.
+//
+// New layers are built aside and take the place of the old ones at once; who still draws from old
+// ones keeps them alive. If anything goes wrong, the old ones stay, and log and metrics say so.
+//
+// Thread-safety: all methods may be called from any thread.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/config/config.h"
+#include "server/data/dataset.h"
+#include "server/service/metrics.h"
+#include "server/tiles/tile_service.h"
+
+namespace trapeze {
+
+/// What is to be served, and the files that decide about it.
+struct LayerSource {
+  /// The layers as configured at this moment. Throws std::exception that says what is wrong.
+  std::function<std::vector<LayerConfig>()> layers;
+  std::string config;  // the path of the configuration, watched as well; empty: there is none
+};
+
+/// What can be seen of files without reading them: equal as long as none was changed, replaced,
+/// added or removed.
+std::string state_of_files(const std::vector<std::string>& paths);
+
+class Reloader {
+ public:
+  /// Begins to read the layers in a thread of its own. `watch` is the time between looks at the
+  /// files, 0 for none: a change is taken up when two looks in a row see the same. If the layers
+  /// cannot be read the first time, calls `give_up` from that thread, and does no more. All
+  /// references outlive the reloader.
+  Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
+           TileService& tiles, Metrics& metrics, std::function<void()> give_up);
+  /// Waits for the end of what is being read.
+  ~Reloader();
+  Reloader(const Reloader&) = delete;
+  Reloader& operator=(const Reloader&) = delete;
+
+  /// Reads the layers again, soon.
+  void reload();
+
+  /// Whether layers are being read at this moment.
+  bool is_loading() const { return is_loading_; }
+  /// Throws what went wrong with reading the layers for the first time.
+  void rethrow_failure() const;
+  /// What went wrong the last time, in words; empty if nothing did.
+  std::string last_problem() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Retired;
+
+  void work();
+  bool load_first();
+  void load_again();
+  void serve(const std::vector<LayerConfig>& layers);
+  std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers) const;
+  bool wait_for_a_reason();
+  bool has_settled_change();
+  void forget_retired();
+  void note(const std::string& problem);
+
+  const LayerSource source_;
+  const std::chrono::milliseconds watch_;
+  CurrentDataset& data_;
+  TileService& tiles_;
+  Metrics& metrics_;
+  const std::function<void()> give_up_;
+  const std::shared_ptr<Retired> retired_;
+
+  // Of the thread.
+  std::vector<std::string> files_;
+  std::string state_read_;  // of the files when they were last read
+  std::string state_seen_;  // of the files at the last look
+
+  std::atomic<bool> is_loading_ = true;
+  mutable std::mutex mutex_;  // guards all below
+  std::condition_variable wake_;
+  bool is_asked_ = false;
+  bool is_stopping_ = false;
+  std::string problem_;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,180 @@
+#include "server/service/service.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "server/http/static_files.h"
+#include "server/tiles/start_renderers.h"
+
+namespace trapeze {
+namespace {
+
+using std::chrono::milliseconds;
+
+StaticFiles open_web_root(const std::string& root) {
+  if (root.empty()) {
+    spdlog::info("no viewer: web_root is not set");
+    return {};
+  }
+  StaticFiles files(root);
+  spdlog::info("viewer: {} files of {}", files.size(), root);
+  return files;
+}
+
+int worker_count(const Config& config) {
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  return static_cast<int>(config.server.workers == 0 ? cores : config.server.workers);
+}
+
+SiteOptions site_options(const Config& config) {
+  SiteOptions options;
+  options.public_url = config.server.public_url;
+  options.allowed_hosts = config.server.allowed_hosts;
+  options.cache_control = config.server.cache_control;
+  options.styles = config.styles;
+  options.posted_styles = std::size_t{config.server.posted_styles_mb} << 20;
+  options.max_layers = config.limits.layers;
+  options.max_scale = config.limits.scale;
+  options.max_zoom = config.limits.zoom;
+  options.drawn_per_second = config.limits.drawn_per_second;
+  options.drawn_burst = config.limits.drawn_burst;
+  return options;
+}
+
+HttpServerOptions server_options(const Config& config) {
+  HttpServerOptions options;
+  options.address = config.server.address;
+  options.port = config.server.port;
+  options.threads = config.server.threads;
+  options.max_connections = config.limits.connections;
+  options.max_connections_per_address = config.limits.connections_per_address;
+  options.target_limit = config.limits.target_bytes;
+  options.header_limit = config.limits.header_bytes;
+  options.body_limit = config.limits.body_bytes;
+  options.idle_timeout = milliseconds(config.limits.idle_timeout_ms);
+  options.read_timeout = milliseconds(config.limits.read_timeout_ms);
+  options.write_timeout = milliseconds(config.limits.write_timeout_ms);
+  options.drain_delay = milliseconds(config.server.drain_delay_ms);
+  options.drain_timeout = milliseconds(config.server.drain_timeout_ms);
+  options.trusted_proxies = config.server.trusted_proxies;
+  return options;
+}
+
+void log_answer(const Answered& answered) {
+  if (!spdlog::should_log(spdlog::level::debug)) return;
+  spdlog::debug("{}", access_line(answered, LogFormat::text));
+}
+
+}  // namespace
+
+Service::Service(const Config& config, LayerSource source)
+    : cache_budget_(std::size_t{config.server.cache_mb} << 20),
+      queue_limit_(config.server.queue),
+      cache_(cache_budget_) {
+  if (!config.log.access.empty()) {
+    access_log_ = std::make_unique<AccessLog>(config.log.access, config.log.access_format);
+  }
+  StaticFiles files = open_web_root(config.server.web_root);
+  TileServiceOptions drawing;
+  drawing.queue = config.server.queue;
+  drawing.deadline = milliseconds(config.server.deadline_ms);
+  drawing.batch = config.server.batch;
+  drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
+  auto renderers = start_renderers(config.server.renderer, worker_count(config));
+  warm_up(renderers);
+  tiles_ = std::make_unique<TileService>(drawing, std::move(renderers));
+  SiteOptions options = site_options(config);
+  if (config.server.metrics) options.metrics = [this] { return metrics_text(); };
+  options.is_stopping = [this] { return server_->is_stopping(); };
+  site_ = std::make_unique<Site>(std::move(options), std::move(files), data_, *tiles_, cache_);
+  open_server(config);
+  if (config.admin.port != 0) open_admin(config);
+  reloader_ = std::make_unique<Reloader>(std::move(source), milliseconds(config.server.watch_ms),
+                                         data_, *tiles_, metrics_, [this] { server_->stop(); });
+}
+
+Service::~Service() = default;
+
+void Service::open_server(const Config& config) {
+  server_ = std::make_unique<HttpServer>(
+      server_options(config),
+      [this](const HttpRequest& request, Respond respond) {
+        site_->handle(request, std::move(respond));
+      },
+      [this](const Answered& answered) { observe(answered); });
+  where_.push_back(fmt::format("listening on {} port {}, {} I/O threads", config.server.address,
+                               server_->port(), config.server.threads));
+}
+
+void Service::open_admin(const Config& config) {
+  admin_site_ = std::make_unique<AdminSite>(
+      AdminSite::Sources{[this] { return figures(); }, [this] { return reloader_->last_problem(); },
+                         [this] { return metrics_text(); }});
+  HttpServerOptions options;
+  options.address = config.admin.address;
+  options.port = config.admin.port;
+  options.threads = 1;
+  options.drain_timeout = milliseconds(1000);
+  admin_ = std::make_unique<HttpServer>(options,
+                                        [this](const HttpRequest& request, const Respond& respond) {
+                                          respond(admin_site_->answer(request));
+                                        });
+  where_.push_back(fmt::format("for those who run the server: listening on {} port {} too",
+                               config.admin.address, admin_->port()));
+}
+
+void Service::act_on_signals() {
+  server_->stop_on_signals();
+  server_->act_on_hangup([this] {
+    spdlog::info("SIGHUP");
+    reload();
+  });
+}
+
+// Told only now, as who reads it may send a signal at once.
+void Service::run() {
+  for (const std::string& line : where_) spdlog::info("{}", line);
+  // As long as the other, to be watched while it ends.
+  std::thread admin;
+  if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });
+  server_->run();
+  if (admin_ != nullptr) {
+    admin_->stop();
+    admin.join();
+  }
+  reloader_->rethrow_failure();
+}
+
+void Service::reload() {
+  if (access_log_ != nullptr) access_log_->reopen();
+  reloader_->reload();
+}
+
+ServerFigures Service::figures() const {
+  ServerFigures figures;
+  figures.data = data_.get();
+  figures.cache = cache_.figures();
+  figures.cache_budget = cache_budget_;
+  figures.tiles = tiles_->figures();
+  figures.queue_limit = queue_limit_;
+  figures.connections = server_->connections();
+  figures.refused_connections = server_->refusals();
+  figures.renderer = tiles_->renderer_name();
+  figures.is_stopping = server_->is_stopping();
+  return figures;
+}
+
+std::string Service::metrics_text() const {
+  return metrics_.text(figures());
+}
+
+void Service::observe(const Answered& answered) {
+  metrics_.count(answered);
+  if (access_log_ != nullptr) access_log_->write(answered);
+  log_answer(answered);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,409 @@
+#include "server/service/site.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "server/base/content_hash.h"
+#include "server/base/json_text.h"
+#include "server/base/url.h"
+#include "server/documents/catalog.h"
+#include "server/documents/document.h"
+#include "server/documents/identify.h"
+#include "server/documents/legend.h"
+#include "server/documents/ogc_api.h"
+#include "server/documents/wmts.h"
+#include "server/service/metrics.h"
+#include "server/styles/style_document.h"
+#include "server/tiles/paint_stages.h"
+
+namespace trapeze {
+
+/// Documents, and perhaps tiles, whose path begins with the segment `first`.
+struct DocumentRoute {
+  std::string_view first;
+  OrProblem<Document> (*make)(const DocumentRequest& request);
+  /// Nothing if no tile is asked for. Null if there are none here.
+  std::optional<OrProblem<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
+};
+
+namespace {
+
+constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
+constexpr std::string_view kStylesPath = "/styles";
+constexpr std::string_view kStylesMethods = "GET, HEAD, OPTIONS, POST";
+// Documents and the viewer may change with every start: ask again, and mostly hear 304.
+constexpr std::string_view kDocumentCaching = "no-cache";
+
+constexpr std::array kDocumentRoutes = {DocumentRoute{"identify", identify_document},
+                                        DocumentRoute{"legend", legend_document},
+                                        DocumentRoute{"ogc", ogc_document, parse_ogc_tile},
+                                        DocumentRoute{"wmts", wmts_document, parse_wmts_tile},
+                                        DocumentRoute{"wmts.xml", wmts_document}};
+
+/// Null if there are no documents under the path, which is still encoded.
+const DocumentRoute* find_document_route(std::string_view path) {
+  path.remove_prefix(path.starts_with('/') ? 1 : 0);
+  const auto found =
+      std::ranges::find(kDocumentRoutes, path.substr(0, path.find('/')), &DocumentRoute::first);
+  return found == kDocumentRoutes.end() ? nullptr : &*found;
+}
+
+Problem still_loading() {
+  return {503, "The data is still being loaded."};
+}
+
+void allow_every_origin(HttpResponse& response) {
+  response.headers.emplace_back("Access-Control-Allow-Origin", "*");
+  response.headers.emplace_back("Access-Control-Expose-Headers",
+                                "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache");
+  response.headers.emplace_back("Timing-Allow-Origin", "*");
+}
+
+/// The methods that a path understands.
+std::string_view methods_of(std::string_view path) {
+  return path == kStylesPath ? kStylesMethods : kMethods;
+}
+
+HttpResponse answer_options(std::string_view path) {
+  const std::string methods(methods_of(path));
+  HttpResponse response;
+  response.status = 204;
+  response.headers = {{"Allow", methods},
+                      {"Access-Control-Allow-Methods", methods},
+                      {"Access-Control-Allow-Headers", "*"},
+                      {"Access-Control-Max-Age", "86400"}};
+  return response;
+}
+
+HttpResponse refuse_method(const std::string& method, std::string_view path) {
+  const std::string methods(methods_of(path));
+  auto response = problem_response(
+      {405, fmt::format("Only {} are understood here.", methods), "method", method, methods});
+  response.headers.emplace_back("Allow", methods);
+  return response;
+}
+
+/// 200 with the document, or 304 if the client has it already.
+HttpResponse document(const HttpRequest& request, std::string_view content_type,
+                      const std::string& entity_tag, std::shared_ptr<const std::string> body) {
+  HttpResponse response;
+  response.headers = {{"ETag", entity_tag}, {"Cache-Control", std::string(kDocumentCaching)}};
+  if (matches_entity_tag(request.if_none_match, entity_tag)) {
+    response.status = 304;
+    return response;
+  }
+  response.headers.emplace_back("Content-Type", std::string(content_type));
+  response.body = std::move(body);
+  return response;
+}
+
+HttpResponse fresh_document(const HttpRequest& request, Document made) {
+  ContentHash hash;
+  hash.add(made.content_type);
+  hash.add(made.bytes);
+  return document(request, made.content_type, fmt::format("\"{:016x}\"", hash.value()),
+                  std::make_shared<const std::string>(std::move(made.bytes)));
+}
+
+HttpResponse json_document(const HttpRequest& request, std::string json) {
+  return fresh_document(request, {"application/json", std::move(json)});
+}
+
+std::string server_timing(const PaintTimes& times) {
+  std::string text;
+  for (const PaintStage& stage : kPaintStages) {
+    fmt::format_to(std::back_inserter(text), "{}{};dur={:.3f}", text.empty() ? "" : ", ",
+                   stage.name, times.*stage.milliseconds);
+  }
+  return text;
+}
+
+HttpResponse tile_headers(int status, const std::string& entity_tag,
+                          const std::string& cache_control) {
+  HttpResponse response;
+  response.status = status;
+  response.headers = {{"ETag", entity_tag}, {"Cache-Control", cache_control}};
+  return response;
+}
+
+HttpResponse tile_response(const TileCache::Tile& tile, const std::string& entity_tag,
+                           const std::string& cache_control, TileFormat format,
+                           std::string_view from) {
+  auto response = tile_headers(200, entity_tag, cache_control);
+  response.headers.emplace_back("Content-Type", content_type_of(format));
+  response.headers.emplace_back("X-Cache", from);
+  if (tile.hint != TileHint::none) {
+    response.headers.emplace_back("OATiles-hint", tile.hint == TileHint::empty ? "empty" : "full");
+  }
+  response.body = tile.bytes;
+  return response;
+}
+
+HttpResponse undrawn_response(TileOutcome outcome) {
+  switch (outcome) {
+    case TileOutcome::saturated:
+      return problem_response({503, "There is more to draw than can be drawn. Ask again."});
+    case TileOutcome::late:
+      return problem_response({504, "The tile was not drawn in time."});
+    default:
+      return problem_response({500, "The tile could not be drawn."});
+  }
+}
+
+}  // namespace
+
+Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
+           TileCache& cache)
+    : options_(std::move(options)),
+      files_(std::move(files)),
+      draw_limit_(std::make_unique<RateLimit>(options_.drawn_per_second, options_.drawn_burst)),
+      data_(data),
+      tiles_(tiles),
+      cache_(cache),
+      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)) {}
+
+void Site::handle(const HttpRequest& request, Respond respond) const {
+  const auto respond_to_all = [respond = std::move(respond)](HttpResponse response) {
+    allow_every_origin(response);
+    respond(std::move(response));
+  };
+  if (request.target.size() > kMaxTargetLength) {
+    return respond_to_all(problem_response(
+        {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
+  }
+  const auto target = split_target(request.target);
+  const std::string_view path = target ? target->path : std::string_view();
+  if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
+  if (request.method == "POST" && path == kStylesPath) {
+    return respond_to_all(answer_posted_style(request));
+  }
+  if (request.method != "GET" && request.method != "HEAD") {
+    return respond_to_all(refuse_method(request.method, path));
+  }
+  if (target && target->path.starts_with("/tiles/")) {
+    return handle_tiles(request, respond_to_all);
+  }
+  if (const DocumentRoute* document = target ? find_document_route(target->path) : nullptr) {
+    return handle_document(*document, request, respond_to_all);
+  }
+  respond_to_all(route(request));
+}
+
+HttpResponse Site::route(const HttpRequest& request) const {
+  const auto target = split_target(request.target);
+  const std::string_view path = target ? target->path : std::string_view();
+  if (path == "/health") return answer_health();
+  if (path == "/ready") return answer_ready();
+  if (path == "/catalog") return answer_catalog(request);
+  if (path == "/metrics" && options_.metrics) return answer_metrics();
+  if (path == kStylesPath || path.starts_with("/styles/")) return answer_style(path, request);
+  return answer_file(request);
+}
+
+HttpResponse Site::answer_health() const {
+  HttpResponse response;
+  response.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>("{\"status\": \"ok\"}\n");
+  return response;
+}
+
+HttpResponse Site::answer_ready() const {
+  if (data_.get() == nullptr) return problem_response(still_loading());
+  if (options_.is_stopping && options_.is_stopping()) {
+    return problem_response({503, "The server is about to end."});
+  }
+  HttpResponse response;
+  response.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>("{\"status\": \"ready\"}\n");
+  return response;
+}
+
+HttpResponse Site::answer_metrics() const {
+  HttpResponse response;
+  response.headers = {{"Content-Type", std::string(Metrics::kContentType)},
+                      {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>(options_.metrics());
+  return response;
+}
+
+HttpResponse Site::answer_catalog(const HttpRequest& request) const {
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return problem_response(still_loading());
+  const auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  return json_document(request,
+                       catalog_json(*dataset, tiles_.renderer_name(), std::get<std::string>(base)));
+}
+
+HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
+                                    const HttpRequest& request) const {
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return problem_response(still_loading());
+  const auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  auto json = tile_json(tiles, *dataset, std::get<std::string>(base));
+  if (const auto* problem = std::get_if<Problem>(&json)) return problem_response(*problem);
+  return json_document(request, std::move(std::get<std::string>(json)));
+}
+
+// All names, or one style.
+HttpResponse Site::answer_style(std::string_view path, const HttpRequest& request) const {
+  if (path == kStylesPath) {
+    return json_document(request, to_text({{"styles", styles_->names()}}));
+  }
+  const auto style = styles_->find(path.substr(kStylesPath.size() + 1));
+  if (style == nullptr) return problem_response({404, "There is no style of that name."});
+  return json_document(request, style_document(*style));
+}
+
+HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
+  const auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  auto style = parse_style_document(request.body);
+  if (const auto* problem = std::get_if<Problem>(&style)) return problem_response(*problem);
+  const std::string query = std::get<StyleQuery>(style).canonical_text();
+  const auto id = styles_->post(std::move(std::get<StyleQuery>(style)));
+  if (const auto* problem = std::get_if<Problem>(&id)) return problem_response(*problem);
+  const auto& name = std::get<std::string>(id);
+  const auto& root = std::get<std::string>(base);
+  HttpResponse response;
+  response.status = 201;
+  response.headers = {{"Location", fmt::format("{}{}/{}", root, kStylesPath, name)},
+                      {"Content-Type", "application/json"},
+                      {"Cache-Control", "no-store"}};
+  response.body = std::make_shared<const std::string>(to_text(
+      {{"id", name},
+       {"query", query},
+       {"tiles", fmt::format("{}/tiles/{{layers}}/s/{}/{{z}}/{{x}}/{{y}}.png", root, name)}}));
+  return response;
+}
+
+HttpResponse Site::answer_file(const HttpRequest& request) const {
+  const auto target = split_target(request.target);
+  const auto path = target ? percent_decode(target->path, Plus::literal) : std::nullopt;
+  if (!path) return problem_response({400, "The target is not well formed."});
+  const StaticFile* file = files_.find(*path);
+  if (file == nullptr) {
+    return problem_response({404, *path == "/"
+                                      ? "There is no viewer here: web_root is not set, or has "
+                                        "no index.html. The layers are at /catalog."
+                                      : "There is nothing here. The layers are at /catalog."});
+  }
+  return document(request, file->content_type, file->entity_tag, file->bytes);
+}
+
+void Site::handle_tiles(const HttpRequest& request, const Respond& respond) const {
+  const auto parsed = parse_tiles_target(request.target, *styles_);
+  if (const auto* problem = std::get_if<Problem>(&parsed)) {
+    return respond(problem_response(*problem));
+  }
+  const auto& tiles = std::get<TilesRequest>(parsed);
+  if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
+    return respond(answer_tile_json(*tile_json, request));
+  }
+  handle_tile(std::get<TileRequest>(tiles), request, respond);
+}
+
+void Site::handle_document(const DocumentRoute& route, const HttpRequest& request,
+                           const Respond& respond) const {
+  const auto target = split_target(request.target);
+  auto path = target ? decode_path(target->path) : std::nullopt;
+  auto query = target ? decode_query(target->query) : std::nullopt;
+  if (!path || !query) return respond(problem_response(malformed_target()));
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return respond(problem_response(still_loading()));
+  auto base = base_url(request);
+  if (const auto* problem = std::get_if<Problem>(&base)) return respond(problem_response(*problem));
+  auto expanded = styles_->expand(std::move(*query));
+  if (const auto* problem = std::get_if<Problem>(&expanded)) {
+    return respond(problem_response(*problem));
+  }
+  const DocumentRequest asked{*dataset, *styles_, std::move(std::get<std::string>(base)),
+                              std::move(*path), std::move(std::get<0>(expanded))};
+  if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
+    const auto* problem = std::get_if<Problem>(&*tile);
+    return problem != nullptr ? respond(problem_response(*problem))
+                              : handle_tile(std::get<TileRequest>(*tile), request, respond);
+  }
+  auto made = route.make(asked);
+  if (const auto* problem = std::get_if<Problem>(&made)) return respond(problem_response(*problem));
+  respond(fresh_document(request, std::move(std::get<Document>(made))));
+}
+
+std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
+  if (tile.tile.z > options_.max_zoom) {
+    return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 "
+                                    "to 2^zoom - 1.",
+                                    options_.max_zoom)};
+  }
+  if (tile.scale > options_.max_scale) {
+    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",
+                   fmt::format("{}x", tile.scale), fmt::format("1x to {}x", options_.max_scale)};
+  }
+  if (tile.layers.size() > options_.max_layers) {
+    return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers),
+                   "layers", fmt::format("{} layers", tile.layers.size()),
+                   fmt::format("at most {} layers", options_.max_layers)};
+  }
+  return std::nullopt;
+}
+
+void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
+                       const Respond& respond) const {
+  if (const auto excess = find_excess(tile)) return respond(problem_response(*excess));
+  auto dataset = data_.get();
+  if (dataset == nullptr) return respond(problem_response(still_loading()));
+  auto planned = plan_tile(tile, std::move(dataset));
+  if (const auto* problem = std::get_if<Problem>(&planned)) {
+    return respond(problem_response(*problem));
+  }
+  auto& plan = std::get<TilePlan>(planned);
+  std::string key = plan.key();
+  const std::string entity_tag = entity_tag_of(key);
+  if (matches_entity_tag(request.if_none_match, entity_tag)) {
+    return respond(tile_headers(304, entity_tag, options_.cache_control));
+  }
+  if (const auto kept = cache_.find(key); kept.bytes != nullptr) {
+    return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
+  }
+  if (const ServedLayer* damaged = plan.damaged_layer()) {
+    return respond(problem_response(damaged_layer(*damaged)));
+  }
+  if (const auto pause =
+          draw_limit_->take(limited_address(request.client), RateLimit::Clock::now())) {
+    return respond(problem_response(
+        {429, "These are more tiles at once than one address may have drawn. Ask again."}, *pause));
+  }
+  // The last answers come while the service ends, when this site may be gone.
+  auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond, key,
+                      entity_tag, format = tile.format](const TileAnswer& answer) {
+    if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
+    const TileCache::Tile drawn{answer.tile.bytes, answer.tile.hint};
+    cache.insert(key, drawn);
+    auto response = tile_response(drawn, entity_tag, cache_control, format, "MISS");
+    response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
+    respond(std::move(response));
+  };
+  tiles_.submit(std::move(plan), std::move(key), std::move(answer_with));
+}
+
+OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
+  if (!options_.public_url.empty()) return options_.public_url;
+  if (!is_valid_host(request.host)) {
+    return Problem{400,
+                   "The request needs a Host header with a host name or address, and a port "
+                   "if it is not 80.",
+                   "Host", request.host, "a host name or address, with or without a port"};
+  }
+  if (!options_.allowed_hosts.empty() && !is_allowed_host(request.host, options_.allowed_hosts)) {
+    return Problem{400, "This server is not known by that name.", "Host", request.host,
+                   "one of the names that its configuration allows"};
+  }
+  return "http://" + request.host;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,89 @@
+// What every URL answers: requests in, responses out, without a socket.
+//
+// Thread-safety: handle() may be called from any thread.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/data/dataset.h"
+#include "server/http/http_message.h"
+#include "server/http/rate_limit.h"
+#include "server/http/static_files.h"
+#include "server/styles/style_book.h"
+#include "server/tiles/tile_cache.h"
+#include "server/tiles/tile_service.h"
+
+namespace trapeze {
+
+struct SiteOptions {
+  /// What documents call this server, without a '/' at the end; empty: by the Host of each request.
+  std::string public_url = {};
+  /// The Host headers that will do for that, as is_allowed_host() takes them; empty: all.
+  std::vector<std::string> allowed_hosts = {};
+  /// What caches between here and the client may do with tiles.
+  std::string cache_control = "public, max-age=3600";
+  std::size_t max_layers = kMaxLayersPerTile;  // of one tile
+  int max_scale = kMaxScale;
+  int max_zoom = kMaxZoom;
+  /// Tiles that one address may have drawn, as RateLimit takes them; 0: as many as it likes.
+  double drawn_per_second = 0;
+  double drawn_burst = 1;
+  /// What /metrics answers; empty: it is not there.
+  std::function<std::string()> metrics = {};
+  /// Whether the server is about to end, and so not ready any more; empty: never.
+  std::function<bool()> is_stopping = {};
+  /// Styles by name, and the memory in bytes for those that are posted.
+  std::map<std::string, StyleQuery> styles = {};
+  std::size_t posted_styles = StyleBook::kDefaultBudget;
+};
+
+struct DocumentRoute;
+
+class Site {
+ public:
+  /// `data`, `tiles` and `cache` outlive the site, and `cache` also `tiles`.
+  Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
+       TileCache& cache);
+
+  /// Calls `respond` exactly once: within this call, or later from a worker of the tile service.
+  void handle(const HttpRequest& request, Respond respond) const;
+
+ private:
+  HttpResponse route(const HttpRequest& request) const;
+  HttpResponse answer_health() const;
+  HttpResponse answer_ready() const;
+  HttpResponse answer_catalog(const HttpRequest& request) const;
+  HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
+  HttpResponse answer_file(const HttpRequest& request) const;
+  HttpResponse answer_style(std::string_view path, const HttpRequest& request) const;
+  HttpResponse answer_posted_style(const HttpRequest& request) const;
+  void handle_tiles(const HttpRequest& request, const Respond& respond) const;
+  /// A document, or a tile that is named below it.
+  void handle_document(const DocumentRoute& route, const HttpRequest& request,
+                       const Respond& respond) const;
+  void handle_tile(const TileRequest& tile, const HttpRequest& request,
+                   const Respond& respond) const;
+  HttpResponse answer_metrics() const;
+  /// What of a tile is beyond the limits of this site.
+  std::optional<Problem> find_excess(const TileRequest& tile) const;
+  /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
+  /// says nonsense.
+  OrProblem<std::string> base_url(const HttpRequest& request) const;
+
+  const SiteOptions options_;
+  const StaticFiles files_;
+  const std::unique_ptr<RateLimit> draw_limit_;
+  const CurrentDataset& data_;
+  TileService& tiles_;
+  TileCache& cache_;
+  const std::unique_ptr<StyleBook> styles_;
+};
+
+}  // namespace trapeze

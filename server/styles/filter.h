@@ -1,0 +1,111 @@
+// A condition on the attributes of features, written in a subset of CQL2 text: comparisons, IN,
+// BETWEEN, LIKE, IS NULL, AND, OR, NOT and parentheses over properties, strings, numbers, TRUE and
+// FALSE.
+//
+// Text from a request becomes a Filter, whatever the data; a Filter becomes a BoundFilter for the
+// fields of one layer. Null is neither true nor false, as in SQL: a feature passes only where the
+// condition is true.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/layer/feature_table.h"
+#include "server/base/problem.h"
+
+namespace trapeze {
+
+constexpr std::size_t kMaxFilterLength = 1024;  // bytes
+constexpr std::size_t kMaxFilterDepth = 32;     // of parentheses and NOT
+constexpr std::size_t kMaxFilterTerms = 256;    // literals
+
+using FilterLiteral = std::variant<std::int64_t, double, std::string>;
+
+enum class FilterOperator : std::uint8_t {
+  all,      // of the operands
+  any,      // of the operands
+  negated,  // the operand
+  equal,    // the property to the literal, here and below
+  unequal,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  in,       // one of the literals
+  between,  // the two literals, both included
+  like,     // the literal, in which % stands for anything and _ for any one character
+  is_null,
+};
+
+struct FilterNode {
+  FilterOperator op = FilterOperator::all;
+  std::vector<FilterNode> operands;  // in the order of their text, each once
+  std::string property;
+  std::vector<FilterLiteral> literals;
+};
+
+/// Thread-safety: immutable.
+class Filter {
+ public:
+  /// What is wrong, for a sentence: "at byte 12 a literal is missing".
+  struct Mistake {
+    std::string what;
+  };
+  static std::variant<std::shared_ptr<const Filter>, Mistake> parse(std::string_view text);
+
+  const FilterNode& root() const { return root_; }
+  /// Equal for filters that differ only in spaces, case of keywords, parentheses, and the order of
+  /// what AND, OR and IN join. Is itself a text of the filter.
+  const std::string& text() const { return text_; }
+
+ private:
+  explicit Filter(FilterNode root);
+
+  FilterNode root_;
+  std::string text_;
+};
+
+/// A filter whose properties are fields of a table. Refers to both, which must outlive it.
+class BoundFilter {
+ public:
+  /// The problem, 400, names a property that there is not, with those there are, or one that is
+  /// compared with what it cannot be.
+  static OrProblem<BoundFilter> bind(const Filter& filter, const FeatureTable& features);
+
+  bool passes(std::uint32_t row) const;
+
+ private:
+  enum class Truth : std::uint8_t { no, unknown, yes };
+
+  struct Node {
+    const FilterNode* source = nullptr;
+    int field = -1;
+    std::vector<Node> operands;
+  };
+
+  BoundFilter(const FeatureTable& features, Node root)
+      : features_(&features), root_(std::move(root)) {}
+
+  static OrProblem<Node> bind_node(const FilterNode& node, const FeatureTable& features);
+  Truth evaluate(const Node& node, std::uint32_t row) const;
+  Truth evaluate_all(const Node& node, std::uint32_t row) const;
+  Truth evaluate_any(const Node& node, std::uint32_t row) const;
+
+  const FeatureTable* features_;
+  Node root_;
+};
+
+/// The text in single quotes; a quote in it is written twice.
+std::string single_quoted(std::string_view text);
+
+/// The problem of a parameter that names a property which the layer has not.
+Problem unknown_property(std::string_view parameter, const std::string& property,
+                         const FeatureTable& features);
+
+}  // namespace trapeze

@@ -1,0 +1,127 @@
+#include "server/styles/style_book.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "server/base/content_hash.h"
+
+namespace trapeze {
+namespace {
+
+std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
+    std::map<std::string, StyleQuery> named) {
+  std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> styles;
+  for (auto& [name, style] : named) {
+    styles.emplace(name, std::make_shared<const StyleQuery>(std::move(style)));
+  }
+  return styles;
+}
+
+/// "water." of "water.fill".
+std::string_view layer_part(std::string_view name) {
+  return name.substr(0, name.find('.') + 1);
+}
+
+std::string_view parameter_part(std::string_view name) {
+  return name.substr(name.find('.') + 1);
+}
+
+bool is_about_classing(std::string_view name) {
+  const StyleParameter* parameter = find_style_parameter(parameter_part(name));
+  return parameter != nullptr && is_classing_parameter(parameter->id);
+}
+
+/// Whether the query sets what the name says, or, of the rules for classes, any for that layer.
+bool sets(const std::vector<QueryPair>& query, std::string_view name) {
+  return std::ranges::any_of(query, [name](const QueryPair& pair) {
+    return pair.first == name || (layer_part(pair.first) == layer_part(name) &&
+                                  is_about_classing(name) && is_about_classing(pair.first));
+  });
+}
+
+}  // namespace
+
+StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
+    : named_(shared(std::move(named))), budget_(budget) {}
+
+OrProblem<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) const {
+  const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
+  const auto asked = std::ranges::find_if(query, is_style);
+  if (asked == query.end()) return query;
+  const std::string name = asked->second;
+  query.erase(asked);
+  if (std::ranges::any_of(query, is_style)) {
+    return Problem{400, "The parameter style is given twice.", "style", name, "one name, once"};
+  }
+  if (name == kDefaultName) return query;
+  const auto style = find(name);
+  if (style == nullptr) return unknown(name);
+  std::vector<QueryPair> expanded = query;
+  for (QueryPair& pair : style->pairs()) {
+    if (!sets(query, pair.first)) expanded.push_back(std::move(pair));
+  }
+  return expanded;
+}
+
+Problem StyleBook::unknown(const std::string& name) const {
+  std::string takes = "an id that POST /styles has given";
+  if (!named_.empty()) takes = fmt::format("one of {}, or {}", fmt::join(names(), ", "), takes);
+  return {400,
+          "There is no style of that name. Posted styles are given up when others need "
+          "their place: post it again.",
+          "style", name, takes};
+}
+
+OrProblem<std::string> StyleBook::post(StyleQuery style) {
+  constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
+  const std::string text = style.canonical_text();
+  if (text.size() > kMaxStyleLength) {
+    return Problem{400, fmt::format("A style is at most {} bytes long, written as a query; this "
+                                    "one has {}.",
+                                    kMaxStyleLength, text.size())};
+  }
+  ContentHash hash;
+  hash.add(text);
+  std::string id = fmt::format("{:016x}", hash.value());
+  const std::lock_guard lock(mutex_);
+  if (const auto found = by_id_.find(id); found != by_id_.end()) {
+    if (found->second->style->canonical_text() != text) {
+      return Problem{409, "Another style has the same id. Change anything in this one."};
+    }
+    posted_.splice(posted_.begin(), posted_, found->second);
+    return id;
+  }
+  const std::size_t bytes = kOverhead + 4 * text.size();
+  while (!posted_.empty() && bytes_ + bytes > budget_) {
+    bytes_ -= posted_.back().bytes;
+    by_id_.erase(posted_.back().id);
+    posted_.pop_back();
+  }
+  posted_.push_front({id, std::make_shared<const StyleQuery>(std::move(style)), bytes});
+  by_id_.emplace(id, posted_.begin());
+  bytes_ += bytes;
+  return id;
+}
+
+std::shared_ptr<const StyleQuery> StyleBook::find(std::string_view name) const {
+  if (const auto named = named_.find(name); named != named_.end()) return named->second;
+  const std::lock_guard lock(mutex_);
+  const auto found = by_id_.find(std::string(name));
+  if (found == by_id_.end()) return nullptr;
+  posted_.splice(posted_.begin(), posted_, found->second);
+  return found->second->style;
+}
+
+std::vector<std::string> StyleBook::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, style] : named_) names.push_back(name);
+  return names;
+}
+
+std::size_t StyleBook::memory() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+}  // namespace trapeze

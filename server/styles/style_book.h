@@ -1,0 +1,70 @@
+// Styles that have names: those of the configuration, and those that were posted.
+//
+// Thread-safety: all methods may be called from any thread.
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "server/base/problem.h"
+#include "server/base/url.h"
+#include "server/styles/style_parameters.h"
+
+namespace trapeze {
+
+class StyleBook {
+ public:
+  /// `named` are kept as long as the book; `budget`, in bytes, is for those that are posted. Of
+  /// these, the ones not asked for longest go first.
+  explicit StyleBook(std::map<std::string, StyleQuery> named = {},
+                     std::size_t budget = kDefaultBudget);
+
+  /// The query, and in place of its `style` what that style sets and the query does not. The
+  /// problem, 400, is a style that there is not.
+  OrProblem<std::vector<QueryPair>> expand(std::vector<QueryPair> query) const;
+
+  /// Keeps the style under an id made from what it says: equal styles have equal ids, on every
+  /// server. The problem is a style that is too long.
+  OrProblem<std::string> post(StyleQuery style);
+
+  /// Null if there is none of that name or id.
+  std::shared_ptr<const StyleQuery> find(std::string_view name) const;
+  /// Of the configuration, in order.
+  std::vector<std::string> names() const;
+  /// Bytes held by posted styles.
+  std::size_t memory() const;
+
+  /// The name of the style that sets nothing: each layer has its own.
+  static constexpr std::string_view kDefaultName = "default";
+  static constexpr std::size_t kDefaultBudget = std::size_t{16} << 20;
+  /// In bytes of canonical text: with it, a URL stays within its limit.
+  static constexpr std::size_t kMaxStyleLength = 2048;
+
+ private:
+  struct Posted {
+    std::string id;
+    std::shared_ptr<const StyleQuery> style;
+    std::size_t bytes;
+  };
+  using PostedList = std::list<Posted>;
+
+  Problem unknown(const std::string& name) const;
+
+  const std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> named_;
+  const std::size_t budget_;
+  mutable std::mutex mutex_;   // guards all below
+  mutable PostedList posted_;  // the last used first
+  std::unordered_map<std::string, PostedList::iterator> by_id_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,621 @@
+#include "server/styles/style_parameters.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <tuple>
+
+#include "server/styles/colour_ramps.h"
+
+namespace trapeze {
+namespace {
+
+// The greatest tolerance that a request may ask for: half the side of a tile would leave nothing.
+constexpr double kMaxSimplify = 64;
+constexpr std::size_t kMaxClasses = 64;  // by value; by breaks one more
+constexpr std::size_t kMaxIds = 256;
+constexpr std::size_t kMaxNameLength = 128;
+
+using Type = ParameterType;
+
+// They make sense together only.
+constexpr std::array kClassingParameters = {ParameterId::breaks, ParameterId::classes,
+                                            ParameterId::color_by, ParameterId::ramp};
+
+constexpr std::array kParameters = {
+    StyleParameter{.id = ParameterId::background,
+                   .name = "background",
+                   .type = Type::colour,
+                   .default_text = "transparent",
+                   .is_per_layer = false,
+                   .description = "colour of the tile below all layers"},
+    StyleParameter{.id = ParameterId::breaks,
+                   .name = "breaks",
+                   .type = Type::ascending,
+                   .min = -1e300,
+                   .max = 1e300,
+                   .max_items = kMaxClasses - 1,
+                   .default_text = "no classes",
+                   .description = "where classes of the numbers of color-by part: a number is in "
+                                  "the class above each break that it reaches"},
+    StyleParameter{.id = ParameterId::classes,
+                   .name = "classes",
+                   .type = Type::classes,
+                   .max_items = kMaxClasses,
+                   .default_text = "no classes",
+                   .description = "colours by the value of color-by; * stands for all other "
+                                  "values, which without it keep the fill; null for none"},
+    StyleParameter{.id = ParameterId::color_by,
+                   .name = "color-by",
+                   .type = Type::name,
+                   .default_text = "no classes",
+                   .description = "property by which polygons are coloured, with classes, or with "
+                                  "breaks and ramp"},
+    StyleParameter{.id = ParameterId::debug,
+                   .name = "debug",
+                   .type = Type::words,
+                   .words = "faces junctions mesh tile vertices",
+                   .default_text = "nothing",
+                   .is_per_layer = false,
+                   .description = "what to draw over the tile: each feature in a colour of its "
+                                  "own, the junctions of three or more in a coverage, the "
+                                  "trapezoids, the border of the tile with its numbers, the "
+                                  "vertices that are kept"},
+    StyleParameter{.id = ParameterId::fill,
+                   .name = "fill",
+                   .type = Type::colour,
+                   .default_text = "the layer's own colour",
+                   .description = "colour of the polygons"},
+    StyleParameter{.id = ParameterId::fill_opacity,
+                   .name = "fill-opacity",
+                   .type = Type::number,
+                   .max = 1,
+                   .default_text = "the layer's own opacity",
+                   .description = "opacity of the polygons, multiplied with that of their colour"},
+    StyleParameter{.id = ParameterId::filter,
+                   .name = "filter",
+                   .type = Type::filter,
+                   .default_text = "all features",
+                   .description = "which features are drawn, by their properties"},
+    StyleParameter{.id = ParameterId::highlight,
+                   .name = "highlight",
+                   .type = Type::ids,
+                   .max_items = kMaxIds,
+                   .default_text = "none",
+                   .description = "ids of features that are drawn in the highlight colours"},
+    StyleParameter{.id = ParameterId::highlight_fill,
+                   .name = "highlight-fill",
+                   .type = Type::colour,
+                   .default_text = "ffcc00",
+                   .description = "colour of the highlighted polygons"},
+    StyleParameter{.id = ParameterId::highlight_stroke,
+                   .name = "highlight-stroke",
+                   .type = Type::colour,
+                   .default_text = "the stroke",
+                   .description = "colour of the outline of the highlighted polygons"},
+    StyleParameter{.id = ParameterId::ids,
+                   .name = "ids",
+                   .type = Type::ids,
+                   .max_items = kMaxIds,
+                   .default_text = "all features",
+                   .description = "ids of the only features that are drawn"},
+    StyleParameter{.id = ParameterId::opacity,
+                   .name = "opacity",
+                   .type = Type::number,
+                   .max = 1,
+                   .default_text = "1",
+                   .description = "opacity of the layer as a whole: fill, pattern and outline"},
+    StyleParameter{.id = ParameterId::pattern,
+                   .name = "pattern",
+                   .type = Type::word,
+                   .words = "checker crosshatch dots hatch none stripes",
+                   .default_text = "none",
+                   .description = "pattern over the fill, fixed to the ground"},
+    StyleParameter{.id = ParameterId::pattern_angle,
+                   .name = "pattern-angle",
+                   .type = Type::number,
+                   .min = -360,
+                   .max = 360,
+                   .default_text = "45, of dots and checker 0",
+                   .description = "direction of the pattern, in degrees, anticlockwise from east"},
+    StyleParameter{.id = ParameterId::pattern_color,
+                   .name = "pattern-color",
+                   .type = Type::colour,
+                   .default_text = "000000",
+                   .description = "colour of the pattern"},
+    StyleParameter{.id = ParameterId::pattern_size,
+                   .name = "pattern-size",
+                   .type = Type::number,
+                   .min = 2,
+                   .max = 64,
+                   .default_text = "8",
+                   .description = "distance after which the pattern repeats, in pixels"},
+    StyleParameter{.id = ParameterId::pattern_width,
+                   .name = "pattern-width",
+                   .type = Type::number,
+                   .min = 0.25,
+                   .max = 64,
+                   .default_text = "1; of stripes half the size; of dots a third",
+                   .description = "width of the lines, diameter of the dots, in pixels"},
+    StyleParameter{.id = ParameterId::ramp,
+                   .name = "ramp",
+                   .type = Type::ramp,
+                   .default_text = "no classes",
+                   .description = "colours of the classes between breaks"},
+    StyleParameter{.id = ParameterId::simplify,
+                   .name = "simplify",
+                   .type = Type::number,
+                   .max = kMaxSimplify,
+                   .default_text = "0.25",
+                   .description = "how far the drawn boundary may be from the true one, in pixels "
+                                  "of the picture; 0 draws every vertex"},
+    StyleParameter{.id = ParameterId::small,
+                   .name = "small",
+                   .type = Type::word,
+                   .words = "drop dust keep",
+                   .default_text = "dust",
+                   .description =
+                       "polygons too small for the tolerance: dust keeps their area as a tint, "
+                       "keep draws each at least a pixel large, drop leaves them out"},
+    StyleParameter{.id = ParameterId::stroke,
+                   .name = "stroke",
+                   .type = Type::colour,
+                   .default_text = "no outline",
+                   .description = "colour of the outline"},
+    StyleParameter{.id = ParameterId::stroke_dasharray,
+                   .name = "stroke-dasharray",
+                   .type = Type::numbers,
+                   .max = 256,
+                   .max_items = 8,
+                   .default_text = "no gaps",
+                   .description = "lengths of dashes and gaps of the outline in turn, in pixels"},
+    StyleParameter{.id = ParameterId::stroke_linejoin,
+                   .name = "stroke-linejoin",
+                   .type = Type::word,
+                   .words = "bevel miter round",
+                   .default_text = "round",
+                   .description = "corners of the outline"},
+    StyleParameter{.id = ParameterId::stroke_opacity,
+                   .name = "stroke-opacity",
+                   .type = Type::number,
+                   .max = 1,
+                   .default_text = "1",
+                   .description = "opacity of the outline, multiplied with that of its colour"},
+    StyleParameter{.id = ParameterId::stroke_width,
+                   .name = "stroke-width",
+                   .type = Type::number,
+                   .max = 32,
+                   .default_text = "1 where a stroke is set",
+                   .description = "width of the outline, in pixels"},
+    StyleParameter{.id = ParameterId::style,
+                   .name = "style",
+                   .type = Type::style,
+                   .default_text = "each layer's own style",
+                   .is_per_layer = false,
+                   .description = "a style of the configuration, or one that was posted to "
+                                  "/styles; what the query sets beside it goes before it"},
+    StyleParameter{.id = ParameterId::topology,
+                   .name = "topology",
+                   .type = Type::word,
+                   .words = "fast strict",
+                   .default_text = "strict",
+                   .description = "strict keeps boundaries from crossing each other, fast "
+                                  "simplifies without that test"},
+};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kParameters.size(); ++i) {
+    if (static_cast<std::size_t>(kParameters[i].id) != i) return false;
+    if (i > 0 && kParameters[i - 1].name >= kParameters[i].name) return false;
+  }
+  return true;
+}
+static_assert(is_in_order(), "the table is indexed by ParameterId and sorted by name");
+
+std::optional<double> parse_number(std::string_view text, double min, double max) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  // Written so that NaN fails; adding 0 turns -0 into 0, which would be a second way to say it.
+  if (!(number >= min && number <= max)) return std::nullopt;
+  return number + 0.0;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+std::optional<ParameterValue> parse_numbers(const StyleParameter& parameter,
+                                            std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ',')) {
+    const auto number = parse_number(part, parameter.min, parameter.max);
+    if (!number || numbers.size() == parameter.max_items) return std::nullopt;
+    if (parameter.type == Type::ascending && !numbers.empty() && *number <= numbers.back()) {
+      return std::nullopt;
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+/// Dashes must leave something to draw.
+std::optional<ParameterValue> parse_dashes(const StyleParameter& parameter, std::string_view text) {
+  const auto dashes = parse_numbers(parameter, text);
+  if (!dashes) return std::nullopt;
+  const auto& lengths = std::get<std::vector<double>>(*dashes);
+  const bool has_length = std::ranges::any_of(lengths, [](double length) { return length > 0; });
+  return has_length ? dashes : std::nullopt;
+}
+
+std::optional<ParameterValue> parse_ids(const StyleParameter& parameter, std::string_view text) {
+  std::vector<std::int64_t> ids;
+  for (const std::string_view part : split(text, ',')) {
+    std::int64_t id = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), id);
+    if (error != std::errc() || end != part.data() + part.size()) return std::nullopt;
+    if (ids.size() == parameter.max_items) return std::nullopt;
+    ids.push_back(id);
+  }
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+std::optional<ParameterValue> parse_word(std::string_view text, std::string_view words) {
+  const auto known = split(words, ' ');
+  if (std::ranges::find(known, text) == known.end()) return std::nullopt;
+  return std::string(text);
+}
+
+/// The canonical form has each word once, in the order of the table.
+std::optional<ParameterValue> parse_words(std::string_view text, std::string_view words) {
+  const auto known = split(words, ' ');
+  const auto given = split(text, ',');
+  for (const std::string_view word : given) {
+    if (std::ranges::find(known, word) == known.end()) return std::nullopt;
+  }
+  std::string canonical;
+  for (const std::string_view word : known) {
+    if (std::ranges::find(given, word) == given.end()) continue;
+    if (!canonical.empty()) canonical.push_back(',');
+    canonical += word;
+  }
+  return canonical;
+}
+
+/// Takes a value in single quotes, doubled within, off the beginning of `text`.
+std::optional<std::string> take_quoted(std::string_view& text) {
+  std::string value;
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (text[i] != '\'') {
+      value += text[i];
+    } else if (i + 1 < text.size() && text[i + 1] == '\'') {
+      value += text[i++];
+    } else {
+      text.remove_prefix(i + 1);
+      return value;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Takes "value:" off the beginning of `text`.
+std::optional<ColourClass> take_class_value(std::string_view& text) {
+  ColourClass parsed;
+  if (text.starts_with('\'')) {
+    auto value = take_quoted(text);
+    if (!value) return std::nullopt;
+    parsed.value = std::move(*value);
+  } else {
+    const std::size_t end = text.find_first_of(":,");
+    if (end == 0 || end == std::string_view::npos) return std::nullopt;
+    parsed.value = text.substr(0, end);
+    text.remove_prefix(end);
+    if (parsed.value == "*") parsed.kind = ColourClass::Kind::others;
+    if (parsed.value == "null") parsed.kind = ColourClass::Kind::null;
+    if (parsed.kind != ColourClass::Kind::value) parsed.value.clear();
+  }
+  if (!text.starts_with(':') || has_control_character(parsed.value)) return std::nullopt;
+  text.remove_prefix(1);
+  return parsed;
+}
+
+/// Takes a colour off the beginning of `text`, and the comma after it. Commas between the brackets
+/// of rgb() belong to the colour.
+std::optional<Rgba> take_colour(std::string_view& text) {
+  const std::size_t comma = text.find(',');
+  const std::size_t bracket = text.find('(');
+  std::size_t end = std::min(comma, text.size());
+  if (bracket < comma) {
+    const std::size_t close = text.find(')', bracket);
+    if (close == std::string_view::npos) return std::nullopt;
+    end = std::min(text.find(',', close), text.size());
+  }
+  const auto colour = parse_colour(text.substr(0, end));
+  // A comma at the end would promise another class.
+  if (end + 1 == text.size()) return std::nullopt;
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return colour;
+}
+
+std::optional<ParameterValue> parse_classes(const StyleParameter& parameter,
+                                            std::string_view text) {
+  std::vector<ColourClass> classes;
+  while (!text.empty()) {
+    auto next = take_class_value(text);
+    const auto colour = next ? take_colour(text) : std::nullopt;
+    if (!colour || classes.size() == parameter.max_items) return std::nullopt;
+    const bool is_double = std::ranges::any_of(classes, [&](const ColourClass& other) {
+      return other.kind == next->kind && other.value == next->value;
+    });
+    if (is_double) return std::nullopt;
+    next->colour = *colour;
+    classes.push_back(std::move(*next));
+  }
+  if (classes.empty()) return std::nullopt;
+  return classes;
+}
+
+std::optional<ParameterValue> parse_name(std::string_view text) {
+  if (text.empty() || text.size() > kMaxNameLength) return std::nullopt;
+  if (has_control_character(text)) return std::nullopt;
+  return std::string(text);
+}
+
+std::optional<ParameterValue> parse_filter(std::string_view text) {
+  auto parsed = Filter::parse(text);
+  if (auto* filter = std::get_if<0>(&parsed)) return std::move(*filter);
+  return std::nullopt;
+}
+
+std::string format_class(const ColourClass& colour_class) {
+  const std::string colour = to_hex(colour_class.colour);
+  if (colour_class.kind == ColourClass::Kind::others) return "*:" + colour;
+  if (colour_class.kind == ColourClass::Kind::null) return "null:" + colour;
+  const std::string& value = colour_class.value;
+  const bool is_plain = !value.empty() && value != "*" && value != "null" &&
+                        value.find_first_of("',:") == std::string::npos;
+  return (is_plain ? value : single_quoted(value)) + ":" + colour;
+}
+
+/// Calls `format` with each of the items, and puts commas between.
+template <typename Items, typename Format>
+std::string join_formatted(const Items& items, Format format) {
+  std::string text;
+  for (const auto& item : items) {
+    if (!text.empty()) text.push_back(',');
+    text += format(item);
+  }
+  return text;
+}
+
+struct Formatter {
+  std::string operator()(Rgba colour) const { return to_hex(colour); }
+  // The shortest text that reads back the same.
+  std::string operator()(double number) const { return fmt::format("{}", number); }
+  std::string operator()(const std::string& text) const { return text; }
+  std::string operator()(const std::vector<double>& numbers) const {
+    return join_formatted(numbers, *this);
+  }
+  std::string operator()(const std::vector<std::int64_t>& ids) const {
+    return join_formatted(ids, [](std::int64_t id) { return fmt::format_int(id).str(); });
+  }
+  std::string operator()(const std::vector<ColourClass>& classes) const {
+    return join_formatted(classes, format_class);
+  }
+  std::string operator()(const std::shared_ptr<const Filter>& filter) const {
+    return filter->text();
+  }
+};
+
+std::string written_name(const StyleSetting& setting) {
+  const std::string_view name = style_parameter(setting.parameter).name;
+  return setting.layer.empty() ? std::string(name) : fmt::format("{}.{}", setting.layer, name);
+}
+
+auto order_of(const StyleSetting& setting) {
+  return std::tuple(std::string_view(setting.layer), setting.parameter);
+}
+
+struct SettingName {
+  std::string_view layer;  // empty for all layers
+  const StyleParameter* parameter = nullptr;
+};
+
+/// The parameter is null for a name that means nothing to these layers.
+SettingName resolve_name(std::string_view name, std::span<const std::string> layers) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string_view::npos) return {{}, find_style_parameter(name)};
+  const std::string_view layer = name.substr(0, dot);
+  if (std::ranges::find(layers, layer) == layers.end()) return {};
+  const StyleParameter* parameter = find_style_parameter(name.substr(dot + 1));
+  if (parameter == nullptr || !parameter->is_per_layer) return {};
+  return {layer, parameter};
+}
+
+Problem given_twice(const StyleParameter& parameter, const QueryPair& pair) {
+  return {400, fmt::format("The parameter {} is given more than once.", pair.first), pair.first,
+          pair.second, describe_values(parameter) + ", once"};
+}
+
+Problem wrong_value(const StyleParameter& parameter, const QueryPair& pair) {
+  const std::string takes = describe_values(parameter);
+  std::string detail = fmt::format("The parameter {} takes {}.", pair.first, takes);
+  if (parameter.type == Type::filter) {
+    if (const auto parsed = Filter::parse(pair.second); parsed.index() == 1) {
+      detail += fmt::format(" In this one, {}.", std::get<Filter::Mistake>(parsed).what);
+    }
+  }
+  return {400, std::move(detail), pair.first, pair.second, takes};
+}
+
+}  // namespace
+
+bool is_classing_parameter(ParameterId id) {
+  return std::ranges::find(kClassingParameters, id) != kClassingParameters.end();
+}
+
+std::span<const StyleParameter> style_parameters() {
+  return kParameters;
+}
+
+const StyleParameter& style_parameter(ParameterId id) {
+  return kParameters[static_cast<std::size_t>(id)];
+}
+
+const StyleParameter* find_style_parameter(std::string_view name) {
+  const auto found = std::ranges::lower_bound(kParameters, name, {}, &StyleParameter::name);
+  return found == kParameters.end() || found->name != name ? nullptr : &*found;
+}
+
+std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
+                                              std::string_view text) {
+  switch (parameter.type) {
+    case Type::colour:
+      return parse_colour(text);
+    case Type::number:
+      return parse_number(text, parameter.min, parameter.max);
+    case Type::numbers:
+      return parse_dashes(parameter, text);
+    case Type::ascending:
+      return parse_numbers(parameter, text);
+    case Type::word:
+      return parse_word(text, parameter.words);
+    case Type::words:
+      return parse_words(text, parameter.words);
+    case Type::name:
+      return parse_name(text);
+    case Type::ramp:
+      return find_ramp(text);
+    case Type::ids:
+      return parse_ids(parameter, text);
+    case Type::classes:
+      return parse_classes(parameter, text);
+    case Type::filter:
+      return parse_filter(text);
+    case Type::style:
+      if (is_url_name(text)) return std::string(text);
+      break;
+  }
+  return std::nullopt;
+}
+
+std::string format_value(const ParameterValue& value) {
+  return std::visit(Formatter{}, value);
+}
+
+std::string describe_values(const StyleParameter& parameter) {
+  switch (parameter.type) {
+    case Type::colour:
+      return "a colour: hex digits without # (rgb, rgba, rrggbb or rrggbbaa), a CSS name, "
+             "rgb(r,g,b) or rgba(r,g,b,a)";
+    case Type::number:
+      return fmt::format("a number from {} to {}", parameter.min, parameter.max);
+    case Type::numbers:
+      return fmt::format("1 to {} numbers from {} to {}, not all 0, separated by commas",
+                         parameter.max_items, parameter.min, parameter.max);
+    case Type::ascending:
+      return fmt::format("1 to {} numbers, each greater than the one before, separated by commas",
+                         parameter.max_items);
+    case Type::word:
+      return fmt::format("one of {}", fmt::join(split(parameter.words, ' '), ", "));
+    case Type::words:
+      return fmt::format("some of {}, separated by commas",
+                         fmt::join(split(parameter.words, ' '), ", "));
+    case Type::name:
+      return "the name of a property of the layer";
+    case Type::ramp:
+      return fmt::format("the name of a ColorBrewer ramp, with -r at its end to turn it around: {}",
+                         ramp_names());
+    case Type::ids:
+      return fmt::format("1 to {} integers, separated by commas", parameter.max_items);
+    case Type::classes:
+      return fmt::format(
+          "1 to {} times value:colour, separated by commas, each value once; a value with a "
+          "comma, a colon or a quote stands in single quotes",
+          parameter.max_items);
+    case Type::filter:
+      return fmt::format(
+          "a condition in CQL2 text of at most {} bytes: =, <>, <, <=, >, >=, IN, BETWEEN, LIKE, "
+          "IS NULL, AND, OR, NOT, parentheses; text in single quotes",
+          kMaxFilterLength);
+    case Type::style:
+      return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
+  }
+  return {};
+}
+
+OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
+                                        std::span<const std::string> layers) {
+  StyleQuery query;
+  for (const QueryPair& pair : pairs) {
+    const auto [layer, parameter] = resolve_name(pair.first, layers);
+    if (parameter == nullptr || parameter->id == ParameterId::style) continue;
+    if (query.find_setting(layer, parameter->id) != nullptr) return given_twice(*parameter, pair);
+    auto value = parse_parameter(*parameter, pair.second);
+    if (!value) return wrong_value(*parameter, pair);
+    query.settings_.push_back({std::string(layer), parameter->id, std::move(*value)});
+  }
+  std::ranges::sort(query.settings_, {}, order_of);
+  return query;
+}
+
+const ParameterValue* StyleQuery::find(std::string_view layer, ParameterId parameter) const {
+  const StyleSetting* setting = find_setting(layer, parameter);
+  if (setting == nullptr) setting = find_setting({}, parameter);
+  return setting == nullptr ? nullptr : &setting->value;
+}
+
+std::optional<ParameterValue> StyleQuery::value_for(std::string_view layer,
+                                                    ParameterId parameter) const {
+  const ParameterValue* value = find(layer, parameter);
+  return value == nullptr ? std::nullopt : std::optional(*value);
+}
+
+StyleQuery StyleQuery::with_defaults(const std::string& layer, const StyleQuery& defaults) const {
+  StyleQuery style = *this;
+  const bool has_classing = std::ranges::any_of(
+      kClassingParameters, [&](ParameterId id) { return find(layer, id) != nullptr; });
+  for (const StyleSetting& setting : defaults.settings_) {
+    if (find(layer, setting.parameter) != nullptr) continue;
+    if (has_classing && is_classing_parameter(setting.parameter)) continue;
+    style.settings_.push_back({layer, setting.parameter, setting.value});
+  }
+  std::ranges::sort(style.settings_, {}, order_of);
+  return style;
+}
+
+std::vector<QueryPair> StyleQuery::pairs() const {
+  std::vector<QueryPair> pairs;
+  for (const StyleSetting& setting : settings_) {
+    pairs.emplace_back(written_name(setting), format_value(setting.value));
+  }
+  return pairs;
+}
+
+std::string StyleQuery::canonical_text() const {
+  std::string text;
+  for (const auto& [name, value] : pairs()) {
+    if (!text.empty()) text.push_back('&');
+    text += name + '=' + percent_encode(value);
+  }
+  return text;
+}
+
+const StyleSetting* StyleQuery::find_setting(std::string_view layer, ParameterId parameter) const {
+  const auto found = std::ranges::find_if(settings_, [&](const StyleSetting& setting) {
+    return setting.layer == layer && setting.parameter == parameter;
+  });
+  return found == settings_.end() ? nullptr : &*found;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,152 @@
+// The query parameters that style a tile: one table from which the parser, the canonical form, the
+// error bodies, the OpenAPI document and the table of the README come.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "render/picture/colour.h"
+#include "server/base/problem.h"
+#include "server/base/url.h"
+#include "server/styles/filter.h"
+
+namespace trapeze {
+
+/// In the order of the table, which is the order of names.
+enum class ParameterId : std::uint8_t {
+  background,
+  breaks,
+  classes,
+  color_by,
+  debug,
+  fill,
+  fill_opacity,
+  filter,
+  highlight,
+  highlight_fill,
+  highlight_stroke,
+  ids,
+  opacity,
+  pattern,
+  pattern_angle,
+  pattern_color,
+  pattern_size,
+  pattern_width,
+  ramp,
+  simplify,
+  small,
+  stroke,
+  stroke_dasharray,
+  stroke_linejoin,
+  stroke_opacity,
+  stroke_width,
+  style,
+  topology,
+};
+
+enum class ParameterType : std::uint8_t {
+  colour,
+  number,
+  numbers,    // separated by commas
+  ascending,  // numbers, each greater than the one before
+  word,       // one of StyleParameter::words
+  words,      // some of them, separated by commas, in any order
+  name,       // of a property
+  ramp,       // the name of a ramp of colours
+  ids,        // integers, separated by commas, in any order
+  classes,    // value:colour, separated by commas
+  filter,     // CQL2 text
+  style,      // the name of a style
+};
+
+struct StyleParameter {
+  ParameterId id;
+  std::string_view name;
+  ParameterType type;
+  double min = 0;  // of a number, or of each of several
+  double max = 0;
+  std::size_t max_items = 0;           // of a list
+  std::string_view words = {};         // separated by spaces, in alphabetical order
+  std::string_view default_text = {};  // in words
+  bool is_per_layer = true;            // may be written layer.name= too
+  std::string_view description = {};
+};
+
+/// One class of features, by the value of a property. Values are text until the property is known.
+struct ColourClass {
+  enum class Kind : std::uint8_t {
+    value,
+    null,    // where the property has no value; written null
+    others,  // all that is in no class; written *
+  };
+  Kind kind = Kind::value;
+  std::string value;
+  Rgba colour;
+
+  friend bool operator==(const ColourClass&, const ColourClass&) = default;
+};
+
+/// Words are in the order of the table, each once, separated by commas; ids ascend, each once.
+using ParameterValue =
+    std::variant<Rgba, double, std::string, std::vector<double>, std::vector<std::int64_t>,
+                 std::vector<ColourClass>, std::shared_ptr<const Filter>>;
+
+/// The parameters that requests can set, in order of names.
+std::span<const StyleParameter> style_parameters();
+const StyleParameter& style_parameter(ParameterId id);
+/// Whether it is one of those that put features into classes by a property.
+bool is_classing_parameter(ParameterId id);
+/// Null if there is none of that name.
+const StyleParameter* find_style_parameter(std::string_view name);
+
+/// Nothing if `text` is not what the parameter takes.
+std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
+                                              std::string_view text);
+/// The canonical text, which parse_parameter() reads back as the same value.
+std::string format_value(const ParameterValue& value);
+/// "a number from 0 to 1".
+std::string describe_values(const StyleParameter& parameter);
+
+/// One parameter set by a request, for all layers (`layer` empty) or for one.
+struct StyleSetting {
+  std::string layer;
+  ParameterId parameter;
+  ParameterValue value;
+};
+
+/// The style that a query asks for: settings in the order (layer, parameter), each at most once.
+/// Named styles have been put in place of their names before (see style_book.h).
+class StyleQuery {
+ public:
+  StyleQuery() = default;
+
+  /// Names that are not in the table, or belong to a layer that is not in `layers`, are ignored.
+  /// A parameter given twice, or set to what it does not take, is a problem.
+  static OrProblem<StyleQuery> parse(std::span<const QueryPair> pairs,
+                                     std::span<const std::string> layers);
+
+  std::span<const StyleSetting> settings() const { return settings_; }
+  /// What holds for `layer`: its own setting, else the one for all layers, else null.
+  const ParameterValue* find(std::string_view layer, ParameterId parameter) const;
+  std::optional<ParameterValue> value_for(std::string_view layer, ParameterId parameter) const;
+  /// This style for one layer, and, where it says nothing, `defaults`, which are for all layers.
+  /// Rules that put features into classes are taken as a whole or not at all.
+  StyleQuery with_defaults(const std::string& layer, const StyleQuery& defaults) const;
+  /// The settings as a query has them, not encoded.
+  std::vector<QueryPair> pairs() const;
+  /// The canonical query string: equal styles written differently give the same text.
+  std::string canonical_text() const;
+
+ private:
+  const StyleSetting* find_setting(std::string_view layer, ParameterId parameter) const;
+
+  std::vector<StyleSetting> settings_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,22 @@
+// The steps of painting a tile, under the names by which they are told and measured.
+#pragma once
+
+#include <array>
+
+#include "server/tiles/tile_painter.h"
+
+namespace trapeze {
+
+struct PaintStage {
+  const char* name;
+  double PaintTimes::*milliseconds;
+};
+
+/// In the order in which a tile passes them.
+inline constexpr std::array kPaintStages = {
+    PaintStage{"queue", &PaintTimes::queue_ms},     PaintStage{"select", &PaintTimes::select_ms},
+    PaintStage{"draw", &PaintTimes::draw_ms},       PaintStage{"read", &PaintTimes::read_ms},
+    PaintStage{"resolve", &PaintTimes::resolve_ms}, PaintStage{"compose", &PaintTimes::compose_ms},
+    PaintStage{"encode", &PaintTimes::encode_ms}};
+
+}  // namespace trapeze

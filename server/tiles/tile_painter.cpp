@@ -1,0 +1,188 @@
+#include "server/tiles/tile_painter.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/coverage/stopwatch.h"
+#include "render/picture/debug_marks.h"
+#include "render/picture/webp.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kMaxConstants = 64;
+
+constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 150};
+constexpr Rgba kVertexColour{0xc0, 0x20, 0x20, 255};
+constexpr Rgba kJunctionColour{0x10, 0x18, 0x30, 255};
+constexpr Rgba kBorderColour{0x70, 0x20, 0x90, 255};
+
+View with_margin(const View& view) {
+  constexpr int kPixels = 4;
+  const auto cells = static_cast<std::int64_t>(std::ceil(kPixels * view.cells_per_pixel));
+  return {view.origin_x - cells, view.origin_y - cells, view.cells_per_pixel,
+          view.width + 2 * kPixels, view.height + 2 * kPixels};
+}
+
+}  // namespace
+
+TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+                         std::shared_ptr<FeatureClassCache> classes)
+    : renderer_(std::move(renderer)), classes_(std::move(classes)) {}
+
+std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
+  return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
+}
+
+std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
+  drawing_count_ = 0;
+  std::vector<Sketch> sketches;
+  for (const Job& job : jobs) {
+    if (Clock::now() > job.deadline) {
+      sketches.push_back({true, drawing_count_, drawing_count_, 0, {}});
+    } else {
+      sketches.push_back(sketch(*job.plan));
+    }
+  }
+  const DrawTimes drawn = draw(jobs, sketches);
+  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
+
+  std::vector<std::optional<PaintedTile>> tiles;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    Sketch& sketch = sketches[i];
+    if (sketch.is_late) {
+      tiles.emplace_back();
+      continue;
+    }
+    const double part = share * static_cast<double>(sketch.tasks);
+    sketch.times.draw_ms += drawn.draw_ms * part;
+    sketch.times.read_ms += drawn.read_ms * part;
+    sketch.times.resolve_ms += drawn.resolve_ms * part;
+    tiles.push_back(finish(*jobs[i].plan, sketch));
+  }
+  return tiles;
+}
+
+// From the top down: what lies under an opaque layer that covers everything is not looked at.
+TilePainter::Sketch TilePainter::sketch(const TilePlan& plan) {
+  Sketch sketch;
+  sketch.first_drawing = drawing_count_;
+  const View view = View::of_tile(plan.tile, plan.scale);
+  const Stopwatch stopwatch(sketch.times.select_ms);
+  for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
+    if (!paint->style.is_visible()) continue;  // here for its marks only
+    if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
+    LayerDrawing& drawing = drawings_[drawing_count_];
+    const auto classes = classes_for(plan, *paint);
+    if (!drawing.select(plan, *paint, view, classes.get(), tools_)) continue;
+    ++drawing_count_;
+    if (drawing.hides_all()) break;
+  }
+  sketch.end_drawing = drawing_count_;
+  return sketch;
+}
+
+// Null if all features are drawn alike.
+std::shared_ptr<const FeatureClasses> TilePainter::classes_for(const TilePlan& plan,
+                                                               const LayerPaint& paint) {
+  const Classing& classing = paint.style.classing;
+  if (classing.is_plain()) return nullptr;
+  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  return classes_->find(served.revision, classing, served.layer->features());
+}
+
+DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketches) {
+  tasks_.clear();
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const TilePlan& plan = *jobs[i].plan;
+    const View view = View::of_tile(plan.tile, plan.scale);
+    const std::size_t tasks_before = tasks_.size();
+    for (std::size_t k = sketches[i].first_drawing; k < sketches[i].end_drawing; ++k) {
+      drawings_[k].add_tasks(view, tasks_);
+      const Stopwatch stopwatch(sketches[i].times.draw_ms);
+      drawings_[k].draw_details(view, plan.scale, tools_);
+    }
+    sketches[i].tasks = tasks_.size() - tasks_before;
+  }
+  if (tasks_.empty()) return {};
+  const DrawTimes times = renderer_->draw(tasks_);
+  for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
+  return times;
+}
+
+PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
+  PaintedTile tile{nullptr, TileHint::none, sketch.times};
+  const View view = View::of_tile(plan.tile, plan.scale);
+  bool is_constant = !plan.debug.any();
+  {
+    const Stopwatch stopwatch(tile.times.compose_ms);
+    painted_.clear();
+    for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
+      is_constant = is_constant && drawings_[k].is_constant();
+      painted_.push_back(drawings_[k].painted());
+    }
+    const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
+    composer_.compose(painted_, side, side, plan.background, picture_);
+    if (plan.debug.any()) mark(plan, view, picture_);
+  }
+  const Stopwatch stopwatch(tile.times.encode_ms);
+  if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
+  tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
+                           : std::make_shared<const std::string>(encode(plan.format));
+  return tile;
+}
+
+// Of a tile of one colour.
+TileHint TilePainter::hint_of(const Sketch& sketch) const {
+  TileHint hint = TileHint::empty;
+  for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
+    if (drawings_[k].is_full()) {
+      hint = TileHint::full;
+    } else if (!drawings_[k].is_empty()) {
+      return TileHint::none;
+    }
+  }
+  return hint;
+}
+
+std::string TilePainter::encode(TileFormat format) {
+  return format == TileFormat::webp ? encode_webp(picture_) : encoder_.encode(picture_);
+}
+
+std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, TileFormat format) {
+  auto& bytes = constants_[{to_hex(colour), side, format}];
+  if (bytes != nullptr) return bytes;
+  composer_.compose({}, side, side, colour, picture_);
+  const auto made = std::make_shared<const std::string>(encode(format));
+  bytes = made;
+  if (constants_.size() > kMaxConstants) constants_.clear();
+  return made;
+}
+
+void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
+  spread_palette(picture);
+  const View around = with_margin(view);  // of marks that reach into the picture
+  for (const LayerPaint& paint : plan.layers) {
+    const Layer& layer = plan.layer_of(paint);
+    std::vector<TrapezoidRange> ranges;
+    layer.select({around.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
+    const FeatureOf feature_of = [&layer](std::uint32_t i) { return layer.feature_of(i); };
+    if (plan.debug.faces) mark_faces(layer.mesh(), ranges, feature_of, view, picture);
+    if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
+    if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
+    if (plan.debug.junctions) {
+      std::vector<TrapezoidRange> level_edges;
+      layer.select_level_edges(around.box(), paint.level, level_edges);
+      mark_junctions(layer.mesh(), ranges, level_edges, feature_of, view, kJunctionColour, picture);
+    }
+  }
+  if (!plan.debug.tile) return;
+  std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);
+  if (plan.scale > 1) text += fmt::format(" {}x", plan.scale);
+  mark_border(text, kBorderColour, picture);
+}
+
+}  // namespace trapeze

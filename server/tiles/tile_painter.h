@@ -1,0 +1,110 @@
+// Draws tiles: selects trapezoids, draws coverages, composes colours, encodes the PNG.
+//
+// Thread-safety: one thread at a time; every worker has its own.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "render/coverage/coverage.h"
+#include "render/picture/compose.h"
+#include "render/picture/png.h"
+#include "server/styles/feature_classes.h"
+#include "server/tiles/layer_drawing.h"
+#include "server/tiles/tile_plan.h"
+
+namespace trapeze {
+
+/// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
+struct PaintTimes {
+  double queue_ms = 0;  // until a worker began
+  double select_ms = 0;
+  double draw_ms = 0;
+  double read_ms = 0;
+  double resolve_ms = 0;
+  double compose_ms = 0;
+  double encode_ms = 0;
+};
+
+/// What a tile shows, at a glance.
+enum class TileHint : std::uint8_t {
+  none,
+  empty,  // nothing but the background
+  full,   // one colour, of polygons that cover it wholly
+};
+
+struct PaintedTile {
+  std::shared_ptr<const std::string> bytes;  // PNG or WebP
+  TileHint hint = TileHint::none;
+  PaintTimes times;
+};
+
+class TilePainter {
+ public:
+  using Clock = std::chrono::steady_clock;
+  using Deadline = Clock::time_point;
+
+  struct Job {
+    const TilePlan* plan = nullptr;
+    Deadline deadline;
+  };
+
+  /// Painters may share what keeps the classes of features.
+  explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+                       std::shared_ptr<FeatureClassCache> classes = new_class_cache());
+
+  /// Large enough for the classes that the requests of one map name.
+  static std::shared_ptr<FeatureClassCache> new_class_cache();
+
+  /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
+  /// Nothing for those whose deadline passed before they were begun. What a tile looks like does
+  /// not depend on the others. Throws what the renderer and the encoder throw.
+  std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
+
+  /// Whether painting several tiles at once takes less time than one after the other.
+  bool gains_by_company() const { return renderer_->gains_by_company(); }
+
+ private:
+  // The drawings of one tile, and what became of it.
+  struct Sketch {
+    bool is_late = false;
+    std::size_t first_drawing = 0;
+    std::size_t end_drawing = 0;
+    std::size_t tasks = 0;  // of those to be drawn
+    PaintTimes times;
+  };
+
+  Sketch sketch(const TilePlan& plan);
+  std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
+  DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
+  PaintedTile finish(const TilePlan& plan, const Sketch& sketch);
+  TileHint hint_of(const Sketch& sketch) const;
+  std::string encode(TileFormat format);
+  std::shared_ptr<const std::string> constant(Rgba colour, int side, TileFormat format);
+  void mark(const TilePlan& plan, const View& view, Picture& picture);
+
+  std::unique_ptr<CoverageRenderer> renderer_;
+  std::shared_ptr<FeatureClassCache> classes_;
+  Composer composer_;
+  PngEncoder encoder_;
+  using ConstantKey = std::tuple<std::string, int, TileFormat>;  // colour, side
+  std::map<ConstantKey, std::shared_ptr<const std::string>> constants_;
+  // Kept from tile to tile only for their memory.
+  std::deque<LayerDrawing> drawings_;  // tasks point into them
+  std::size_t drawing_count_ = 0;
+  std::vector<CoverageTask> tasks_;
+  std::vector<PaintedLayer> painted_;
+  DrawingTools tools_;
+  Picture picture_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,119 @@
+#include "server/tiles/tile_plan.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "render/coverage/coverage.h"
+#include "server/base/build_id.h"
+#include "server/base/content_hash.h"
+#include "server/data/layer_summary.h"
+
+namespace trapeze {
+namespace {
+
+// Default tolerance, in output pixels: too small to be seen.
+constexpr double kTolerancePixels = 0.25;
+
+double cells_per_pixel(const TileId& tile, int scale) {
+  return static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
+}
+
+Level level_of_layer(const TileRequest& request, const StyleQuery& query,
+                     const std::string& layer) {
+  return nearest_level(tolerance_in_pixels(query, layer) *
+                       cells_per_pixel(request.tile, request.scale));
+}
+
+Topology topology_of_layer(const StyleQuery& query, const std::string& layer) {
+  const auto value = query.value_for(layer, ParameterId::topology);
+  return value && std::get<std::string>(*value) == "fast" ? Topology::fast : Topology::strict;
+}
+
+SmallPolygons small_of_layer(const StyleQuery& query, const std::string& layer) {
+  const auto value = query.value_for(layer, ParameterId::small);
+  if (!value || std::get<std::string>(*value) == "dust") return SmallPolygons::dust;
+  return std::get<std::string>(*value) == "keep" ? SmallPolygons::keep : SmallPolygons::drop;
+}
+
+DebugMarks debug_marks(const StyleQuery& query) {
+  const auto value = query.value_for({}, ParameterId::debug);
+  if (!value) return {};
+  const std::string& words = std::get<std::string>(*value);
+  const auto has = [&words](std::string_view word) {
+    return words.find(word) != std::string::npos;
+  };
+  return {has("faces"), has("mesh"), has("vertices"), has("junctions"), has("tile")};
+}
+
+}  // namespace
+
+const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
+  const Layer& layer = *dataset->layers()[paint.layer].layer;
+  return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
+}
+
+const ServedLayer* TilePlan::damaged_layer() const {
+  for (const LayerPaint& paint : layers) {
+    const ServedLayer& served = dataset->layers()[paint.layer];
+    if (!served.is_whole()) return &served;
+  }
+  return nullptr;
+}
+
+Level TilePlan::pixel_level() const {
+  return nearest_level(cells_per_pixel(tile, scale) / 4);
+}
+
+std::string TilePlan::key() const {
+  std::string key =
+      fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
+  for (const LayerPaint& paint : layers) {
+    const ServedLayer& layer = dataset->layers()[paint.layer];
+    key += fmt::format(" {}:{:016x}={}/{}/{} {}", layer.config.name, layer.revision, paint.level,
+                       static_cast<int>(paint.topology), static_cast<int>(paint.small),
+                       paint.style.key());
+  }
+  if (format == TileFormat::webp) key += " webp";
+  if (debug.any())
+    key += fmt::format(" debug {:d}{:d}{:d}{:d}{:d}", debug.faces, debug.mesh, debug.vertices,
+                       debug.junctions, debug.tile);
+  return key;
+}
+
+std::string entity_tag_of(std::string_view key) {
+  ContentHash hash;
+  hash.add(build_id());
+  hash.add(key);
+  return fmt::format("\"{:016x}\"", hash.value());
+}
+
+double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {
+  const auto value = query.value_for(layer, ParameterId::simplify);
+  return value ? std::get<double>(*value) : kTolerancePixels;
+}
+
+OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
+  TilePlan plan{dataset,       request.tile, request.scale,
+                kTransparent,  {},           debug_marks(request.style),
+                request.format};
+  if (const auto background = request.style.value_for({}, ParameterId::background)) {
+    const Rgba colour = std::get<Rgba>(*background);
+    if (colour.a > 0) plan.background = colour;
+  }
+  for (const std::string& name : request.layers) {
+    const auto layer = dataset->find(name);
+    if (!layer) return unknown_layer(name, *dataset);
+    const ServedLayer& served = dataset->layers()[*layer];
+    auto style = layer_style(request.style, served, *layer);
+    if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+    const LayerConfig& config = served.config;
+    if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
+    if (!std::get<LayerStyle>(style).is_visible() && !plan.debug.any()) continue;
+    const StyleQuery query = request.style.with_defaults(name, config.style);
+    plan.layers.push_back({*layer, std::get<LayerStyle>(std::move(style)),
+                           level_of_layer(request, query, name), topology_of_layer(query, name),
+                           small_of_layer(query, name)});
+  }
+  return plan;
+}
+
+}  // namespace trapeze

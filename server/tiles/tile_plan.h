@@ -1,0 +1,78 @@
+// What exactly is to be drawn for one tile: names resolved, defaults filled in, nothing left open.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/graph/topological_consistency.h"
+#include "core/grid/tolerance.h"
+#include "core/grid/web_mercator.h"
+#include "core/layer/layer.h"
+#include "render/picture/colour.h"
+#include "server/base/problem.h"
+#include "server/data/dataset.h"
+#include "server/tiles/layer_style.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+
+struct LayerPaint {
+  std::size_t layer = 0;  // position in the dataset
+  LayerStyle style;
+  Level level = 0;  // of the ladder of tolerances
+  Topology topology = Topology::strict;
+  SmallPolygons small = SmallPolygons::dust;
+
+  friend bool operator==(const LayerPaint&, const LayerPaint&) = default;
+};
+
+/// What is drawn over the tile to look into it (paper, Figure 7 f to j).
+struct DebugMarks {
+  bool faces = false;      // each feature in a colour of its own
+  bool mesh = false;       // the sides of the trapezoids
+  bool vertices = false;   // the vertices that are kept
+  bool junctions = false;  // those of them around which lie three or more features
+  bool tile = false;       // the border of the tile, with its numbers
+
+  bool any() const { return faces || mesh || vertices || junctions || tile; }
+  friend bool operator==(const DebugMarks&, const DebugMarks&) = default;
+};
+
+/// Layers that cannot be seen, being transparent or outside of their zooms, are left out.
+struct TilePlan {
+  std::shared_ptr<const Dataset> dataset;
+  TileId tile;
+  int scale = 1;
+  Rgba background;
+  std::vector<LayerPaint> layers;  // bottom first
+  DebugMarks debug = {};
+  TileFormat format = TileFormat::png;
+
+  /// What the paint is for, made with or without the topological consistency test as it says; the
+  /// first to ask for one without it waits until it is made.
+  const Layer& layer_of(const LayerPaint& paint) const;
+  /// The first of the layers whose prepared file was cut off under the server; null if all are
+  /// whole. To be asked before drawing and after.
+  const ServedLayer* damaged_layer() const;
+  /// The level of a quarter of a pixel of the picture.
+  Level pixel_level() const;
+  /// Equal for plans that give the same picture with the same program, however the requests were
+  /// written. Holds the revisions of the layers.
+  std::string key() const;
+};
+
+/// The strong entity tag, in its quotes, of the picture of a plan with that key: from the key and
+/// the build, so that it is known before anything is drawn.
+std::string entity_tag_of(std::string_view key);
+
+/// The problem is 404 for a layer that is not in the dataset.
+OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+
+/// How far the drawn boundary of the layer may be from the true one. The query has the layer's own
+/// defaults in it.
+double tolerance_in_pixels(const StyleQuery& query, const std::string& layer);
+
+}  // namespace trapeze

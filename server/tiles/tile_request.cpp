@@ -1,0 +1,176 @@
+#include "server/tiles/tile_request.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "render/picture/webp.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].{png,webp}";
+constexpr std::string_view kPng = ".png";
+constexpr std::string_view kWebp = ".webp";
+constexpr std::string_view kJson = ".json";
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A decimal integer without leading zeros; a minus sign is allowed so that the tiles which maps
+/// ask for beyond the edge of the world are "outside" and not "malformed".
+bool is_integer(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  if (text.empty() || (text.size() > 1 && text.front() == '0')) return false;
+  return std::ranges::all_of(text, is_digit);
+}
+
+/// Nothing if the integer does not fit, which also is outside of every matrix.
+std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
+  std::uint32_t number = 0;
+  const auto [end, error] =
+      std::from_chars(integer.data(), integer.data() + integer.size(), number);
+  if (error != std::errc() || end != integer.data() + integer.size()) return std::nullopt;
+  return number;
+}
+
+OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
+                                   std::span<const QueryPair> query) {
+  auto layers = parse_layer_list(path[1]);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  auto file = parse_picture_name(path[4]);
+  if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
+  auto tile = parse_tile_id(path[2], path[3], std::get<PictureName>(file).stem);
+  if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
+  TileRequest request{std::move(std::get<0>(layers)),
+                      std::get<TileId>(tile),
+                      std::get<PictureName>(file).scale,
+                      {},
+                      std::get<PictureName>(file).format};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
+  file.remove_suffix(kJson.size());
+  auto layers = parse_layer_list(file);
+  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  TileJsonRequest request{std::move(std::get<0>(layers)), {}};
+  auto style = StyleQuery::parse(query, request.layers);
+  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
+  request.style = std::move(std::get<StyleQuery>(style));
+  return TilesRequest(std::move(request));
+}
+
+/// From /tiles/{layers}/s/{style}/{z}/{x}/{y}.png to the same without it.
+void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
+  query.emplace_back("style", std::move(path[3]));
+  path.erase(path.begin() + 2, path.begin() + 4);
+}
+
+}  // namespace
+
+std::string_view content_type_of(TileFormat format) {
+  return format == TileFormat::webp ? "image/webp" : "image/png";
+}
+
+OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
+  std::vector<std::string> layers;
+  while (true) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    const std::string_view name = list.substr(0, comma);
+    if (!is_url_name(name)) {
+      return Problem{400,
+                     "The path names layers by 1 to 64 letters, digits, '_' or '-' each, "
+                     "separated by commas.",
+                     "layers", std::string(name), "layer names"};
+    }
+    if (std::ranges::find(layers, name) == layers.end()) layers.emplace_back(name);
+    if (layers.size() > kMaxLayersPerTile) {
+      return Problem{400, fmt::format("A tile shows at most {} layers.", kMaxLayersPerTile)};
+    }
+    if (comma == list.size()) return layers;
+    list.remove_prefix(comma + 1);
+  }
+}
+
+OrProblem<PictureName> parse_picture_name(std::string_view name) {
+  const bool is_webp = name.ends_with(kWebp);
+  if (!is_webp && !name.ends_with(kPng)) {
+    return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", kTilePattern)};
+  }
+  if (is_webp && !has_webp()) {
+    return Problem{400, "This server was built without WebP: ask for .png.", "format", "webp",
+                   "png"};
+  }
+  const TileFormat format = is_webp ? TileFormat::webp : TileFormat::png;
+  name.remove_suffix(is_webp ? kWebp.size() : kPng.size());
+  const std::size_t at = name.find('@');
+  if (at == std::string_view::npos) return PictureName{name, 1, format};
+  const std::string_view suffix = name.substr(at + 1);
+  const bool is_scale =
+      suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
+  if (!is_scale) {
+    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
+                   std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
+  }
+  return PictureName{name.substr(0, at), suffix[0] - '0', format};
+}
+
+OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
+  for (const std::string_view number : {z, x, y}) {
+    if (is_integer(number)) continue;
+    return Problem{400,
+                   fmt::format("Zoom, column and row of a tile are integers: {}.", kTilePattern),
+                   "z/x/y", std::string(number), "an integer"};
+  }
+  const auto zoom = to_tile_number(z);
+  const auto column = to_tile_number(x);
+  const auto row = to_tile_number(y);
+  if (zoom && *zoom <= kMaxZoom && column && row) {
+    const TileId tile{static_cast<int>(*zoom), *column, *row};
+    if (tile.is_valid()) return tile;
+  }
+  return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
+                                  "2^zoom - 1.",
+                                  kMaxZoom)};
+}
+
+Problem malformed_target() {
+  return {400,
+          "The target is not well formed: '%' comes with two hex digits, and control characters "
+          "are not allowed."};
+}
+
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles) {
+  if (target.size() > kMaxTargetLength) {
+    return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
+  }
+  const auto split = split_target(target);
+  auto path = split ? decode_path(split->path) : std::nullopt;
+  auto query = split ? decode_query(split->query) : std::nullopt;
+  if (!path || !query) {
+    return malformed_target();
+  }
+  const bool has_style = path->size() == 7 && (*path)[2] == "s";
+  if (has_style) take_style(*path, *query);
+  auto expanded = styles.expand(std::move(*query));
+  if (auto* problem = std::get_if<Problem>(&expanded)) {
+    if (has_style) problem->status = 404;
+    return std::move(*problem);
+  }
+  if (path->size() == 5) return parse_tile(*path, std::get<0>(expanded));
+  if (path->size() == 2 && path->back().ends_with(kJson)) {
+    return parse_tile_json(path->back(), std::get<0>(expanded));
+  }
+  return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
+                                  "/tiles/{{layers}}.json.",
+                                  kTilePattern)};
+}
+
+}  // namespace trapeze

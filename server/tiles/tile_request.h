@@ -1,0 +1,63 @@
+// What a URL below /tiles/ asks for, as types. Everything here is hostile until parsed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/grid/web_mercator.h"
+#include "server/base/problem.h"
+#include "server/styles/style_book.h"
+#include "server/styles/style_parameters.h"
+
+namespace trapeze {
+
+constexpr std::size_t kMaxTargetLength = 4096;  // bytes of path and query together
+constexpr std::size_t kMaxLayersPerTile = 16;
+constexpr int kMaxScale = 4;
+
+enum class TileFormat : std::uint8_t { png, webp };
+
+/// "image/png" or "image/webp".
+std::string_view content_type_of(TileFormat format);
+
+/// One tile: /tiles/{layers}[/s/{style}]/{z}/{x}/{y}[@{1-4}x].{png,webp}
+struct TileRequest {
+  std::vector<std::string> layers;  // valid names, each once, bottom first
+  TileId tile;                      // valid
+  int scale = 1;
+  StyleQuery style;
+  TileFormat format = TileFormat::png;
+};
+
+/// A description of tiles: /tiles/{layers}.json
+struct TileJsonRequest {
+  std::vector<std::string> layers;
+  StyleQuery style;
+};
+
+using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
+
+Problem malformed_target();
+
+/// Parses a target, path and query, that begins with /tiles/, and puts in place what its style
+/// says. The problem is 400 for what is malformed, 404 for a tile outside of the matrix or a style
+/// in the path that there is not, and 414 for a target that is too long.
+OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles);
+
+/// Parses names separated by commas; each is taken once, bottom first.
+OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list);
+
+/// The name of a picture, in parts. Looks at the text it was parsed from.
+struct PictureName {
+  std::string_view stem;  // "7" of "7@2x.png"
+  int scale = 1;
+  TileFormat format = TileFormat::png;
+};
+OrProblem<PictureName> parse_picture_name(std::string_view name);
+
+/// Parses the z, x, y of a tile written as "Z/X/Y".
+OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);
+
+}  // namespace trapeze

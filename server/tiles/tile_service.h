@@ -1,0 +1,109 @@
+// Draws tiles on worker threads: a plan in, bytes out. Knows nothing of HTTP.
+//
+// Thread-safety: all methods may be called from any thread.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_plan.h"
+
+namespace trapeze {
+
+enum class TileOutcome {
+  drawn,
+  saturated,  // the queue is full, or the service is stopping: worth asking again
+  late,       // past the deadline
+  failed,     // an error of ours, which has been logged
+};
+
+struct TileAnswer {
+  TileOutcome outcome = TileOutcome::failed;
+  PaintedTile tile;  // if drawn
+};
+
+struct TileServiceOptions {
+  std::size_t queue = 256;                     // distinct tiles that may wait for a worker
+  std::chrono::milliseconds deadline{10'000};  // from submission to the beginning of drawing
+  // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
+  // waited for; but a tile waits until those of its pass are drawn too.
+  std::size_t batch = 8;
+  // Told once of every tile, however many asked for it, from whatever thread answers.
+  std::function<void(const TileAnswer&)> observe = {};
+};
+
+class TileService {
+ public:
+  using Callback = std::function<void(const TileAnswer&)>;
+
+  /// Starts one worker for each renderer, of which there is at least one.
+  TileService(const TileServiceOptions& options,
+              std::vector<std::unique_ptr<CoverageRenderer>> renderers);
+  /// Ends what is being drawn; what waits is answered as saturated.
+  ~TileService();
+  TileService(const TileService&) = delete;
+  TileService& operator=(const TileService&) = delete;
+
+  /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full.
+  /// `key` is the plan's; plans of equal key that are under way together are drawn once.
+  void submit(TilePlan plan, std::string key, Callback callback);
+
+  /// One word for what draws.
+  const std::string& renderer_name() const { return renderer_name_; }
+
+  struct Figures {
+    std::size_t waiting = 0;  // distinct tiles that wait for a worker
+    std::size_t drawing = 0;  // distinct tiles that a worker has taken
+  };
+  Figures figures() const;
+
+  /// Lets go of what the renderers keep for a mesh. Call it when nothing is going to draw it any
+  /// more: what is drawn later would be kept again.
+  void forget(std::uint64_t mesh_id) { renderer_.forget(mesh_id); }
+
+ private:
+  struct Flight {
+    TilePlan plan;
+    std::string key;
+    TilePainter::Clock::time_point submitted;
+    TilePainter::Deadline deadline;  // of the last who asked
+    std::vector<Callback> callbacks;
+  };
+  using Flights = std::vector<std::shared_ptr<Flight>>;
+
+  void work(TilePainter& painter);
+  /// The next flights to draw together, up to so many; none when the service stops.
+  Flights take(std::size_t most);
+  /// How many of those that wait one worker should take, so that all workers have some.
+  std::size_t share_of_queue() const;
+  void draw(TilePainter& painter, const Flights& flights);
+  std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
+  static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
+  void land(Flight& flight, const TileAnswer& answer);
+  void tell(const TileAnswer& answer) const;
+
+  const TileServiceOptions options_;
+  CoverageRenderer& renderer_;  // the first; its worker lives until the service ends
+  const std::string renderer_name_;
+  const std::size_t workers_;
+  std::vector<std::thread> threads_;
+
+  mutable std::mutex mutex_;  // guards all below
+  std::condition_variable wake_;
+  std::deque<std::shared_ptr<Flight>> queue_;
+  std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn
+  bool is_stopping_ = false;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,203 @@
+#include "core/borders/coverage_groups.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/graph/check_graph.h"
+#include "core/layer/layer_builder.h"
+#include "tests/core/borders/coverage_shapes.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class Features {
+ public:
+  explicit Features(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) rings_.push_back(rings_from_text(text));
+    for (const Rings& rings : rings_) pointers_.push_back(&rings);
+  }
+
+  std::vector<std::vector<std::uint32_t>> groups(CoverageMode coverage) const {
+    return group_features(pointers_, coverage);
+  }
+  Assembly assembly(CoverageMode coverage) {
+    CoverageBuilder builder;
+    return assemble(pointers_, coverage, 0, builder, graph);
+  }
+
+  TrapezoidalGraph graph;
+
+ private:
+  std::vector<Rings> rings_;
+  std::vector<const Rings*> pointers_;
+};
+
+constexpr const char* kLeft10 = "0 0, 10 0, 10 10, 0 10";
+constexpr const char* kRight10 = "10 0, 20 0, 20 10, 10 10";
+
+TEST(CoverageGroups, ModesAreFoundByTheirNames) {
+  for (const CoverageMode mode : {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
+    EXPECT_EQ(coverage_from_name(name_of(mode)), mode);
+  }
+  EXPECT_EQ(coverage_from_name("automatic"), std::nullopt);
+}
+
+TEST(CoverageGroups, AnEdgeInCommonTiesWhateverItsDirection) {
+  EXPECT_THAT(Features({kLeft10, kRight10}).groups(CoverageMode::automatic),
+              ElementsAre(ElementsAre(0, 1)));
+  EXPECT_THAT(Features({kLeft10, "20 10, 20 0, 10 0, 10 10"}).groups(CoverageMode::automatic),
+              ElementsAre(ElementsAre(0, 1)));
+}
+
+TEST(CoverageGroups, WhatOnlyTouchesIsTiedIfAskedFor) {
+  const Features features({kLeft10, "10 10, 20 10, 20 20, 10 20", "40 0, 50 0, 50 10, 40 10"});
+  EXPECT_THAT(features.groups(CoverageMode::automatic), IsEmpty());
+  EXPECT_THAT(features.groups(CoverageMode::on), ElementsAre(ElementsAre(0, 1)));
+}
+
+TEST(CoverageGroups, TiesReachFromNeighbourToNeighbour) {
+  const Features features({"20 0, 30 0, 30 10, 20 10", kLeft10, "90 0, 95 0, 95 5", kRight10});
+  EXPECT_THAT(features.groups(CoverageMode::automatic), ElementsAre(ElementsAre(0, 1, 3)));
+}
+
+TEST(CoverageGroups, WhatOverlapsByTooMuchStaysApart) {
+  // A house on the right square, which it has an edge in common with.
+  Features features({kLeft10, kRight10, "20 0, 20 10, 12 10, 12 0"});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, ElementsAre(0, 1));
+  EXPECT_THAT(assembly.apart, ElementsAre(2));
+  EXPECT_EQ(check_graph(features.graph), "");
+  const Assembly all = features.assembly(CoverageMode::on);
+  EXPECT_THAT(all.together, ElementsAre(0, 1, 2));
+  EXPECT_THAT(all.apart, IsEmpty());
+  EXPECT_EQ(all.outcome.overlaps.size(), 1u);
+}
+
+TEST(CoverageGroups, TheOneWithTheFewestNeighboursIsLeftOut) {
+  // A field under two plots, which are neighbours.
+  Features features({"0 0, 20 0, 20 10, 0 10", kLeft10, kRight10});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, ElementsAre(1, 2));
+  EXPECT_THAT(assembly.apart, ElementsAre(0));
+}
+
+TEST(CoverageGroups, WhatIsThereTwiceDoesNotCostTheMotherland) {
+  // The left one has two islands, which are there as features as well.
+  Features features({"0 0, 10 0, 10 10, 0 10; 50 0, 55 0, 55 5; 60 0, 65 0, 65 5", kRight10,
+                     "50 0, 55 0, 55 5", "60 0, 65 0, 65 5"});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, ElementsAre(0, 1));
+  EXPECT_THAT(assembly.apart, ElementsAre(2, 3));
+}
+
+TEST(CoverageGroups, ALittleOverlapIsNoReason) {
+  Features features(
+      {"0 0, 1000 0, 1001 500, 1000 1000, 0 1000", "1000 0, 2000 0, 2000 1000, 1000 1000"});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, ElementsAre(0, 1));
+  EXPECT_EQ(assembly.outcome.overlaps.size(), 1u);
+}
+
+TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {
+  Features features({kLeft10, kLeft10});
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_THAT(assembly.together, IsEmpty());
+  EXPECT_THAT(assembly.apart, ElementsAre(0, 1));
+}
+
+/// A layer of a coverage, all of whose features are to be together.
+std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
+  GeneralizationOptions options;
+  options.coverage = CoverageMode::on;
+  std::vector<LayerBuilder> builders;
+  builders.emplace_back(options);
+  FeatureTable table(std::vector<Field>{});
+  std::vector<std::uint32_t> rows;
+  std::vector<const Rings*> rings;
+  for (const Rings& feature : features) {
+    rows.push_back(table.append(static_cast<std::int64_t>(rows.size()), {}));
+    rings.push_back(&feature);
+  }
+  builders.front().add_coverage(rows, rings);
+  return LayerBuilder::join(builders, std::move(table));
+}
+
+/// Twice the area between the edges of trapezoids and boxes of dust, by sign.
+double area_of(const MeshView& mesh, std::span<const TrapezoidRange> ranges) {
+  double area = 0;
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const MeshTrapezoid& t = mesh.trapezoids[i];
+    const double top = mesh.vertices[t.top].y;
+    const double bottom = mesh.vertices[t.bottom].y;
+    if (top == bottom) return;
+    const auto x_at = [&](std::uint32_t edge, double y) {
+      const Point u = mesh.vertices[mesh.edges[edge].upper];
+      const Point l = mesh.vertices[mesh.edges[edge].lower];
+      return u.x +
+             (static_cast<double>(l.x) - u.x) * ((y - u.y) / (static_cast<double>(l.y) - u.y));
+    };
+    const double middle = (top + bottom) / 2;
+    area += (bottom - top) * (x_at(t.right, middle) - x_at(t.left, middle));
+  });
+  return area;
+}
+
+TEST(CoverageLayer, BorderIsStoredOnceAndLeadsToBothFeatures) {
+  const auto layer = layer_of({rings_from_text(kLeft10), rings_from_text(kRight10)});
+  std::vector<TrapezoidRange> ranges;
+  layer->select({layer->bounds(), 0}, ranges);
+  const MeshView& mesh = layer->mesh();
+  std::vector<std::uint32_t> right_of_first;
+  std::vector<std::uint32_t> left_of_second;
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    if (layer->feature_of(i) == 0) right_of_first.push_back(mesh.trapezoids[i].right);
+    if (layer->feature_of(i) == 1) left_of_second.push_back(mesh.trapezoids[i].left);
+  });
+  ASSERT_FALSE(right_of_first.empty());
+  EXPECT_EQ(right_of_first, left_of_second);
+  for (std::uint32_t row = 0; row < 2; ++row) {
+    Rings outline;
+    layer->append_outline(row, outline);
+    ASSERT_EQ(outline.size(), 1u);
+    EXPECT_EQ(doubled_area_of(outline[0]), 200);
+  }
+}
+
+TEST(CoverageLayer, DustOfAllFeaturesTogetherMakesUpForWhatIsDrawn) {
+  for (unsigned seed = 1; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto layer = layer_of(random_coverage(seed));
+    if (layer->bounds().is_empty()) continue;
+    constexpr Box kWorld{kGridMin, kGridMin, kGridMax, kGridMax};
+    std::vector<TrapezoidRange> ranges;
+    layer->select({kWorld, 0, kLastLevel, SmallPolygons::drop}, ranges);
+    std::vector<double> areas(layer->features().size(), 0);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      const TrapezoidRange one{i, 1};
+      areas[layer->feature_of(i)] += area_of(layer->mesh(), std::span(&one, 1));
+    });
+    // At the end nothing is drawn, and the dust of each feature is what it was.
+    std::vector<double> dust(areas.size(), 0);
+    layer->grains().visit(kWorld, kLastLevel, [&](const FeatureGrain& grain) {
+      dust[grain.row] += static_cast<double>(grain.doubled_area) / 2;
+    });
+    const double grains = static_cast<double>(layer->grains().grains().size());
+    for (std::size_t row = 0; row < areas.size(); ++row) {
+      EXPECT_NEAR(dust[row], areas[row], 1 + grains / 2) << "row " << row;
+    }
+  }
+}
+
+TEST(CoverageLayer, WithoutTheTestItIsItsPolygonsApart) {
+  const auto layer = layer_of({rings_from_text(kLeft10), rings_from_text(kRight10)});
+  const Layer& fast = layer->without_topology_test();
+  std::vector<TrapezoidRange> ranges;
+  fast.select({layer->bounds(), 0}, ranges);
+  EXPECT_DOUBLE_EQ(area_of(fast.mesh(), ranges), 200);
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,249 @@
+// Polygons that share borders: their graph, its removals, and its history.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/adapt/adaptable_graph.h"
+#include "core/adapt/history.h"
+#include "core/borders/coverage_builder.h"
+#include "core/graph/check_graph.h"
+#include "tests/core/borders/coverage_shapes.h"
+#include "tests/core/shapes/drawn_trapezoids.h"
+
+namespace trapeze {
+namespace {
+
+constexpr double kAll = std::numeric_limits<double>::infinity();
+constexpr unsigned kShapes = 160;
+
+using Texts = std::vector<std::string>;
+
+std::vector<Rings> features_from_text(const Texts& texts) {
+  std::vector<Rings> features;
+  for (const std::string& text : texts) features.push_back(rings_from_text(text));
+  return features;
+}
+
+std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  return pointers;
+}
+
+struct BuiltCoverage {
+  CoverageOutcome outcome;
+  TrapezoidalGraph graph;
+
+  explicit BuiltCoverage(const std::vector<Rings>& features) {
+    outcome = CoverageBuilder().build(pointers_to(features), {.most_overlap = kAll}, graph);
+    EXPECT_EQ(outcome.failure, "");
+    if (!outcome.built) return;
+    EXPECT_EQ(check_graph(graph), "");
+  }
+  explicit BuiltCoverage(const Texts& texts) : BuiltCoverage(features_from_text(texts)) {}
+
+  std::int64_t doubled_area(FaceId face) const {
+    return static_cast<std::int64_t>(graph.doubled_areas()[face]);
+  }
+};
+
+TEST(Coverage, BorderOfTwoSquaresIsThereOnce) {
+  const BuiltCoverage c(Texts{"0 0, 10 0, 10 10, 0 10", "10 0, 20 0, 20 10, 10 10"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_FALSE(c.outcome.noded);
+  EXPECT_EQ(c.outcome.vertices, 6u);
+  EXPECT_EQ(c.outcome.shared_edges, 1u);
+  EXPECT_EQ(c.outcome.junctions, 2u);
+  EXPECT_EQ(c.doubled_area(1), 200);
+  EXPECT_EQ(c.doubled_area(2), 200);
+  EXPECT_TRUE(c.outcome.overlaps.empty());
+}
+
+TEST(Coverage, MissingVertexOfOneSideIsPutIn) {
+  const BuiltCoverage c(Texts{"0 0, 10 0, 10 10, 0 10", "10 0, 20 0, 20 10, 10 10, 10 5"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_TRUE(c.outcome.noded);
+  EXPECT_EQ(c.outcome.shared_edges, 2u);
+  EXPECT_EQ(c.outcome.vertices, 7u);
+}
+
+TEST(Coverage, LastFeatureHasThePlaceWhereTwoOverlap) {
+  const BuiltCoverage c(Texts{"0 0, 12 0, 12 10, 0 10", "10 0, 20 0, 20 10, 10 10"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_EQ(c.doubled_area(1), 200);
+  EXPECT_EQ(c.doubled_area(2), 200);
+  ASSERT_EQ(c.outcome.overlaps.size(), 1u);
+  EXPECT_EQ(c.outcome.overlaps[0].lower, 0u);
+  EXPECT_EQ(c.outcome.overlaps[0].upper, 1u);
+  EXPECT_DOUBLE_EQ(c.outcome.overlaps[0].area, 20);
+  EXPECT_DOUBLE_EQ(c.outcome.areas[0], 120);
+  EXPECT_DOUBLE_EQ(c.outcome.areas[1], 100);
+}
+
+TEST(Coverage, FeatureUnderAnotherHasNoPlaceLeft) {
+  const BuiltCoverage c(Texts{"2 2, 8 2, 8 8, 2 8", "0 0, 10 0, 10 10, 0 10"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_EQ(c.doubled_area(1), 0);
+  EXPECT_EQ(c.doubled_area(2), 200);
+  EXPECT_EQ(c.outcome.vertices, 4u);
+}
+
+TEST(Coverage, EnclaveAndGapNeedNothingSpecial) {
+  const BuiltCoverage c(Texts{"0 0, 30 0, 30 30, 0 30; 10 10, 20 10, 20 20, 10 20",
+                              "10 10, 20 10, 20 20, 10 20; 12 12, 18 12, 18 18, 12 18"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_EQ(c.outcome.junctions, 0u);
+  EXPECT_EQ(c.outcome.gaps, 0u);
+  EXPECT_EQ(c.doubled_area(2), 200 - 72);
+}
+
+TEST(Coverage, HoleWithTwoFeaturesAroundItIsAGap) {
+  const BuiltCoverage c(Texts{"0 0, 10 0, 10 4, 9 5, 10 6, 10 10, 0 10",
+                              "10 0, 20 0, 20 10, 10 10, 10 6, 11 5, 10 4"});
+  ASSERT_TRUE(c.outcome.built);
+  EXPECT_EQ(c.outcome.gaps, 1u);
+  EXPECT_EQ(c.outcome.junctions, 4u);
+}
+
+TEST(Coverage, FeaturesThatCoverNothingAreNotBuilt) {
+  EXPECT_FALSE(BuiltCoverage(std::vector<Rings>(3)).outcome.built);
+  const BuiltCoverage twice(Texts{"0 0, 10 0, 10 10; 0 0, 10 0, 10 10", ""});
+  EXPECT_FALSE(twice.outcome.built);
+}
+
+TEST(Coverage, RingsOfFacesAreThoseThatItWasBuiltFrom) {
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const BuiltCoverage c(random_coverage(seed));
+    if (!c.outcome.built) continue;
+    const BuiltCoverage again(rings_of_faces(c.graph));
+    ASSERT_TRUE(again.outcome.built);
+    EXPECT_FALSE(again.outcome.noded);
+    EXPECT_TRUE(again.outcome.overlaps.empty());
+    EXPECT_EQ(plain_trapezoids(again.graph), plain_trapezoids(c.graph));
+  }
+}
+
+/// The map built anew from the faces that are left is the one at hand.
+void expect_map_of_what_is_left(const TrapezoidalGraph& graph) {
+  const std::vector<Rings> rings = rings_of_faces(graph);
+  TrapezoidalGraph fresh;
+  const CoverageOutcome outcome =
+      CoverageBuilder().build(pointers_to(rings), {.most_overlap = kAll}, fresh);
+  EXPECT_FALSE(outcome.noded) << "the borders that are left cross or touch";
+  if (!outcome.built) {
+    EXPECT_EQ(graph.inside_nodes().size(), 0u);
+    return;
+  }
+  EXPECT_TRUE(outcome.overlaps.empty());
+  EXPECT_EQ(plain_trapezoids(graph), plain_trapezoids(fresh));
+}
+
+TEST(Coverage, EveryRemovalLeavesTheMapOfTheFacesThatAreLeft) {
+  std::size_t regions = 0;
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed));
+    if (!c.outcome.built) continue;
+    EditLog log(c.graph);
+    PriorityStack stack;
+    stack.assign(c.graph, {});
+    while (stack.remove_next(c.graph, log)) {
+      regions += stack.last_removal() == Removal::region;
+      ASSERT_EQ(check_graph(c.graph), "") << "after " << log.size() << " removals";
+      expect_map_of_what_is_left(c.graph);
+      if (testing::Test::HasFailure()) FAIL() << "after " << log.size() << " removals";
+    }
+    EXPECT_EQ(c.graph.inside_nodes().size(), 0u) << "something never goes";
+  }
+  EXPECT_GT(regions, 200u);
+}
+
+TEST(Coverage, StateDependsOnTheToleranceOnly) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const BuiltCoverage c(random_coverage(seed));
+    if (!c.outcome.built) continue;
+    AdaptableGraph wandering(c.graph);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> exponent(-2, 16);
+    for (int jump = 0; jump < 30; ++jump) {
+      const double epsilon = jump % 7 == 6 ? 0 : std::exp2(exponent(random));
+      wandering.adapt_to(epsilon);
+      AdaptableGraph direct(c.graph);
+      direct.adapt_to(epsilon);
+      ASSERT_EQ(wandering.graph(), direct.graph()) << "at " << epsilon;
+    }
+    wandering.adapt_to(kAll);
+    wandering.adapt_to(0);
+    EXPECT_EQ(wandering.graph(), c.graph);
+  }
+}
+
+std::vector<std::uint32_t> rows_for(const TrapezoidalGraph& graph) {
+  std::vector<std::uint32_t> rows;
+  for (FaceId face = 1; face <= graph.face_count(); ++face) rows.push_back(10 * face);
+  return rows;
+}
+
+TEST(Coverage, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed));
+    if (!c.outcome.built) continue;
+    const std::vector<std::uint32_t> rows = rows_for(c.graph);
+    AdaptableGraph adaptable(c.graph);
+    History history;
+    HistoryRecorder().record(c.graph, rows, {}, history);
+    for (int level = 0; level <= kLastLevel; ++level) {
+      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
+      ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph(), rows))
+          << "level " << level;
+    }
+  }
+}
+
+TEST(Coverage, RegionAtTheCoastGoesToALandHoweverLongTheCoast) {
+  // A spit with three sides in the sea, between two countries; as thin as the tolerance.
+  BuiltCoverage c(Texts{"0 0, 1000 0, 1000 400, 0 400", "1000 198, 1100 198, 1100 202, 1000 202",
+                        "1000 0, 1400 0, 1400 198, 1100 198, 1000 198"});
+  ASSERT_TRUE(c.outcome.built);
+  AdaptableGraph adaptable(c.graph);
+  adaptable.adapt_to(3);
+  const TrapezoidalGraph& graph = adaptable.graph();
+  EXPECT_EQ(check_graph(graph), "");
+  const std::vector<Int128> areas = graph.doubled_areas();
+  EXPECT_EQ(static_cast<std::int64_t>(areas[2]), 0);
+  EXPECT_EQ(static_cast<std::int64_t>(areas[1] + areas[3]),
+            static_cast<std::int64_t>(c.graph.doubled_area()))
+      << "what is all around has not changed";
+}
+
+TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed));
+    if (!c.outcome.built) continue;
+    const std::vector<Int128> areas = c.graph.doubled_areas();
+    History history;
+    const std::vector<std::uint32_t> rows = rows_for(c.graph);
+    HistoryRecorder().record(c.graph, rows, {}, history);
+    // In the end all is dust, of which each feature has what it had at first.
+    std::vector<double> dust(rows.size(), 0);
+    for (const Grain& grain : history.grains) {
+      dust[grain.row / 10 - 1] += grain.area;
+      if (grain.taker != Grain::kNobody) dust[grain.taker / 10 - 1] -= grain.area;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double area = static_cast<double>(areas[i + 1]) / 2;
+      EXPECT_NEAR(dust[i], area, 1e-6 * (1 + area)) << "feature " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,184 @@
+#include "core/io/source/source_selection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/io/load/load_layer.h"
+#include "core/io/load/open_layer.h"
+#include "core/io/prepared/prepared_layer.h"
+#include "core/io/source/source_name.h"
+#include "core/io/source/source_stamp.h"
+#include "tests/core/io/source/written_source.h"
+#include "tests/core/io/temporary_folder.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kMixed = TRAPEZE_FIXTURES "/mixed.geojson";
+const std::string kVillage = TRAPEZE_FIXTURES "/village.osm";
+
+TestFeature square(int number, const std::string& text) {
+  const std::string x = std::to_string(2 * number);
+  const std::string right = std::to_string(2 * number + 1);
+  return {"POLYGON((" + x + " 0," + right + " 0," + right + " 1," + x + " 1," + x + " 0))", number,
+          text};
+}
+
+class SourceSelectionTest : public ::testing::Test {
+ protected:
+  SourceSelectionTest() {
+    write_source(town_, "GPKG",
+                 {{.name = "houses",
+                   .type = wkbPolygon,
+                   .features = {square(1, "stone"), square(2, "wood"), square(3, "stone")}},
+                  {.name = "lakes", .type = wkbPolygon, .features = {square(4, "deep")}},
+                  {.name = "wells", .type = wkbPoint, .features = {{"POINT(0 0)", 5, "dry"}}}});
+  }
+
+  static std::vector<std::int64_t> numbers(const Layer& layer) {
+    const FeatureTable& table = layer.features();
+    std::vector<std::int64_t> numbers;
+    for (std::uint32_t row = 0; row < table.size(); ++row) {
+      numbers.push_back(std::get<std::int64_t>(table.value(row, table.field_index("number"))));
+    }
+    return numbers;
+  }
+
+  static std::string failure_of(const std::string& path, const SourceSelection& selection) {
+    try {
+      load_layer(path, {.selection = selection});
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "was loaded";
+  }
+  std::string failure_of(const SourceSelection& selection) const {
+    return failure_of(town_, selection);
+  }
+
+  TemporaryFolder folder_;
+  const std::string town_ = folder_.file("town.gpkg");
+};
+
+TEST_F(SourceSelectionTest, TakesAllThatHoldPolygonsUnlessToldOtherwise) {
+  EXPECT_THAT(numbers(*load_layer(town_).layer), ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(SourceSelectionTest, TakesOneLayerOfSeveral) {
+  const LoadedLayer lakes = load_layer(town_, {.selection = {.layer = "lakes"}});
+  EXPECT_THAT(numbers(*lakes.layer), ElementsAre(4));
+  EXPECT_EQ(lakes.report.features, 1u);
+  EXPECT_EQ(lakes.report.other_geometry, 0u);
+}
+
+TEST_F(SourceSelectionTest, TakesTheFeaturesForWhichAConditionHolds) {
+  const SourceSelection stone = {.layer = "houses", .where = "text = 'stone' AND number > 1"};
+  const LoadedLayer loaded = load_layer(town_, {.selection = stone});
+  EXPECT_THAT(numbers(*loaded.layer), ElementsAre(3));
+  EXPECT_EQ(loaded.report.features, 1u);
+  // Of all layers, if none is named.
+  EXPECT_THAT(numbers(*load_layer(town_, {.selection = {.where = "number >= 3"}}).layer),
+              ElementsAre(3, 4));
+}
+
+TEST_F(SourceSelectionTest, ReadsAConditionOnOpenStreetMapToo) {
+  const std::size_t all = load_layer(kVillage).report.loaded;
+  const LoadedLayer houses = load_layer(kVillage, {.selection = {.where = "building = 'house'"}});
+  EXPECT_GT(houses.report.loaded, 0u);
+  EXPECT_LT(houses.report.loaded, all);
+  const FeatureTable& table = houses.layer->features();
+  for (std::uint32_t row = 0; row < table.size(); ++row) {
+    EXPECT_EQ(table.value(row, table.field_index("building")), Value("house"));
+  }
+}
+
+TEST_F(SourceSelectionTest, KeepsTheNamedAttributesInTheOrderOfTheSource) {
+  const SourceSelection selection = {.attributes = {{"text"}}};
+  const LoadedLayer loaded = load_layer(town_, {.selection = selection});
+  ASSERT_EQ(loaded.layer->features().fields().size(), 1u);
+  EXPECT_EQ(loaded.layer->features().fields()[0].name, "text");
+  EXPECT_EQ(std::get<std::string_view>(loaded.layer->features().value(3, 0)), "deep");
+
+  const LoadedLayer bare = load_layer(town_, {.selection = {.attributes = {{}}}});
+  EXPECT_TRUE(bare.layer->features().fields().empty());
+  EXPECT_EQ(bare.layer->features().size(), 4u);
+  // A condition may look at what is not kept.
+  const SourceSelection both = {.where = "number = 2", .attributes = {{"text"}}};
+  EXPECT_EQ(load_layer(town_, {.selection = both}).report.loaded, 1u);
+}
+
+TEST_F(SourceSelectionTest, SaysWhatIsNotThere) {
+  EXPECT_THAT(
+      failure_of({.layer = "roads"}),
+      AllOf(StartsWith(town_), HasSubstr("no layer \"roads\""), HasSubstr("houses, lakes, wells")));
+  EXPECT_THAT(failure_of({.layer = "wells"}), HasSubstr("\"wells\" holds no polygons"));
+  EXPECT_THAT(failure_of({.attributes = {{"text", "colour"}}}),
+              AllOf(StartsWith(town_), HasSubstr("no attribute \"colour\"")));
+  // Databases are asked when they are read, files before.
+  EXPECT_THAT(failure_of({.where = "colour = 'red'"}),
+              AllOf(StartsWith(town_), HasSubstr("WHERE colour = 'red'")));
+  EXPECT_THAT(failure_of(kMixed, {.where = "colour = 'red'"}),
+              AllOf(StartsWith(kMixed), HasSubstr("cannot be asked where colour = 'red'"),
+                    HasSubstr("colour")));
+  EXPECT_THAT(failure_of(kMixed, {.where = "floors = "}), HasSubstr("cannot be asked where"));
+}
+
+TEST_F(SourceSelectionTest, OfAPreparedLayerTakesTheSourceOnly) {
+  const LoadedLayer houses = load_layer(town_, {.selection = {.layer = "houses"}});
+  const std::string path = folder_.file("houses.trapeze");
+  save_prepared_layer(path, houses, 1, stamp_source(town_));
+  EXPECT_EQ(open_layer(path).layer->features().size(), 3u);
+  OpenOptions options;
+  options.selection.where = "number = 1";
+  EXPECT_THROW(open_layer(path, options), std::runtime_error);
+}
+
+TEST(NameOfSourceTest, HidesPasswordsAndNothingElse) {
+  for (const char* plain : {"/maps/a.gpkg", "/vsizip/a.zip/b.shp", "PG:host=db user=me dbname=x",
+                            "postgresql://me@db/maps", "/vsicurl/https://example.org/a.fgb"}) {
+    EXPECT_EQ(name_of_source(plain), plain);
+  }
+  EXPECT_EQ(name_of_source("PG:host=db password=secret user=me"),
+            "PG:host=db password=*** user=me");
+  EXPECT_EQ(name_of_source("PG:dbname='a' PASSWORD = 'se\\'cr et' user='me'"),
+            "PG:dbname='a' PASSWORD = *** user='me'");
+  EXPECT_EQ(name_of_source("postgresql://me:secret@db:5432/maps"),
+            "postgresql://me:***@db:5432/maps");
+  EXPECT_EQ(name_of_source("postgresql://db/maps?user=me&password=secret&x=1"),
+            "postgresql://db/maps?user=me&password=***&x=1");
+  EXPECT_EQ(name_of_source("/vsicurl/https://me:secret@example.org/a.fgb"),
+            "/vsicurl/https://me:***@example.org/a.fgb");
+}
+
+TEST(NameOfSourceTest, HidesAllOfAPasswordOfAnyCharacters) {
+  EXPECT_EQ(name_of_source("PG:password='se cret"), "PG:password=***");
+  EXPECT_EQ(name_of_source("PG:password='a\\\\' user='me'"), "PG:password=*** user='me'");
+  EXPECT_EQ(name_of_source("PG:password='' host=db"), "PG:password=*** host=db");
+  EXPECT_EQ(name_of_source("PG:password=password=a password=b"), "PG:password=*** password=***");
+  EXPECT_EQ(name_of_source("PG:password= "), "PG:password= ");
+  EXPECT_EQ(name_of_source("password"), "password");
+  EXPECT_EQ(name_of_source("postgresql://me:se@cret@db/maps"), "postgresql://me:***@db/maps");
+  EXPECT_EQ(name_of_source("postgresql://me:@db/maps"), "postgresql://me:***@db/maps");
+  EXPECT_EQ(name_of_source("postgresql://me@db:5432/maps"), "postgresql://me@db:5432/maps");
+}
+
+TEST(NameOfSourceTest, APasswordMayBeOfAnyLength) {
+  const std::string secret(1'000'000, 'a');
+  EXPECT_EQ(name_of_source("PG:password='" + secret + "'"), "PG:password=***");
+  EXPECT_EQ(name_of_source("PG:password=" + secret), "PG:password=***");
+  EXPECT_EQ(name_of_source("postgresql://me:" + secret + "@db"), "postgresql://me:***@db");
+  EXPECT_EQ(name_of_source("postgresql://" + secret), "postgresql://" + secret);
+}
+
+}  // namespace
+}  // namespace trapeze

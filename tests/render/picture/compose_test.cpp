@@ -1,0 +1,217 @@
+#include "render/picture/compose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace trapeze {
+namespace {
+
+Picture compose(std::span<const PaintedClass> layers, int width, int height,
+                Rgba background = kTransparent) {
+  Picture picture;
+  Composer().compose(plain_layers(layers), width, height, background, picture);
+  return picture;
+}
+
+Coverage coverage_of(int width, int height, const std::vector<int>& levels) {
+  Coverage coverage(width, height);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      coverage.row_begin(row)[column] =
+          static_cast<std::uint8_t>(levels[static_cast<std::size_t>(row * width + column)]);
+    }
+  }
+  return coverage;
+}
+
+Coverage random_coverage(std::mt19937& random, int width, int height) {
+  std::vector<int> levels(static_cast<std::size_t>(width * height));
+  for (int& level : levels) level = static_cast<int>(random() % 256);
+  return coverage_of(width, height, levels);
+}
+
+// One channel of "source over", straight from its definition, in double.
+struct Channels {
+  double r, g, b, a;
+};
+Channels blend(const Channels& below, Rgba fill, int level) {
+  const double a = fill.a / 255.0 * level / 255.0;
+  const double sum = a + below.a * (1 - a);
+  const auto mix = [&](double above, double under) {
+    return sum == 0 ? 0 : (above * a + under * below.a * (1 - a)) / sum;
+  };
+  return {mix(fill.r, below.r), mix(fill.g, below.g), mix(fill.b, below.b), sum};
+}
+
+// The colour of a nearly transparent pixel is rounded as any other, but divided by its opacity.
+void expect_near(Rgba actual, const Channels& expected) {
+  EXPECT_NEAR(actual.a, expected.a * 255, 0.51);
+  if (actual.a == 0) return;
+  EXPECT_NEAR(actual.r, expected.r, 0.51);
+  EXPECT_NEAR(actual.g, expected.g, 0.51);
+  EXPECT_NEAR(actual.b, expected.b, 0.51);
+}
+
+TEST(ComposeTest, OneColourOverNothingIsItsCoverageAsOpacity) {
+  const Coverage coverage = coverage_of(3, 1, {0, 100, 255});
+  const PaintedClass layer{&coverage, {10, 20, 30, 255}};
+  const Picture picture = compose({&layer, 1}, 3, 1);
+  EXPECT_TRUE(picture.is_indexed());
+  EXPECT_EQ(picture.at(0, 0), kTransparent);
+  EXPECT_EQ(picture.at(1, 0), (Rgba{10, 20, 30, 100}));
+  EXPECT_EQ(picture.at(2, 0), (Rgba{10, 20, 30, 255}));
+}
+
+TEST(ComposeTest, OneColourOverAnOpaqueBackgroundIsOpaque) {
+  const Coverage coverage = coverage_of(3, 1, {0, 51, 255});
+  const PaintedClass layer{&coverage, {255, 0, 0, 255}};
+  const Picture picture = compose({&layer, 1}, 3, 1, {0, 0, 255, 255});
+  EXPECT_EQ(picture.at(0, 0), (Rgba{0, 0, 255, 255}));
+  EXPECT_EQ(picture.at(1, 0), (Rgba{51, 0, 204, 255}));
+  EXPECT_EQ(picture.at(2, 0), (Rgba{255, 0, 0, 255}));
+}
+
+TEST(ComposeTest, LayersThatDoNotShowCostNothing) {
+  const Coverage empty = coverage_of(2, 1, {0, 0});
+  const Coverage full = coverage_of(2, 1, {255, 128});
+  const std::vector<PaintedClass> layers{
+      {&empty, {1, 1, 1, 255}}, {&full, {9, 9, 9, 0}}, {&full, {4, 5, 6, 255}}};
+  const Picture picture = compose(layers, 2, 1);
+  EXPECT_TRUE(picture.is_indexed());
+  EXPECT_EQ(picture.at(0, 0), (Rgba{4, 5, 6, 255}));
+}
+
+TEST(ComposeTest, NoLayerIsTheBackground) {
+  const Picture picture = compose({}, 2, 2, {1, 2, 3, 4});
+  EXPECT_EQ(picture.palette.size(), 1u);
+  EXPECT_EQ(picture.at(1, 1), (Rgba{1, 2, 3, 4}));
+}
+
+TEST(ComposeTest, EveryLayerLiesOverTheOnesBefore) {
+  const Coverage full = coverage_of(1, 1, {255});
+  const std::vector<PaintedClass> layers{{&full, {255, 0, 0, 255}}, {&full, {0, 255, 0, 255}}};
+  EXPECT_EQ(compose(layers, 1, 1).at(0, 0), (Rgba{0, 255, 0, 255}));
+}
+
+TEST(ComposeTest, IsSourceOverToTheLastDigit) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  for (const Rgba background : {kTransparent, Rgba{200, 210, 220, 255}, Rgba{9, 99, 200, 77}}) {
+    const Coverage a = random_coverage(random, 40, 30);
+    const Coverage b = random_coverage(random, 40, 30);
+    const Coverage c = random_coverage(random, 40, 30);
+    const std::vector<PaintedClass> layers{
+        {&a, {250, 3, 90, 255}}, {&b, {0, 128, 255, 140}}, {&c, {77, 200, 10, 30}}};
+    const Picture picture = compose(layers, 40, 30, background);
+    for (int row = 0; row < 30; ++row) {
+      for (int column = 0; column < 40; ++column) {
+        Channels expected{double(background.r), double(background.g), double(background.b),
+                          background.a / 255.0};
+        for (const PaintedClass& layer : layers) {
+          expected = blend(expected, layer.colour, layer.coverage->at(column, row));
+        }
+        expect_near(picture.at(column, row), expected);
+      }
+    }
+  }
+}
+
+TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
+  std::vector<int> left(64 * 64), right(64 * 64);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    left[i] = i % 64 < 30 ? 255 : 40;
+    right[i] = i % 64 > 32 ? 255 : 0;
+  }
+  const Coverage a = coverage_of(64, 64, left);
+  const Coverage b = coverage_of(64, 64, right);
+  const std::vector<PaintedClass> layers{{&a, {255, 0, 0, 255}}, {&b, {0, 0, 255, 255}}};
+  const Picture picture = compose(layers, 64, 64);
+  EXPECT_TRUE(picture.is_indexed());
+  EXPECT_EQ(picture.palette.size(), 3u);
+  EXPECT_EQ(picture.at(0, 5), (Rgba{255, 0, 0, 255}));
+  EXPECT_EQ(picture.at(31, 5), (Rgba{255, 0, 0, 40}));
+  EXPECT_EQ(picture.at(60, 5), (Rgba{0, 0, 255, 255}));
+}
+
+Picture compose(const PaintedLayer& layer, int width, int height, Rgba background = kTransparent) {
+  Picture picture;
+  Composer().compose({&layer, 1}, width, height, background, picture);
+  return picture;
+}
+
+TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
+  const Coverage west = coverage_of(4, 1, {255, 100, 64, 1});
+  const Coverage east = coverage_of(4, 1, {0, 155, 64, 254});
+  const Coverage rest = coverage_of(4, 1, {0, 0, 126, 0});  // of three, rounded down
+  const std::vector<PaintedClass> alike{
+      {&west, {9, 8, 7, 255}}, {&east, {9, 8, 7, 255}}, {&rest, {9, 8, 7, 255}}};
+  const Picture one = compose({.classes = alike}, 4, 1);
+  for (int column = 0; column < 4; ++column) {
+    EXPECT_EQ(one.at(column, 0), (Rgba{9, 8, 7, 255})) << column;
+  }
+  const std::vector<PaintedClass> unlike{{&west, {255, 0, 0, 255}}, {&east, {0, 0, 255, 255}}};
+  const Picture two = compose({.classes = unlike}, 4, 1);
+  EXPECT_EQ(two.at(1, 0), (Rgba{100, 0, 155, 255}));
+}
+
+TEST(ComposeTest, OverlappingClassesShareThePixel) {
+  const Coverage full = coverage_of(1, 1, {255});
+  const std::vector<PaintedClass> classes{{&full, {200, 0, 0, 255}}, {nullptr, {0, 0, 100, 255}}};
+  EXPECT_EQ(compose({.classes = classes}, 1, 1).at(0, 0), (Rgba{100, 0, 50, 255}));
+}
+
+TEST(ComposeTest, APatternLiesWithinTheClasses) {
+  const Coverage half = coverage_of(3, 1, {0, 51, 255});
+  const Coverage everywhere = coverage_of(3, 1, {255, 255, 51});
+  const PaintedClass fill{&half, {0, 0, 0, 255}};
+  const PaintedClass nothing{&half, kTransparent};
+  PaintedLayer layer{{&fill, 1}, &everywhere, {255, 255, 255, 255}, {}, 1};
+  const Picture over_fill = compose(layer, 3, 1);
+  EXPECT_EQ(over_fill.at(0, 0), kTransparent);
+  EXPECT_EQ(over_fill.at(1, 0), (Rgba{255, 255, 255, 51}));
+  EXPECT_EQ(over_fill.at(2, 0), (Rgba{51, 51, 51, 255}));
+  layer.classes = {&nothing, 1};
+  const Picture alone = compose(layer, 3, 1);
+  EXPECT_EQ(alone.at(1, 0), (Rgba{255, 255, 255, 51}));
+  EXPECT_EQ(alone.at(2, 0), (Rgba{255, 255, 255, 51}));
+}
+
+TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
+  const Coverage fill = coverage_of(16, 1, std::vector<int>(16, 255));
+  const Coverage line = coverage_of(16, 1,
+                                    {255, 255, 255, 255, 255, 255, 255, 255,  //
+                                     0, 0, 0, 0, 0, 0, 0, 255});
+  const PaintedClass fills{&fill, {0, 0, 200, 255}};
+  const PaintedClass lines{&line, {100, 0, 0, 255}};
+  const PaintedLayer layer{{&fills, 1}, nullptr, {}, {&lines, 1}, 0.5};
+  const Picture picture = compose(layer, 16, 1, {0, 0, 0, 255});
+  EXPECT_EQ(picture.at(3, 0), (Rgba{50, 0, 0, 255}));  // not a bit of the fill shows through
+  EXPECT_EQ(picture.at(9, 0), (Rgba{0, 0, 100, 255}));
+  EXPECT_EQ(picture.at(15, 0), (Rgba{50, 0, 0, 255}));
+  EXPECT_EQ(compose(layer, 16, 1).at(3, 0), (Rgba{100, 0, 0, 128}));
+}
+
+TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
+  const Coverage line = coverage_of(9, 1, {0, 0, 0, 0, 255, 0, 0, 0, 0});
+  const PaintedClass everywhere{nullptr, {0, 200, 0, 255}};
+  const PaintedClass lines{&line, {100, 0, 0, 255}};
+  const Picture picture = compose({{&everywhere, 1}, nullptr, {}, {&lines, 1}, 1}, 9, 1);
+  EXPECT_EQ(picture.at(0, 0), (Rgba{0, 200, 0, 255}));
+  EXPECT_EQ(picture.at(4, 0), (Rgba{100, 0, 0, 255}));
+  EXPECT_EQ(picture.at(8, 0), (Rgba{0, 200, 0, 255}));
+}
+
+TEST(ComposeTest, RefusesACoverageOfAnotherSize) {
+  const Coverage coverage = coverage_of(2, 1, {1, 2});
+  const PaintedClass layer{&coverage, {1, 2, 3, 255}};
+  EXPECT_THROW(compose({&layer, 1}, 1, 2), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,100 @@
+#include "render/picture/pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace trapeze {
+namespace {
+
+Coverage draw(const Pattern& pattern, View view = View::of_tile({3, 2, 5}), int scale = 1) {
+  Coverage levels;
+  draw_pattern(pattern, view, scale, levels);
+  return levels;
+}
+
+/// The share of the picture that is covered.
+double density(const Coverage& levels) {
+  const auto pixels = levels.pixels();
+  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / 255 /
+         static_cast<double>(pixels.size());
+}
+
+double share(PatternKind kind, double size, double angle, double width) {
+  Pattern pattern;
+  pattern.kind = kind;
+  pattern.size = size;
+  pattern.angle = angle;
+  pattern.width = width;
+  return density(draw(pattern));
+}
+
+TEST(PatternTest, CoversTheShareThatItsLengthsSay) {
+  EXPECT_EQ(share(PatternKind::none, 8, 0, 1), 0);
+  for (const double angle : {0.0, 45.0, 17.0}) {
+    EXPECT_NEAR(share(PatternKind::hatch, 8, angle, 1), 1.0 / 8, 0.004) << angle;
+    EXPECT_NEAR(share(PatternKind::hatch, 8, angle, 0.25), 0.25 / 8, 0.004) << angle;
+    EXPECT_NEAR(share(PatternKind::stripes, 10, angle, 5), 0.5, 0.01) << angle;
+    EXPECT_NEAR(share(PatternKind::crosshatch, 16, angle, 2), 1 - std::pow(14.0 / 16, 2), 0.015);
+    EXPECT_NEAR(share(PatternKind::checker, 16, angle, 1), 0.5, 0.01) << angle;
+    EXPECT_NEAR(share(PatternKind::dots, 12, angle, 6), M_PI * 9 / 144, 0.01) << angle;
+  }
+  EXPECT_EQ(share(PatternKind::hatch, 2, 30, 64), 1);
+}
+
+TEST(PatternTest, LinesRunInTheDirectionOfTheAngle) {
+  const Coverage east = draw({PatternKind::hatch, {}, 8, 0, 2});
+  for (int row = 0; row < 256; ++row) {
+    for (int column = 1; column < 256; ++column) {
+      ASSERT_EQ(east.at(column, row), east.at(0, row)) << column << " " << row;
+    }
+  }
+  // Anticlockwise from east: a step east and a step north stay on the line.
+  const Coverage north_east = draw({PatternKind::hatch, {}, 8, 45, 2});
+  for (int row = 1; row < 256; ++row) {
+    for (int column = 0; column < 255; ++column) {
+      ASSERT_NEAR(north_east.at(column, row), north_east.at(column + 1, row - 1), 1);
+    }
+  }
+}
+
+TEST(PatternTest, NeighbouringTilesJoin) {
+  for (const PatternKind kind : {PatternKind::checker, PatternKind::crosshatch, PatternKind::dots,
+                                 PatternKind::hatch, PatternKind::stripes}) {
+    for (const int zoom : {3, 22}) {
+      const Pattern pattern{kind, {}, 13, 30, 4};
+      const std::uint32_t x = (1u << zoom) / 3;
+      const View tile = View::of_tile({zoom, x, 1});
+      View both = tile;
+      both.width = 512;
+      const Coverage west = draw(pattern, tile);
+      const Coverage east = draw(pattern, View::of_tile({zoom, x + 1, 1}));
+      const Coverage whole = draw(pattern, both);
+      for (int row = 0; row < 256; row += 5) {
+        for (int column = 0; column < 256; ++column) {
+          ASSERT_NEAR(west.at(column, row), whole.at(column, row), 1);
+          ASSERT_NEAR(east.at(column, row), whole.at(column + 256, row), 1);
+        }
+      }
+    }
+  }
+}
+
+TEST(PatternTest, LengthsGrowWithTheScale) {
+  const Pattern pattern{PatternKind::dots, {}, 12, 0, 5};
+  const Coverage one = draw(pattern);
+  const Coverage four = draw(pattern, View::of_tile({3, 2, 5}, 4), 4);
+  EXPECT_NEAR(density(one), density(four), 0.01);
+  EXPECT_EQ(four.width(), 1024);
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      double sum = 0;
+      for (int k = 0; k < 16; ++k) sum += four.at(4 * column + k % 4, 4 * row + k / 4);
+      ASSERT_NEAR(one.at(column, row), sum / 16, 40) << column << " " << row;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trapeze

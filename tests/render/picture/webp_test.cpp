@@ -1,0 +1,70 @@
+#include "render/picture/webp.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#ifdef TRAPEZE_TEST_WEBP
+#include <webp/decode.h>
+#endif
+
+namespace trapeze {
+namespace {
+
+#ifdef TRAPEZE_TEST_WEBP
+
+Picture random_picture(int width, int height, bool is_indexed) {
+  std::mt19937 random(5);
+  Picture picture;
+  picture.width = width;
+  picture.height = height;
+  const auto size = static_cast<std::size_t>(width * height);
+  const auto byte = [&random] { return static_cast<std::uint8_t>(random() % 256); };
+  if (is_indexed) {
+    for (int i = 0; i < 9; ++i) picture.palette.push_back({byte(), byte(), byte(), byte()});
+    for (std::size_t i = 0; i < size; ++i) {
+      picture.indices.push_back(static_cast<std::uint8_t>(random() % 9));
+    }
+  } else {
+    for (std::size_t i = 0; i < size; ++i) {
+      picture.pixels.push_back({byte(), byte(), byte(), byte()});
+    }
+  }
+  return picture;
+}
+
+TEST(WebpTest, NoPixelChanges) {
+  ASSERT_TRUE(has_webp());
+  for (const bool is_indexed : {false, true}) {
+    const Picture picture = random_picture(37, 21, is_indexed);
+    const std::string bytes = encode_webp(picture);
+    int width = 0;
+    int height = 0;
+    std::uint8_t* pixels = WebPDecodeRGBA(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                          bytes.size(), &width, &height);
+    ASSERT_NE(pixels, nullptr);
+    EXPECT_EQ(width, 37);
+    EXPECT_EQ(height, 21);
+    for (int i = 0; i < width * height; ++i) {
+      const Rgba decoded{pixels[4 * i], pixels[4 * i + 1], pixels[4 * i + 2], pixels[4 * i + 3]};
+      ASSERT_EQ(decoded, picture.at(i % width, i / width)) << i;
+    }
+    WebPFree(pixels);
+  }
+}
+
+TEST(WebpTest, NothingCannotBeEncoded) {
+  EXPECT_THROW(encode_webp(Picture()), std::runtime_error);
+}
+
+#else
+
+TEST(WebpTest, WithoutTheLibraryItSaysSo) {
+  EXPECT_FALSE(has_webp());
+  EXPECT_THROW(encode_webp(Picture()), std::runtime_error);
+}
+
+#endif
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,409 @@
+// The program as its users meet it: started, asked, and ended from outside.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/picture/png.h"
+#include "tests/server/http/raw_client.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::AllOf;
+using testing::fixture;
+using ::testing::HasSubstr;
+using testing::RawClient;
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string scratch_path(const std::string& name) {
+  return ::testing::TempDir() + "/" +
+         ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
+}
+
+/// A run of the program; what it prints goes to a file. Killed if it outlives the test.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments) : output_(scratch_path("output.txt")) {
+    arguments.insert(arguments.begin(), TRAPEZE_PROGRAM);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const int output = open(output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(output, STDOUT_FILENO);
+      dup2(output, STDERR_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+    close(output);
+  }
+
+  ~Program() {
+    if (!status_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    std::filesystem::remove(output_);
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  std::string output() const { return read_file(output_); }
+
+  void send_signal(int signal) const { kill(pid_, signal); }
+
+  /// The exit status; nothing if it did not exit by itself within 20 seconds.
+  std::optional<int> wait() {
+    for (int i = 0; i < 2000 && !status_; ++i) {
+      int status = 0;
+      if (waitpid(pid_, &status, WNOHANG) == pid_) {
+        status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      } else {
+        std::this_thread::sleep_for(10ms);
+      }
+    }
+    return status_;
+  }
+
+  /// The port, once it listens.
+  std::uint16_t port() const {
+    const std::regex listening("listening on [0-9.]+ port ([0-9]+)");
+    for (int i = 0; i < 2000; ++i) {
+      const std::string text = output();
+      std::smatch match;
+      if (std::regex_search(text, match, listening)) {
+        return static_cast<std::uint16_t>(std::stoi(match[1]));
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    throw std::runtime_error("it does not listen: " + output());
+  }
+
+ private:
+  const std::string output_;
+  pid_t pid_ = 0;
+  std::optional<int> status_;
+};
+
+std::vector<std::string> serve_arguments(const std::vector<std::string>& files) {
+  std::vector<std::string> arguments = {"serve",     "--port",     "0",       "--address",
+                                        "127.0.0.1", "--renderer", "software"};
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  return arguments;
+}
+
+void wait_until_ready(std::uint16_t port) {
+  for (int i = 0; i < 1000; ++i) {
+    if (RawClient(port).get("/ready").status == 200) return;
+    std::this_thread::sleep_for(10ms);
+  }
+  FAIL() << "never ready";
+}
+
+TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
+  Program program(serve_arguments({fixture("rings.geojson"), fixture("west.geojson")}));
+  const std::uint16_t port = program.port();
+  wait_until_ready(port);
+  RawClient client(port);
+  EXPECT_EQ(client.get("/tiles/rings,west/0/0/0.png").status, 200);
+  RawClient half(port);
+  half.send("GET /tiles/rings/1/0/0@4x.png HTTP/1.1\r\n");
+  std::this_thread::sleep_for(100ms);
+  program.send_signal(SIGTERM);
+  EXPECT_TRUE(client.is_closed_within(5s));
+  half.send("Host: a\r\n\r\n");
+  EXPECT_EQ(half.receive().status, 200) << "what was asked before the signal is answered";
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("drawing by software"), HasSubstr("rings.geojson: 1 of 1 features"),
+                    HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
+}
+
+TEST(ProgramTest, EndsInOrderOnSigint) {
+  Program program(serve_arguments({fixture("rings.geojson")}));
+  program.port();
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
+}
+
+TEST(ProgramTest, ServesAConfiguration) {
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[server]\nport = 1\naddress = \"127.0.0.1\"\nrenderer = \"software\"\n"
+                      << "[[layer]]\nname = \"shapes\"\nfile = \"" << fixture("rings.geojson")
+                      << "\"\nstyle = { fill = \"teal\" }\n";
+  Program program({"serve", "--config", path, "--port", "0"});
+  const std::uint16_t port = program.port();
+  wait_until_ready(port);
+  EXPECT_EQ(RawClient(port).get("/tiles/shapes/0/0/0.png").status, 200);
+  EXPECT_EQ(RawClient(port).get("/tiles/rings/0/0/0.png").status, 404);
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
+  const std::string path = scratch_path("trapeze.toml");
+  const auto write = [&path](const std::string& name, const std::string& more) {
+    std::ofstream(path) << "[server]\nwatch_ms = 0\n"
+                        << more << "[[layer]]\nname = \"" << name << "\"\nfile = \""
+                        << fixture("rings.geojson") << "\"\n";
+  };
+  const auto wait_for = [](const std::uint16_t port, const std::string& target) {
+    for (int i = 0; i < 1000; ++i) {
+      if (RawClient(port).get(target).status == 200) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  };
+  write("one", "");
+  std::vector<std::string> arguments = serve_arguments({});
+  arguments.insert(arguments.end(), {"--config", path});
+  Program program(arguments);
+  const std::uint16_t port = program.port();
+  EXPECT_TRUE(wait_for(port, "/tiles/one/0/0/0.png"));
+  write("two", "queue = 7\n");
+  program.send_signal(SIGHUP);
+  EXPECT_TRUE(wait_for(port, "/tiles/two/0/0/0.png"));
+  EXPECT_EQ(RawClient(port).get("/tiles/one/0/0/0.png").status, 404);
+  write("three", "prot = 7\n");
+  program.send_signal(SIGHUP);
+  for (int i = 0; i < 1000 && program.output().find("old ones are kept") == std::string::npos;
+       ++i) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(RawClient(port).get("/tiles/two/0/0/0.png").status, 200);
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("SIGHUP"), HasSubstr("server.queue has changed"),
+                    HasSubstr(path + ":3:1: unknown key server.prot"), HasSubstr("stopped")));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, ConfigurationsAreCheckedAndPrinted) {
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[server]\nport = 1\nqueue = 0\nprot = 2\n";
+  Program wrong({"config", "check", path});
+  EXPECT_EQ(wrong.wait(), 1);
+  EXPECT_THAT(wrong.output(), AllOf(HasSubstr(path + ":3:9: server.queue takes"),
+                                    HasSubstr(path + ":4:1: unknown key server.prot")));
+  std::ofstream(path) << "[server]\nport = 1\n";
+  Program right({"config", "check", path});
+  EXPECT_EQ(right.wait(), 0);
+  setenv("TRAPEZE_SERVER_QUEUE", "77", 1);
+  setenv("TRAPEZE_SERVER_BATCH", "7", 1);
+  Program print(
+      {"config", "print", "--config", path, "--set", "server.batch=3", fixture("rings.geojson")});
+  unsetenv("TRAPEZE_SERVER_QUEUE");
+  unsetenv("TRAPEZE_SERVER_BATCH");
+  EXPECT_EQ(print.wait(), 0);
+  using ::testing::ContainsRegex;
+  EXPECT_THAT(print.output(),
+              AllOf(ContainsRegex("port = 1 +# [^ ]+:2\n"), HasSubstr("name = \"rings\""),
+                    ContainsRegex("queue = 77 +# TRAPEZE_SERVER_QUEUE\n"),
+                    ContainsRegex("batch = 3 +# --set server.batch\n"),
+                    ContainsRegex("deadline_ms = 10000 +# default\n")));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, AFileThatIsMissingOrNoMapIsAnErrorThatNamesIt) {
+  Program missing(serve_arguments({fixture("rings.geojson"), fixture("nosuch.fgb")}));
+  EXPECT_EQ(missing.wait(), 1);
+  EXPECT_THAT(missing.output(), HasSubstr("nosuch.fgb"));
+  const std::string path = scratch_path("broken.fgb");
+  std::ofstream(path) << "this is not FlatGeobuf";
+  Program broken(serve_arguments({path}));
+  EXPECT_EQ(broken.wait(), 1);
+  EXPECT_THAT(broken.output(), HasSubstr("broken.fgb"));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, APortInUseIsAnErrorThatNamesIt) {
+  Program first(serve_arguments({fixture("rings.geojson")}));
+  const std::string port = std::to_string(first.port());
+  Program second({"serve", "--port", port, "--address", "127.0.0.1", "--renderer", "software",
+                  fixture("west.geojson")});
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_THAT(second.output(), AllOf(HasSubstr(port), HasSubstr("in use")));
+}
+
+TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{"serve"}, "nothing to serve"},
+      {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
+      {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "--renderer: takes \"auto\""},
+      {{"serve", "--port", "70000", fixture("rings.geojson")}, "--port: takes an integer from 0"},
+      {{"serve", "--set", "limits.scale=9", fixture("rings.geojson")}, "from 1 to 4"},
+      {{"serve", "--set", "limits.nosuch=9", fixture("rings.geojson")}, "limits.nosuch=9"},
+      {{"serve", "--set", "limits.scale", fixture("rings.geojson")}, "TABLE.KEY=VALUE"},
+      {{"config"}, "subcommand"},
+      {{"config", "check"}, "FILE"},
+      {{"config", "check", "/nosuch.toml"}, "/nosuch.toml"},
+      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
+       "no such tile"},
+      {{"render", fixture("rings.geojson"), "--tile", "0", "--output", "x.png"}, "Z/X/Y"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--style", "fill=no", "--output",
+        "x.png"},
+       "fill takes a colour"},
+      {{"check"}, "FILE"},
+      {{"prepare", fixture("rings.geojson")}, "--output"},
+      {{"prepare", fixture("rings.geojson"), "--output", "x", "--weights", "none"},
+       "effective-area"},
+      {{"check", fixture("rings.geojson"), "--coverage", "yes"}, "auto, on or off"},
+      {{"prepare", fixture("rings.geojson"), "--output", "x", "--coverage", "yes"},
+       "auto, on or off"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--coverage", "yes", "--output",
+        "x.fgb"},
+       "auto, on or off"},
+      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
+       "--output takes a folder"},
+      {{"bench"}, "NAME"},
+      {{"bench", "nosuch", "--help"}, "no benchmark 'nosuch'"},
+      {{"bench", "../trapeze"}, "no benchmark '../trapeze'"},
+      {{"export", fixture("rings.geojson"), "--output", "x.fgb"}, "--zoom"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3"}, "--output"},
+      {{"export", fixture("rings.geojson"), "--zoom", "25", "--output", "x.fgb"}, "0 to 24"},
+      {{"export", fixture("rings.geojson"), "--zoom", "-1", "--output", "x.fgb"}, "0 to 24"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--simplify=-1", "--output", "x.fgb"},
+       "--simplify takes"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--simplify=nan", "--output", "x.fgb"},
+       "--simplify"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--topology", "lax", "--output",
+        "x.fgb"},
+       "strict or fast"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--weights", "none", "--output",
+        "x.fgb"},
+       "effective-area"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--crs", "EPSG:25832", "--output",
+        "x.fgb"},
+       "EPSG:4326 or EPSG:3857"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
+      {{"export", fixture("nosuch.fgb"), "--zoom", "3", "--output", "x.fgb"}, "nosuch.fgb"},
+      {{}, "Usage"},
+      {{"sevre"}, "sevre"}};
+  for (const auto& [arguments, says] : wrong) {
+    Program program(arguments);
+    const auto status = program.wait();
+    EXPECT_TRUE(status && *status != 0 && *status < 128) << says;
+    EXPECT_THAT(program.output(), HasSubstr(says));
+  }
+}
+
+TEST(ProgramTest, RendersOneTileIntoAFile) {
+  const std::string path = scratch_path("tile.png");
+  Program program({"render", fixture("west.geojson"), fixture("rings.geojson"), "--tile", "0/0/0",
+                   "--scale", "2", "--style", "west.fill=blue&rings.fill=red", "--renderer",
+                   "software", "--output", path});
+  ASSERT_EQ(program.wait(), 0) << program.output();
+  const std::string bytes = read_file(path);
+  std::filesystem::remove(path);
+  const Picture picture = decode_png(bytes);
+  ASSERT_EQ(picture.width, 512);
+  EXPECT_EQ(picture.at(10, 10), (Rgba{0, 0, 255, 255}));
+  EXPECT_EQ(picture.at(140, 140), (Rgba{255, 0, 0, 255}));
+  EXPECT_EQ(picture.at(500, 10).a, 0);
+}
+
+TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
+  Program program({"check", fixture("nosuch.fgb"), fixture("rings.geojson")});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr("nosuch.fgb"), HasSubstr("rings.geojson (GeoJSON)"),
+                    ::testing::ContainsRegex("polygons +2"), ::testing::ContainsRegex("rings +3"),
+                    ::testing::ContainsRegex("vertices +12"), HasSubstr("per vertex")));
+  Program good({"check", fixture("rings.geojson")});
+  EXPECT_EQ(good.wait(), 0);
+}
+
+TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {
+  const std::string path = scratch_path("coarse.geojson");
+  std::filesystem::remove(path);
+  const std::vector<std::string> arguments = {
+      "export", fixture("rings.geojson"), "--zoom", "3", "--output", path};
+  Program program(arguments);
+  ASSERT_EQ(program.wait(), 0) << program.output();
+  EXPECT_THAT(program.output(),
+              AllOf(HasSubstr(path + " (GeoJSON): 1 features with 2 polygons"),
+                    HasSubstr("12 of 12 vertices kept"), HasSubstr("0 features left out")));
+  EXPECT_THAT(read_file(path), AllOf(HasSubstr("trapeze_id"), HasSubstr("MultiPolygon")));
+  Program again(arguments);
+  EXPECT_EQ(again.wait(), 1);
+  EXPECT_THAT(again.output(), AllOf(HasSubstr(path), HasSubstr("--overwrite")));
+  std::vector<std::string> rough = arguments;
+  rough.insert(rough.end(), {"--overwrite", "--simplify", "10000"});
+  Program replaced(rough);
+  EXPECT_EQ(replaced.wait(), 0);
+  EXPECT_THAT(replaced.output(), HasSubstr("1 polygons; 4 of 12 vertices kept"));
+  std::filesystem::remove(path);
+}
+
+TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {
+  const std::string folder = scratch_path("prepared");
+  std::filesystem::remove_all(folder);
+  Program prepare({"prepare", fixture("rings.geojson"), fixture("nosuch.fgb"),
+                   fixture("west.geojson"), "--output", folder});
+  EXPECT_EQ(prepare.wait(), 1) << "one of them is not there";
+  EXPECT_THAT(prepare.output(), AllOf(HasSubstr("nosuch.fgb"), HasSubstr("rings.trapeze: 1 of 1"),
+                                      HasSubstr("west.trapeze: 1 of 1")));
+  Program again({"prepare", fixture("rings.geojson"), "--output", folder});
+  EXPECT_EQ(again.wait(), 0) << again.output();
+  const auto answer = [](const std::vector<std::string>& files) {
+    Program program(serve_arguments(files));
+    const std::uint16_t port = program.port();
+    wait_until_ready(port);
+    return RawClient(port).get("/tiles/rings,west/0/0/0.png");
+  };
+  const auto built = answer({fixture("rings.geojson"), fixture("west.geojson")});
+  const auto prepared = answer({folder + "/rings.trapeze", folder + "/west.trapeze"});
+  EXPECT_EQ(prepared.status, 200);
+  EXPECT_EQ(prepared.body, built.body);
+  EXPECT_EQ(prepared.headers.at("etag"), built.headers.at("etag"));
+  Program check({"check", folder + "/rings.trapeze"});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(check.output(), AllOf(HasSubstr("GeoJSON, prepared from " + fixture("rings.geojson")),
+                                    ::testing::ContainsRegex("polygons +2")));
+  std::filesystem::resize_file(folder + "/rings.trapeze", 1000);
+  Program damaged(serve_arguments({folder + "/rings.trapeze"}));
+  EXPECT_EQ(damaged.wait(), 1);
+  EXPECT_THAT(damaged.output(), HasSubstr("rings.trapeze: is damaged"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ProgramTest, HelpShowsExamples) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"serve", "--help"},
+                                                    {"check", "--help"},
+                                                    {"config", "--help"},
+                                                    {"prepare", "--help"},
+                                                    {"export", "--help"},
+                                                    {"render", "--help"}}) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 0);
+    EXPECT_THAT(program.output(), HasSubstr("Example"));
+  }
+  Program version({"--version"});
+  EXPECT_EQ(version.wait(), 0);
+  EXPECT_THAT(version.output(), ::testing::StartsWith("trapeze 0."));
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,127 @@
+// GDAL's own clients of tile services read what we serve, pixel for pixel.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "render/picture/png.h"
+#include "server/http/http_server.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+struct CommandResult {
+  int status = 0;
+  std::string output;
+};
+
+CommandResult run_command(const std::string& command) {
+  CommandResult result;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe)) {
+    result.output.append(buffer.data(), size);
+  }
+  result.status = pclose(pipe);
+  return result;
+}
+
+class GdalClientsTest : public ::testing::Test {
+ protected:
+  GdalClientsTest() {
+    HttpServerOptions options;
+    options.address = "127.0.0.1";
+    options.port = 0;
+    server_ = std::make_unique<HttpServer>(options, sample_.handler());
+    thread_ = std::thread([this] { server_->run(); });
+    url_ = "http://127.0.0.1:" + std::to_string(server_->port());
+    folder_ = ::testing::TempDir() + "/gdal_clients_test_" + std::to_string(server_->port());
+    std::filesystem::create_directories(folder_);
+  }
+  ~GdalClientsTest() override {
+    server_->stop();
+    thread_.join();
+    std::filesystem::remove_all(folder_);
+  }
+
+  /// The world in 512 x 512 pixels, which is zoom 1, as gdal_translate reads it from a source.
+  Picture world(const std::string& source, const std::string& options = {}) {
+    const std::string file = folder_ + "/world.png";
+    // Nothing from earlier runs, and nothing left behind; no proxy between.
+    const CommandResult translated = run_command(
+        "cd " + folder_ + " && no_proxy=127.0.0.1 GDAL_DEFAULT_WMS_CACHE_PATH=" + folder_ +
+        "/cache gdal_translate -q -of PNG -outsize 512 512 " + options + " '" + source + "' " +
+        file);
+    EXPECT_EQ(translated.status, 0) << translated.output;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream),
+                            std::istreambuf_iterator<char>()};
+    return decode_png(bytes);
+  }
+
+  /// How many pixels differ from the tiles of zoom 1, put together.
+  int differences(const Picture& world, const std::string& layer) {
+    EXPECT_EQ(world.width, 512);
+    EXPECT_EQ(world.height, 512);
+    int count = 0;
+    for (int row = 0; row < 2; ++row) {
+      for (int column = 0; column < 2; ++column) {
+        const auto response = sample_.get("/tiles/" + layer + "/1/" + std::to_string(column) + "/" +
+                                          std::to_string(row) + ".png");
+        const Picture tile = decode_png(*response.body);
+        for (int y = 0; y < 256; ++y) {
+          for (int x = 0; x < 256; ++x) {
+            count += world.at(column * 256 + x, row * 256 + y) != tile.at(x, y);
+          }
+        }
+      }
+    }
+    return count;
+  }
+
+  testing::SampleSite sample_;
+  std::unique_ptr<HttpServer> server_;
+  std::thread thread_;
+  std::string url_;
+  std::string folder_;
+};
+
+TEST_F(GdalClientsTest, TheXyzClientReadsOurTiles) {
+  const std::string file = folder_ + "/tiles.xml";
+  std::ofstream(file) << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" << url_
+                      << "/tiles/rings/${z}/${x}/${y}.png</ServerUrl></Service><DataWindow>"
+                         "<UpperLeftX>-20037508.342789244</UpperLeftX>"
+                         "<UpperLeftY>20037508.342789244</UpperLeftY>"
+                         "<LowerRightX>20037508.342789244</LowerRightX>"
+                         "<LowerRightY>-20037508.342789244</LowerRightY>"
+                         "<TileLevel>20</TileLevel><TileCountX>1</TileCountX>"
+                         "<TileCountY>1</TileCountY><YOrigin>top</YOrigin></DataWindow>"
+                         "<Projection>EPSG:3857</Projection><BlockSizeX>256</BlockSizeX>"
+                         "<BlockSizeY>256</BlockSizeY><BandsCount>4</BandsCount></GDAL_WMS>";
+  EXPECT_EQ(differences(world(file), "rings"), 0);
+}
+
+TEST_F(GdalClientsTest, TheWmtsClientReadsOurTiles) {
+  const std::string options = "-oo ZOOM_LEVEL=1 -oo EXTENT_METHOD=MOST_PRECISE_TILE_MATRIX";
+  EXPECT_EQ(differences(world("WMTS:" + url_ + "/wmts.xml,layer=rings", options), "rings"), 0);
+  EXPECT_EQ(differences(world("WMTS:" + url_ + "/wmts?request=GetCapabilities,layer=west", options),
+                        "west"),
+            0);
+}
+
+TEST_F(GdalClientsTest, TheOgcApiClientReadsOurTiles) {
+  // GDAL 3.6 takes the bounds of a collection for metres, so it is told those of the world.
+  const std::string options =
+      "-oo API=TILES -oo MINX=-20037508.342789244 -oo MINY=-20037508.342789244 "
+      "-oo MAXX=20037508.342789244 -oo MAXY=20037508.342789244";
+  EXPECT_EQ(differences(world("OGCAPI:" + url_ + "/ogc/collections/rings", options), "rings"), 0);
+}
+
+}  // namespace
+}  // namespace trapeze

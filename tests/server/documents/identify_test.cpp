@@ -1,0 +1,144 @@
+#include "server/documents/identify.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/layer/layer_builder.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class IdentifyTest : public ::testing::Test {
+ protected:
+  nlohmann::json json(const std::string& target) {
+    return nlohmann::json::parse(*sample_.get(target).body);
+  }
+  /// The layers of the features at the place, in the order of the answer.
+  std::vector<std::string> layers(const std::string& target) {
+    std::vector<std::string> names;
+    const auto answer = json(target);
+    for (const auto& feature : answer["features"]) names.push_back(feature["layer"]);
+    return names;
+  }
+
+  testing::SampleSite sample_;
+};
+
+TEST_F(IdentifyTest, TellsTheAttributesAndTheIdOfTheSource) {
+  const auto response = sample_.get("/identify/rings/-60,0");
+  ASSERT_EQ(response.status, 200);
+  EXPECT_EQ(response.header("Content-Type"), "application/geo+json");
+  const auto json = nlohmann::json::parse(*response.body);
+  EXPECT_EQ(json["type"], "FeatureCollection");
+  EXPECT_EQ(json["numberMatched"], 1);
+  EXPECT_EQ(json["numberReturned"], 1);
+  const auto& feature = json["features"][0];
+  EXPECT_EQ(feature["type"], "Feature");
+  EXPECT_EQ(feature["id"], 7);
+  EXPECT_EQ(feature["layer"], "rings");
+  EXPECT_TRUE(feature["geometry"].is_null());
+  EXPECT_EQ(feature["properties"]["name"], "a square with a hole, and an island in the hole");
+  EXPECT_EQ(feature["properties"]["rank"], 1);
+  EXPECT_NEAR(feature["bbox"][0], -90, 1e-6);
+  EXPECT_NEAR(feature["bbox"][3], 66.5132604, 1e-6);
+}
+
+TEST_F(IdentifyTest, SeesHolesAndIslands) {
+  EXPECT_THAT(layers("/identify/rings/-60,0"), ElementsAre("rings"));
+  EXPECT_THAT(layers("/identify/rings/30,0"), ElementsAre()) << "the hole";
+  EXPECT_THAT(layers("/identify/rings/0,0"), ElementsAre("rings")) << "the island";
+  EXPECT_THAT(layers("/identify/rings/100,0"), ElementsAre());
+}
+
+TEST_F(IdentifyTest, TheTopmostLayerComesFirst) {
+  EXPECT_THAT(layers("/identify/rings,west/-60,0"), ElementsAre("west", "rings"));
+  EXPECT_THAT(layers("/identify/west,rings/-60,0"), ElementsAre("rings", "west"));
+  EXPECT_THAT(layers("/identify/rings,west/-100,0"), ElementsAre("west"));
+}
+
+TEST_F(IdentifyTest, WithAZoomFindsWhatIsDrawnThere) {
+  EXPECT_THAT(layers("/identify/rings/0,0?z=0"), ElementsAre("rings"));
+  EXPECT_THAT(layers("/identify/rings/0,0?z=0&simplify=32"), ElementsAre()) << "no island left";
+  EXPECT_THAT(layers("/identify/rings/30,0?z=0&rings.simplify=64"), ElementsAre("rings"))
+      << "no hole left";
+  EXPECT_THAT(layers("/identify/west/-100,0?z=5.9"), ElementsAre("west"));
+  EXPECT_THAT(layers("/identify/west/-100,0?z=6"), ElementsAre()) << "drawn up to zoom 5";
+}
+
+TEST_F(IdentifyTest, TheEndsOfTheWorldCanBeAsked) {
+  for (const char* place : {"-180,85.0511", "-180,-85.0511", "-1e-7,0", "-180,85.05112877980659"}) {
+    EXPECT_THAT(layers(std::string("/identify/west/") + place), ElementsAre("west")) << place;
+  }
+  EXPECT_EQ(sample_.get("/identify/west/180,-85.05112877980659").status, 200);
+}
+
+TEST_F(IdentifyTest, WhatIsWrongIsSaid) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"/identify/rings/181,0", "lon,lat"},
+      {"/identify/rings/0,86", "lon,lat"},
+      {"/identify/rings/0", "lon,lat"},
+      {"/identify/rings/nan,0", "lon,lat"},
+      {"/identify/rings/0,0,0", "lon,lat"},
+      {"/identify/rings/a,b", "lon,lat"},
+      {"/identify/rings/0,0?z=25", "z"},
+      {"/identify/rings/0,0?z=-1", "z"},
+      {"/identify/rings/0,0?z=nan", "z"},
+      {"/identify/rings/0,0?z=", "z"},
+      {"/identify/a%20b/0,0", "layers"},
+      {"/identify//0,0", "layers"},
+      {"/identify/rings/0,0?simplify=-1", "simplify"}};
+  for (const auto& [target, parameter] : wrong) {
+    const auto response = sample_.get(target);
+    EXPECT_EQ(response.status, 400) << target;
+    EXPECT_EQ(nlohmann::json::parse(*response.body)["parameter"], parameter) << target;
+  }
+  for (const char* target :
+       {"/identify", "/identify/rings", "/identify/rings/0,0/0", "/identify/nosuch/0,0"}) {
+    EXPECT_EQ(sample_.get(target).status, 404) << target;
+  }
+}
+
+TEST_F(IdentifyTest, WaitsForTheData) {
+  testing::SampleSite loading(/*is_loaded=*/false);
+  EXPECT_EQ(loading.get("/identify/rings/0,0").status, 503);
+}
+
+/// A layer "many" of `count` equal squares around 0 E, 0 N.
+ServedLayer many_squares(std::uint32_t count) {
+  FeatureTable features({{"number", FieldType::integer}, {"share", FieldType::real}});
+  std::vector<LayerBuilder> builders(1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::int64_t number = std::numeric_limits<std::int64_t>::max() - i;
+    features.append(-number, std::vector<Value>{number, std::numeric_limits<double>::quiet_NaN()});
+    Rings rings;
+    rings.add(std::vector<Point>{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}});
+    builders.front().add(i, rings);
+  }
+  ServedLayer served;
+  served.config.name = "many";
+  served.layer = LayerBuilder::join(builders, std::move(features));
+  return served;
+}
+
+TEST_F(IdentifyTest, AnswersStaySmallAndIntegersExact) {
+  std::vector<ServedLayer> layers;
+  layers.push_back(many_squares(150));
+  sample_.data().set(std::make_shared<const Dataset>(std::move(layers)));
+  const auto response = sample_.get("/identify/many/0,0");
+  const auto json = nlohmann::json::parse(*response.body);
+  EXPECT_EQ(json["numberMatched"], 150);
+  EXPECT_EQ(json["numberReturned"], 100);
+  EXPECT_EQ(json["features"].size(), 100u);
+  EXPECT_THAT(*response.body, HasSubstr("\"number\": 9223372036854775807"));
+  EXPECT_THAT(*response.body, HasSubstr("\"id\": -9223372036854775807"));
+  EXPECT_TRUE(json["features"][0]["properties"]["share"].is_null()) << "JSON has no NaN";
+}
+
+}  // namespace
+}  // namespace trapeze

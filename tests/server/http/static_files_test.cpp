@@ -1,0 +1,77 @@
+#include "server/http/static_files.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace trapeze {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StaticFilesTest : public ::testing::Test {
+ protected:
+  StaticFilesTest() {
+    write("secret.txt", "secret");
+    write("web/index.html", "<p>index</p>");
+    write("web/lib/map.js", "map()");
+    write("web/lib/index.html", "<p>lib</p>");
+    write("web/.hidden", "hidden");
+    write("web/.git/config", "hidden");
+  }
+  ~StaticFilesTest() override { fs::remove_all(folder_); }
+
+  void write(const std::string& path, const std::string& text) const {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << text;
+  }
+  std::string root() const { return (folder_ / "web").string(); }
+
+  const fs::path folder_ = fs::path(::testing::TempDir()) /
+                           (std::string("static_files_test_") +
+                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(StaticFilesTest, ServesWhatIsInTheFolderAndIndexesFolders) {
+  const StaticFiles files(root());
+  EXPECT_EQ(files.size(), 3u);
+  ASSERT_NE(files.find("/"), nullptr);
+  EXPECT_EQ(*files.find("/")->bytes, "<p>index</p>");
+  EXPECT_EQ(files.find("/")->content_type, "text/html; charset=utf-8");
+  EXPECT_EQ(*files.find("/lib/")->bytes, "<p>lib</p>");
+  EXPECT_EQ(*files.find("/lib/map.js")->bytes, "map()");
+  EXPECT_EQ(files.find("/lib/map.js")->content_type, "text/javascript; charset=utf-8");
+}
+
+TEST_F(StaticFilesTest, WorksWithASlashAtTheEndOfTheRoot) {
+  EXPECT_NE(StaticFiles(root() + "/").find("/lib/map.js"), nullptr);
+}
+
+TEST_F(StaticFilesTest, NoPathEscapesTheFolder) {
+  const StaticFiles files(root());
+  for (const char* path :
+       {"/../secret.txt", "/lib/../../secret.txt", "/./index.html", "//index.html", "/.hidden",
+        "/.git/config", "/lib", "", "index.html", "/lib/../index.html"}) {
+    EXPECT_EQ(files.find(path), nullptr) << path;
+  }
+}
+
+TEST_F(StaticFilesTest, TagsFollowTheContents) {
+  const std::string before = StaticFiles(root()).find("/")->entity_tag;
+  EXPECT_EQ(StaticFiles(root()).find("/")->entity_tag, before);
+  write("web/index.html", "<p>other</p>");
+  EXPECT_NE(StaticFiles(root()).find("/")->entity_tag, before);
+}
+
+TEST_F(StaticFilesTest, AMissingFolderIsAnErrorThatNamesIt) {
+  try {
+    StaticFiles files(root() + "/nosuch");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("/nosuch"));
+  }
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,61 @@
+#include "tests/server/service/sample_site.h"
+
+#include <future>
+#include <utility>
+#include <vector>
+
+#include "render/make_renderer.h"
+#include "server/config/config.h"
+
+namespace trapeze::testing {
+namespace {
+
+std::vector<std::unique_ptr<CoverageRenderer>> software_renderers() {
+  return make_renderers({RendererKind::software, {}}, 2).renderers;
+}
+
+}  // namespace
+
+std::string fixture(const std::string& name) {
+  return TRAPEZE_TEST_FIXTURES "/" + name;
+}
+
+StyleQuery style_of(const std::string& query) {
+  return std::get<StyleQuery>(StyleQuery::parse(decode_query(query).value(), {}));
+}
+
+std::shared_ptr<const Dataset> sample_dataset() {
+  auto layers = layers_of_files({fixture("rings.geojson"), fixture("west.geojson")});
+  layers[0].title = "Rings";
+  layers[0].attribution = "drawn by hand";
+  layers[0].style = style_of("fill=f00");
+  layers[1].style = style_of("fill=00f&fill-opacity=0.5");
+  layers[1].min_zoom = 0;
+  layers[1].max_zoom = 5;
+  return Dataset::load(layers);
+}
+
+SampleSite::SampleSite(bool is_loaded, StaticFiles files, SiteOptions options)
+    : tiles_({}, software_renderers()),
+      site_(std::move(options), std::move(files), data_, tiles_, cache_) {
+  if (is_loaded) data_.set(sample_dataset());
+}
+
+Handler SampleSite::handler() {
+  return [this](const HttpRequest& request, Respond respond) {
+    site_.handle(request, std::move(respond));
+  };
+}
+
+HttpResponse SampleSite::get(const std::string& target, const std::string& if_none_match) {
+  return handle({"GET", target, "maps.example:8080", if_none_match, {}});
+}
+
+HttpResponse SampleSite::handle(const HttpRequest& request) {
+  std::promise<HttpResponse> promise;
+  site_.handle(request,
+               [&promise](HttpResponse response) { promise.set_value(std::move(response)); });
+  return promise.get_future().get();
+}
+
+}  // namespace trapeze::testing

@@ -1,0 +1,44 @@
+// A site over the fixtures, without a socket, drawn by the software renderer.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/data/dataset.h"
+#include "server/http/http_server.h"
+#include "server/service/site.h"
+#include "server/tiles/tile_service.h"
+
+namespace trapeze::testing {
+
+std::string fixture(const std::string& name);
+
+/// A style for all layers, from a query.
+StyleQuery style_of(const std::string& query);
+
+/// Two layers. In a tile of zoom 0, "rings" covers pixels 64 to 192 in both directions, but not
+/// the hole from 96 to 160, in which there is an island from 112 to 144; "west" covers the columns
+/// 0 to 128.
+std::shared_ptr<const Dataset> sample_dataset();
+
+class SampleSite {
+ public:
+  explicit SampleSite(bool is_loaded = true, StaticFiles files = {}, SiteOptions options = {});
+
+  Site& site() { return site_; }
+  /// The site for a server.
+  Handler handler();
+  CurrentDataset& data() { return data_; }
+
+  /// The response to a GET, waited for.
+  HttpResponse get(const std::string& target, const std::string& if_none_match = {});
+  HttpResponse handle(const HttpRequest& request);
+
+ private:
+  CurrentDataset data_;
+  TileCache cache_{std::size_t{1} << 20};
+  TileService tiles_;
+  Site site_;
+};
+
+}  // namespace trapeze::testing

@@ -1,0 +1,214 @@
+#include "server/styles/style_book.h"
+
+#include <gmock/gmock.h>
+
+#include "server/styles/style_document.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+using ::testing::UnorderedElementsAre;
+
+std::vector<QueryPair> expand(const StyleBook& book, std::vector<QueryPair> query) {
+  auto expanded = book.expand(std::move(query));
+  if (const auto* problem = std::get_if<Problem>(&expanded)) {
+    return {{"problem", problem->detail}};
+  }
+  return std::get<0>(expanded);
+}
+
+TEST(StyleBookTest, AStyleFillsInWhatTheQueryDoesNotSet) {
+  const StyleBook book({{"night", testing::style_of("fill=000080&stroke=ffffff")}});
+  EXPECT_THAT(expand(book, {{"style", "night"}}),
+              UnorderedElementsAre(Pair("fill", "000080ff"), Pair("stroke", "ffffffff")));
+  EXPECT_THAT(
+      expand(book, {{"stroke", "red"}, {"style", "night"}, {"x", "1"}}),
+      UnorderedElementsAre(Pair("fill", "000080ff"), Pair("stroke", "red"), Pair("x", "1")));
+  EXPECT_THAT(expand(book, {{"style", "default"}, {"fill", "red"}}),
+              ElementsAre(Pair("fill", "red")));
+  EXPECT_THAT(expand(book, {{"fill", "red"}}), ElementsAre(Pair("fill", "red")));
+}
+
+TEST(StyleBookTest, RulesForClassesGoTogether) {
+  const StyleBook book({{"a", testing::style_of("color-by=kind&classes=x:red&fill=lime")}});
+  EXPECT_THAT(expand(book, {{"style", "a"}, {"color-by", "people"}, {"breaks", "1"}}),
+              UnorderedElementsAre(Pair("color-by", "people"), Pair("breaks", "1"),
+                                   Pair("fill", "00ff00ff")));
+}
+
+TEST(StyleBookTest, UnknownStylesAreAProblem) {
+  const StyleBook book({{"night", testing::style_of("fill=navy")}});
+  const auto answer = book.expand({{"style", "day"}});
+  const auto& problem = std::get<Problem>(answer);
+  EXPECT_EQ(problem.status, 400);
+  EXPECT_EQ(problem.parameter, "style");
+  EXPECT_THAT(problem.takes, HasSubstr("night"));
+  EXPECT_EQ(book.expand({{"style", "night"}, {"style", "night"}}).index(), 1u);
+}
+
+TEST(StyleBookTest, EqualStylesHaveOneIdEverywhere) {
+  StyleBook one;
+  StyleBook two;
+  const std::string id = std::get<std::string>(one.post(testing::style_of("fill=red&stroke=f00")));
+  EXPECT_EQ(std::get<std::string>(two.post(testing::style_of("stroke=red&fill=ff0000ff"))), id);
+  EXPECT_NE(std::get<std::string>(two.post(testing::style_of("fill=red"))), id);
+  EXPECT_TRUE(is_url_name(id));
+  ASSERT_NE(one.find(id), nullptr);
+  EXPECT_EQ(one.find(id)->canonical_text(), "fill=ff0000ff&stroke=ff0000ff");
+  EXPECT_EQ(one.find("0123456789abcdef"), nullptr);
+}
+
+TEST(StyleBookTest, PostedStylesKeepToTheirBudget) {
+  StyleBook book({}, 4096);
+  const std::string first = std::get<std::string>(book.post(testing::style_of("stroke-width=32")));
+  std::string last;
+  for (int i = 1; i < 100; ++i) {
+    last = std::get<std::string>(
+        book.post(testing::style_of("stroke-width=" + std::to_string(i / 4.0))));
+    EXPECT_LE(book.memory(), 4096u);
+  }
+  EXPECT_EQ(book.find(first), nullptr);
+  EXPECT_NE(book.find(last), nullptr);
+}
+
+TEST(StyleBookTest, ALongStyleIsRefused) {
+  std::string query = "ids=";
+  for (int i = 0; i < 256; ++i) query += std::to_string(1'000'000'000 + i) + ",";
+  query.pop_back();
+  const auto answer = StyleBook().post(testing::style_of(query));
+  ASSERT_EQ(answer.index(), 1u);
+  EXPECT_EQ(std::get<Problem>(answer).status, 400);
+}
+
+std::string canonical(std::string_view json) {
+  const auto style = parse_style_document(json);
+  if (const auto* problem = std::get_if<Problem>(&style)) return "problem: " + problem->detail;
+  return std::get<StyleQuery>(style).canonical_text();
+}
+
+TEST(StyleDocumentTest, HasTheParametersByTheirNames) {
+  EXPECT_EQ(canonical(R"({"fill": "#ff0000", "stroke-width": 2, "stroke-dasharray": [4, 2.5]})"),
+            "fill=ff0000ff&stroke-dasharray=4%2C2.5&stroke-width=2");
+  EXPECT_EQ(canonical(R"({"layers": {"water": {"fill": "navy"}}, "land.fill": "lime"})"),
+            "land.fill=00ff00ff&water.fill=000080ff");
+  EXPECT_EQ(canonical(R"({"color-by": "A3", "classes": {"it's": "red", "*": "blue"}})"),
+            "classes=%27it%27%27s%27%3Aff0000ff%2C%2A%3A0000ffff&color-by=A3");
+  EXPECT_EQ(canonical("{}"), "");
+}
+
+TEST(StyleDocumentTest, UnderstandsThePaintOfMapLibre) {
+  EXPECT_EQ(canonical(R"({"id": "land", "type": "fill", "source": "x", "source-layer": "y",
+                          "paint": {"fill-color": "#0f0", "fill-opacity": 0.5,
+                                    "fill-outline-color": "black", "fill-antialias": true}})"),
+            "fill=00ff00ff&fill-opacity=0.5&stroke=000000ff");
+}
+
+TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {
+  for (const auto& [json, says] : std::vector<std::pair<std::string, std::string>>{
+           {"", "not JSON"},
+           {"[1]", "JSON object"},
+           {R"({"fil": 1})", "does not know \"fil\""},
+           {R"({"fill": true})", "fill takes a colour"},
+           {R"({"fill": {"a": 1}})", "fill takes a colour"},
+           {R"({"fill": "reddish"})", "fill takes a colour"},
+           {R"({"type": "line"})", "does not know \"type\""},
+           {R"({"paint": {"fill-pattern": "x"}})", "does not know \"fill-pattern\""},
+           {R"({"paint": {"fill-color": ["get", "c"]}})", "fill takes a colour"},
+           {R"({"style": "night"})", "does not know \"style\""},
+           {R"({"layers": {"a b": {"fill": "red"}}})", "cannot name a layer"},
+           {R"({"layers": {"a": 1}})", "needs an object"},
+           {R"({"ids": 18446744073709551615})", "ids takes 1 to"},
+           {R"({"color-by": "a\u0001"})", "color-by takes the name of a property"},
+           {R"({"classes": {"a\nb": "red"}})", "classes takes 1 to"},
+           {R"({"filter": "a = 'b\t'"})", "at byte 7 there is a control character"},
+           {R"({"water.background": "red"})", "for one layer"},
+           {R"({"fill": "red", "paint": {"fill-color": "blue"}})", "more than once"}}) {
+    EXPECT_THAT(canonical(json), HasSubstr(says)) << json;
+  }
+}
+
+TEST(StyleDocumentTest, IsReadBackAsTheSameStyle) {
+  for (const std::string query :
+       {"fill=red&opacity=0.25", "stroke-dasharray=1,2&ids=3,1&filter=a%3D'b'",
+        "color-by=k&classes='x,y':red,null:blue,*:lime", "breaks=1,2.5&ramp=Reds&color-by=k"}) {
+    const StyleQuery style = testing::style_of(query);
+    EXPECT_EQ(canonical(style_document(style)), style.canonical_text());
+  }
+}
+
+SiteOptions with_night() {
+  SiteOptions options;
+  options.styles.emplace("night", testing::style_of("fill=navy&background=black"));
+  return options;
+}
+
+class StyleRoutesTest : public ::testing::Test {
+ protected:
+  HttpResponse post(const std::string& body) {
+    return site_.handle({"POST", "/styles", "maps.example:8080", {}, body});
+  }
+  static std::string id_of(const HttpResponse& response) {
+    const std::size_t begin = response.body->find("\"id\": \"") + 7;
+    return response.body->substr(begin, response.body->find('"', begin) - begin);
+  }
+
+  testing::SampleSite site_{true, {}, with_night()};
+};
+
+TEST_F(StyleRoutesTest, APostedStyleIsServedByItsId) {
+  const HttpResponse posted = post(R"({"fill": "lime"})");
+  ASSERT_EQ(posted.status, 201);
+  const std::string id = id_of(posted);
+  EXPECT_EQ(posted.header("Location"), "http://maps.example:8080/styles/" + id);
+  EXPECT_EQ(id_of(post(R"({"fill": "#00ff00"})")), id);
+  const HttpResponse direct = site_.get("/tiles/rings/0/0/0.png?fill=lime");
+  const HttpResponse by_path = site_.get("/tiles/rings/s/" + id + "/0/0/0.png");
+  const HttpResponse by_query = site_.get("/tiles/rings/0/0/0.png?style=" + id);
+  ASSERT_EQ(direct.status, 200);
+  EXPECT_EQ(by_path.header("ETag"), direct.header("ETag"));
+  EXPECT_EQ(by_query.header("ETag"), direct.header("ETag"));
+  EXPECT_EQ(*by_path.body, *direct.body);
+  EXPECT_EQ(site_.get("/tiles/rings/s/" + id + "/0/0/0.png?fill=red").header("ETag"),
+            site_.get("/tiles/rings/0/0/0.png?fill=red").header("ETag"));
+  EXPECT_THAT(*site_.get("/styles/" + id).body, HasSubstr("00ff00ff"));
+}
+
+TEST_F(StyleRoutesTest, NamedStylesAreServedAndListed) {
+  EXPECT_EQ(site_.get("/tiles/rings/0/0/0.png?style=night").header("ETag"),
+            site_.get("/tiles/rings/0/0/0.png?fill=navy&background=black").header("ETag"));
+  EXPECT_EQ(site_.get("/tiles/rings/s/default/0/0/0.png").header("ETag"),
+            site_.get("/tiles/rings/0/0/0.png").header("ETag"));
+  EXPECT_THAT(*site_.get("/styles").body, HasSubstr("night"));
+  EXPECT_THAT(*site_.get("/tiles/rings.json?style=night").body, HasSubstr("fill=000080ff"));
+  EXPECT_EQ(site_.get("/legend/rings.json?style=night").status, 200);
+  EXPECT_THAT(*site_.get("/wmts.xml").body, HasSubstr("<ows:Identifier>night</ows:Identifier>"));
+  const std::string get_tile =
+      "/wmts?service=WMTS&request=GetTile&version=1.0.0&layer=rings&format=image/png"
+      "&tilematrixset=WebMercatorQuad&tilematrix=0&tilerow=0&tilecol=0";
+  EXPECT_EQ(site_.get(get_tile + "&STYLE=night").header("ETag"),
+            site_.get("/tiles/rings/0/0/0.png?style=night").header("ETag"));
+  EXPECT_EQ(site_.get(get_tile + "&style=default").header("ETag"),
+            site_.get("/tiles/rings/0/0/0.png").header("ETag"));
+}
+
+TEST_F(StyleRoutesTest, WhatIsWrongIsSaid) {
+  EXPECT_EQ(post("{").status, 400);
+  EXPECT_EQ(post(R"({"fill": 3})").status, 400);
+  EXPECT_EQ(site_.get("/styles/nosuch").status, 404);
+  EXPECT_EQ(site_.get("/tiles/rings/s/nosuch/0/0/0.png").status, 404);
+  EXPECT_EQ(site_.get("/tiles/rings/0/0/0.png?style=nosuch").status, 400);
+  EXPECT_EQ(site_.get("/legend/rings.png?style=nosuch").status, 400);
+  EXPECT_EQ(site_.handle({"POST", "/catalog", "maps.example:8080", {}, "{}"}).status, 405);
+  EXPECT_EQ(site_.handle({"PUT", "/styles", "maps.example:8080", {}, "{}"}).header("Allow"),
+            "GET, HEAD, OPTIONS, POST");
+  EXPECT_EQ(site_.handle({"OPTIONS", "/styles", "maps.example:8080", {}, {}})
+                .header("Access-Control-Allow-Methods"),
+            "GET, HEAD, OPTIONS, POST");
+}
+
+}  // namespace
+}  // namespace trapeze

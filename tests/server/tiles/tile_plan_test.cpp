@@ -1,0 +1,177 @@
+#include "server/tiles/tile_plan.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+LayerStyle plain_style(Rgba fill) {
+  LayerStyle style;
+  style.paints = {{fill, {0, 0, 0, 255}}};
+  return style;
+}
+
+auto fills(std::size_t layer, Rgba fill) {
+  return ::testing::AllOf(
+      ::testing::Field(&LayerPaint::layer, layer),
+      ::testing::ResultOf([](const LayerPaint& p) { return p.style.paint_of_others().fill; },
+                          fill));
+}
+
+class TilePlanTest : public ::testing::Test {
+ protected:
+  TilePlan plan(const std::string& target) const {
+    const auto parsed = parse_tiles_target("/tiles/" + target, StyleBook());
+    auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
+    return std::get<TilePlan>(planned);
+  }
+  std::string tag(const std::string& target) const { return entity_tag_of(plan(target).key()); }
+  /// The level of the default tolerance in tiles of 256 pixels.
+  static Level usual_level(int zoom) {
+    return nearest_level(static_cast<double>(TileId{zoom, 0, 0}.side()) / 256 / 4);
+  }
+
+  const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
+};
+
+TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
+  const TilePlan plan = this->plan("rings,west/0/0/0.png");
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {255, 0, 0, 255}), fills(1, {0, 0, 255, 128})));
+  EXPECT_EQ(plan.background, kTransparent);
+}
+
+TEST_F(TilePlanTest, TheRequestGoesBeforeTheConfiguration) {
+  const TilePlan plan =
+      this->plan("rings,west/0/0/0.png?fill=lime&west.fill-opacity=1&background=ffff0080");
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(fills(0, {0, 255, 0, 255}), fills(1, {0, 255, 0, 255})));
+  EXPECT_EQ(plan.background, (Rgba{255, 255, 0, 128}));
+}
+
+TEST_F(TilePlanTest, LeavesOutLayersThatCannotBeSeen) {
+  EXPECT_EQ(plan("west/5/0/0.png").layers.size(), 1u);
+  EXPECT_EQ(plan("west/6/0/0.png").layers.size(), 0u);
+  EXPECT_EQ(plan("rings/0/0/0.png?fill-opacity=0").layers.size(), 0u);
+}
+
+TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
+  const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png", StyleBook());
+  const auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
+  const auto& problem = std::get<Problem>(planned);
+  EXPECT_EQ(problem.status, 404);
+  EXPECT_EQ(problem.value, "nosuch");
+}
+
+TEST_F(TilePlanTest, EqualPicturesHaveEqualTags) {
+  const std::string same = tag("rings/3/4/4.png");
+  for (const char* target :
+       {"rings/3/4/4@1x.png", "rings,rings/3/4/4.png", "rings/3/4/4.png?fill=red",
+        "rings/3/4/4.png?rings.fill=F00&fill=blue", "rings/3/4/4.png?x=1",
+        "rings/3/4/4.png?background=ff000000", "rings/3/4/4.png?fill-opacity=1.0"}) {
+    EXPECT_EQ(tag(target), same) << target;
+  }
+}
+
+TEST_F(TilePlanTest, DifferentPicturesHaveDifferentTags) {
+  const std::string tag = this->tag("rings/3/4/4.png");
+  for (const char* target :
+       {"rings/3/4/4@2x.png", "rings/3/4/3.png", "rings/3/3/4.png", "rings/2/3/3.png",
+        "west/3/4/4.png", "rings,west/3/4/4.png", "rings/3/4/4.png?fill=fe0000",
+        "rings/3/4/4.png?background=white", "rings/3/4/4.png?fill-opacity=0.5"}) {
+    EXPECT_NE(this->tag(target), tag) << target;
+  }
+  EXPECT_NE(this->tag("rings,west/3/4/4.png"), this->tag("west,rings/3/4/4.png"));
+}
+
+TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
+  const auto again = testing::sample_dataset();
+  EXPECT_EQ(again->generation(), dataset_->generation());
+  TilePlan plan = this->plan("rings/0/0/0.png");
+  const std::string tag = entity_tag_of(plan.key());
+  plan.dataset = again;
+  EXPECT_EQ(entity_tag_of(plan.key()), tag);
+  auto layers = layers_of_files({testing::fixture("west.geojson")});
+  layers[0].name = "rings";  // the same name, other contents
+  plan.dataset = Dataset::load(layers);
+  EXPECT_NE(entity_tag_of(plan.key()), tag);
+}
+
+TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
+  const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
+  EXPECT_EQ(plan("rings/10/0/0.png").layers[0].level, nearest_level(pixel / 4));
+  EXPECT_EQ(plan("rings/10/0/0@2x.png").layers[0].level, nearest_level(pixel / 8));
+}
+
+TEST_F(TilePlanTest, ARequestedToleranceIsInOutputPixels) {
+  const double pixel = static_cast<double>(TileId{10, 0, 0}.side()) / 256;
+  EXPECT_EQ(plan("rings/10/0/0.png?simplify=0").layers[0].level, 0);
+  EXPECT_EQ(plan("rings/10/0/0.png?simplify=3").layers[0].level, nearest_level(3 * pixel));
+  EXPECT_EQ(plan("rings/10/0/0@2x.png?simplify=3").layers[0].level, nearest_level(1.5 * pixel));
+}
+
+TEST_F(TilePlanTest, DustIsTakenTogetherWithinPixelsWhateverTheTolerance) {
+  for (const char* query : {"", "?simplify=0", "?simplify=64"}) {
+    const TilePlan plan = this->plan(std::string("rings/10/0/0@2x.png") + query);
+    EXPECT_EQ(plan.pixel_level(), this->plan("rings/10/0/0@2x.png").layers[0].level) << query;
+  }
+}
+
+TEST_F(TilePlanTest, EveryLayerMayBeGeneralizedInItsOwnWay) {
+  const TilePlan plan = this->plan(
+      "rings,west/3/0/0.png?small=drop&west.small=keep&rings.topology=fast&"
+      "west.simplify=0");
+  EXPECT_THAT(plan.layers,
+              ::testing::ElementsAre(LayerPaint{0, plain_style({255, 0, 0, 255}), usual_level(3),
+                                                Topology::fast, SmallPolygons::drop},
+                                     LayerPaint{1, plain_style({0, 0, 255, 128}), 0,
+                                                Topology::strict, SmallPolygons::keep}));
+}
+
+TEST_F(TilePlanTest, TheSameGeneralizationHasTheSameTagHoweverWritten) {
+  const std::string same = tag("rings/3/4/4.png");
+  for (const char* query :
+       {"simplify=0.25", "simplify=0.2500001", "small=dust", "topology=strict",
+        "rings.small=dust&small=drop", "topology=strict&simplify=2.5e-1", "west.simplify=9"}) {
+    EXPECT_EQ(tag(std::string("rings/3/4/4.png?") + query), same) << query;
+  }
+  EXPECT_EQ(tag("rings/3/4/4.png?debug=tile,mesh"), tag("rings/3/4/4.png?debug=mesh,tile,mesh"));
+}
+
+TEST_F(TilePlanTest, EveryGeneralizationAndEveryMarkHasItsOwnTag) {
+  std::set<std::string> tags;
+  const std::vector<std::string> queries = {"",
+                                            "simplify=0",
+                                            "simplify=1",
+                                            "simplify=64",
+                                            "small=drop",
+                                            "small=keep",
+                                            "debug=faces",
+                                            "debug=junctions",
+                                            "debug=faces,junctions",
+                                            "debug=mesh",
+                                            "debug=tile",
+                                            "debug=vertices",
+                                            "debug=mesh,tile",
+                                            "debug=mesh,tile,vertices",
+                                            "topology=fast",
+                                            "topology=fast&small=drop"};
+  for (const std::string& query : queries) tags.insert(tag("rings/3/4/4.png?" + query));
+  EXPECT_EQ(tags.size(), queries.size());
+}
+
+TEST_F(TilePlanTest, AnInvisibleLayerIsKeptForItsMarks) {
+  EXPECT_EQ(plan("rings/0/0/0.png?fill-opacity=0").layers.size(), 0u);
+  const TilePlan plan = this->plan("rings/0/0/0.png?fill-opacity=0&debug=vertices,tile");
+  EXPECT_EQ(plan.layers.size(), 1u);
+  EXPECT_EQ(plan.debug, (DebugMarks{.vertices = true, .tile = true}));
+}
+
+}  // namespace
+}  // namespace trapeze
