@@ -174,7 +174,7 @@ Map load_map(const MapSource& source) {
 
 std::unique_ptr<Layer> build_layer(const MapLayer& layer, Topology topology) {
   std::vector<LayerBuilder> builders;
-  builders.emplace_back(GeneralizationOptions{.topology = topology});
+  builders.emplace_back(LayerOptions{{.topology = topology}});
   Rings rings;
   for (std::size_t row = 0; row < layer.features.size(); ++row) {
     rings = layer.features[row];

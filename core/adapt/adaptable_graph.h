@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "core/adapt/vertex_weight.h"
-#include "core/borders/coverage_groups.h"
 #include "core/borders/region_borders.h"
 #include "core/graph/edit_log.h"
 #include "core/graph/generalization.h"
@@ -38,9 +37,6 @@ namespace trapeze {
 struct GeneralizationOptions {
   WeightRule weights = WeightRule::douglas_peucker;
   Topology topology = Topology::strict;
-  // Of layers; a graph is what it was built from.
-  CoverageMode coverage = CoverageMode::off;
-  double close_gaps = 0;  // metres on the ground, up to kWidestGap; where there are coverages
 };
 
 /// The corners of a graph in the order in which they are to go, with what blocks them.

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/layer/layer_builder.h"
 #include "core/layer/layer_contents.h"
 
 namespace trapeze {
 
-Layer::Layer(std::unique_ptr<const Contents> contents) : contents_(std::move(contents)) {}
+Layer::Layer(std::unique_ptr<const LayerContents> contents) : contents_(std::move(contents)) {}
 Layer::~Layer() = default;
 
 const FeatureTable& Layer::features() const {
@@ -32,7 +31,7 @@ void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& rang
 // made are wanted, unless a merged one stands for them already.
 void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
   const Level resolution = std::min(selection.level, selection.pixel_level);
-  const Contents& c = *contents_;
+  const LayerContents& c = *contents_;
   c.mote_index.select(selection.box, selection.level, resolution, c.lifespans, ranges);
   c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
 }
@@ -67,34 +66,8 @@ void Layer::small_polygons(const Selection& selection, std::vector<Box>& places)
   });
 }
 
-const Layer& Layer::without_topology_test() const {
-  if (contents_->options.topology == Topology::fast) return *this;
-  std::call_once(without_test_built_, [this] {
-    GeneralizationOptions options = contents_->options;
-    options.topology = Topology::fast;
-    LayerBuilder builder(options);
-    Rings rings;
-    for (std::uint32_t row = 0; row < features().size(); ++row) {
-      rings.clear();
-      append_outline(row, rings);
-      builder.add(row, rings);
-    }
-    std::vector<LayerBuilder> builders;
-    builders.push_back(std::move(builder));
-    without_test_ = LayerBuilder::join(builders, FeatureTable());
-    has_without_test_ = true;
-  });
-  return *without_test_;
-}
-
-std::vector<std::uint64_t> Layer::mesh_ids() const {
-  std::vector<std::uint64_t> ids = {mesh().id};
-  if (has_without_test_) ids.push_back(without_test_->mesh().id);
-  return ids;
-}
-
 void Layer::append_outline(std::uint32_t row, Rings& rings) const {
-  const Contents& c = *contents_;
+  const LayerContents& c = *contents_;
   if (row >= c.outline_ends.size()) return;
   for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
     const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
@@ -108,18 +81,16 @@ std::uint32_t Layer::feature_of(std::uint32_t trapezoid) const {
   return trapezoid < contents_->feature_of.size() ? contents_->feature_of[trapezoid] : kNoFeature;
 }
 
-Layer::Size Layer::size() const {
+LayerSize Layer::size() const {
   return contents_->size;
 }
 
 std::size_t Layer::memory() const {
-  const Contents& c = *contents_;
-  const std::size_t beside = has_without_test_ ? without_test_->memory() : 0;
-  return beside + c.vertices.memory() + c.edges.memory() + c.trapezoids.memory() +
-         c.lifespans.memory() + c.feature_of.memory() + c.outline_points.memory() +
-         c.ring_ends.memory() + c.outline_ends.memory() + c.polygon_index.memory() +
-         c.level_edge_index.memory() + c.mote_index.memory() + c.merged_mote_index.memory() +
-         c.grains.memory();
+  const LayerContents& c = *contents_;
+  return c.vertices.memory() + c.edges.memory() + c.trapezoids.memory() + c.lifespans.memory() +
+         c.feature_of.memory() + c.outline_points.memory() + c.ring_ends.memory() +
+         c.outline_ends.memory() + c.polygon_index.memory() + c.level_edge_index.memory() +
+         c.mote_index.memory() + c.merged_mote_index.memory() + c.grains.memory();
 }
 
 }  // namespace trapeze

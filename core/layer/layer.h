@@ -3,12 +3,9 @@
 // Thread-safety: immutable to the eye; any number of threads may read.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/grid/grid.h"
@@ -16,9 +13,12 @@
 #include "core/grid/tolerance.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/grains.h"
+#include "core/layer/layer_size.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
+
+struct LayerContents;  // the stored arrays
 
 /// What becomes of polygons, and of holes, that are too small for a tolerance.
 enum class SmallPolygons : std::uint8_t {
@@ -31,9 +31,7 @@ class Layer {
  public:
   static constexpr std::uint32_t kNoFeature = 0xffffffff;
 
-  struct Contents;  // the stored arrays; made by LayerBuilder and layer_from
-
-  explicit Layer(std::unique_ptr<const Contents> contents);  // used by these
+  explicit Layer(std::unique_ptr<const LayerContents> contents);  // see LayerBuilder, layer_from
   ~Layer();
   Layer(const Layer&) = delete;
   Layer& operator=(const Layer&) = delete;
@@ -76,14 +74,6 @@ class Layer {
   /// in one pixel taken together.
   void small_polygons(const Selection& selection, std::vector<Box>& places) const;
 
-  /// The same polygons generalized without the topological consistency test (paper, section 4.2),
-  /// where that makes a difference. Built when first asked for, which takes about as long as
-  /// loading took and as much memory again; callers that come meanwhile wait.
-  const Layer& without_topology_test() const;
-
-  /// The ids of all meshes that were there to be drawn from so far.
-  std::vector<std::uint64_t> mesh_ids() const;
-
   /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
   void append_outline(std::uint32_t row, Rings& rings) const;
 
@@ -91,29 +81,18 @@ class Layer {
   /// kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 
-  /// Figures for reports: vertices at full detail, and versions of trapezoids and of edges, dust
-  /// counted apart.
-  struct Size {
-    std::size_t vertices = 0;
-    std::size_t trapezoids = 0;
-    std::size_t edges = 0;
-    std::size_t motes = 0;
-  };
-  Size size() const;
+  LayerSize size() const;
 
   /// Memory held by geometry and index, in bytes: heap, or mapped. Attributes are counted by
   /// features().memory().
   std::size_t memory() const;
 
-  const Contents& contents() const { return *contents_; }  // used by arrays_of
+  const LayerContents& contents() const { return *contents_; }  // used by arrays_of
 
  private:
   void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
-  std::unique_ptr<const Contents> contents_;
-  mutable std::once_flag without_test_built_;
-  mutable std::unique_ptr<const Layer> without_test_;
-  mutable std::atomic<bool> has_without_test_ = false;  // set after it, for those who do not wait
+  std::unique_ptr<const LayerContents> contents_;
 };
 
 }  // namespace trapeze

@@ -113,7 +113,7 @@ void look_at(std::span<const T> items, StoredArray<T>& array) {
 }  // namespace
 
 LayerArrays arrays_of(const Layer& layer) {
-  const Layer::Contents& c = layer.contents();
+  const LayerContents& c = layer.contents();
   LayerArrays arrays;
   arrays.vertices = c.vertices;
   arrays.edges = c.edges;
@@ -142,7 +142,7 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   check_mesh(arrays);
   check_features(arrays);
   check_sums(arrays);
-  auto layer = std::make_unique<Layer::Contents>();
+  auto layer = std::make_unique<LayerContents>();
   layer->mapping = std::move(mapping);
   look_at(arrays.vertices, layer->vertices);
   look_at(arrays.edges, layer->edges);

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/adapt/adaptable_graph.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/layer.h"
+#include "core/layer/layer_options.h"
 #include "core/mesh/mesh_index.h"
 #include "core/mesh/trapezoid_mesh.h"
 
@@ -35,9 +35,9 @@ struct LayerArrays {
   std::vector<Field> fields;
   std::uint64_t level_edges = 0;
   std::uint64_t single_motes = 0;
-  Layer::Size size;
+  LayerSize size;
   Box bounds;
-  GeneralizationOptions options;
+  LayerOptions options;
 };
 
 /// The arrays of a layer, which must outlive their use.

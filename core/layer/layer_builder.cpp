@@ -260,7 +260,7 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
   return singles;
 }
 
-void move_arrays(GrowingLayer& from, Layer::Contents& to) {
+void move_arrays(GrowingLayer& from, LayerContents& to) {
   from.outlines.points.shrink_to_fit();
   from.outlines.ends.shrink_to_fit();
   to.vertices = std::move(from.vertices);
@@ -276,7 +276,7 @@ void move_arrays(GrowingLayer& from, Layer::Contents& to) {
 }  // namespace
 
 struct LayerBuilder::State {
-  GeneralizationOptions options;
+  LayerOptions options;
   Stock stock;
   GraphBuilder graph_builder;
   CoverageBuilder coverage_builder;
@@ -297,8 +297,7 @@ struct LayerBuilder::State {
   }
 };
 
-LayerBuilder::LayerBuilder(const GeneralizationOptions& options)
-    : state_(std::make_unique<State>()) {
+LayerBuilder::LayerBuilder(const LayerOptions& options) : state_(std::make_unique<State>()) {
   state_->options = options;
 }
 LayerBuilder::~LayerBuilder() = default;
@@ -329,7 +328,7 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
 
 std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
                                           FeatureTable features) {
-  auto layer = std::make_unique<Layer::Contents>();
+  auto layer = std::make_unique<LayerContents>();
   if (!builders.empty()) layer->options = builders.front().state_->options;
   std::vector<const Stock*> stocks;
   stocks.reserve(builders.size());

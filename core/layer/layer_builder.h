@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_builder.h"
 #include "core/grid/rings.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/layer.h"
+#include "core/layer/layer_options.h"
 #include "core/sweep/graph_builder.h"
 
 namespace trapeze {
@@ -23,7 +23,7 @@ namespace trapeze {
 /// feature.
 class LayerBuilder {
  public:
-  explicit LayerBuilder(const GeneralizationOptions& options = {});
+  explicit LayerBuilder(const LayerOptions& options = {});
   ~LayerBuilder();
   LayerBuilder(LayerBuilder&&) noexcept;
   LayerBuilder& operator=(LayerBuilder&&) noexcept;

@@ -4,15 +4,16 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/adapt/adaptable_graph.h"
 #include "core/grid/stored_array.h"
+#include "core/layer/feature_table.h"
 #include "core/layer/grains.h"
-#include "core/layer/layer.h"
+#include "core/layer/layer_options.h"
+#include "core/layer/layer_size.h"
 #include "core/mesh/mesh_index.h"
 
 namespace trapeze {
 
-struct Layer::Contents {
+struct LayerContents {
   std::shared_ptr<const void> mapping;  // what arrays that own nothing look at
   StoredArray<Point> vertices;
   StoredArray<MeshEdge> edges;
@@ -27,8 +28,8 @@ struct Layer::Contents {
   MeshIndex mote_index;
   MeshIndex merged_mote_index;
   GrainIndex grains;
-  Size size;
-  GeneralizationOptions options;
+  LayerSize size;
+  LayerOptions options;
   // The rings of all features, in order of rows, as in Rings.
   StoredArray<Point> outline_points;
   StoredArray<std::uint32_t> ring_ends;

@@ -7,23 +7,21 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "core/grid/grid.h"
 #include "core/grid/rings.h"
+#include "core/sweep/segment.h"
 
 namespace trapeze {
-
-using Segment = std::pair<Point, Point>;
 
 /// All segments of the rings, from each point to the next.
 std::vector<Segment> segments_of(const Rings& rings);
 
 enum class HotCells : std::uint8_t {
   /// Those of crossings and of vertices that lie on other segments. Quick, and nearly always
-  /// enough;
-  /// but a segment that is moved can come to cross another one next to it.
+  /// enough; but a segment that
+  /// is moved can come to cross another one next to it.
   crossings,
   /// Those of all vertices as well: the result is certain to have no crossing left.
   crossings_and_vertices,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/sweep/noding.h"
+
 namespace trapeze {
 
 std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/grid/rings.h"
-#include "core/sweep/noding.h"
+#include "core/sweep/segment.h"
 
 namespace trapeze {
 

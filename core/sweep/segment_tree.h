@@ -8,16 +8,9 @@
 #include <vector>
 
 #include "core/grid/grid.h"
-#include "core/sweep/noding.h"
+#include "core/sweep/segment.h"
 
 namespace trapeze {
-
-inline Box box_of(const Segment& s) {
-  Box b;
-  b.include(s.first);
-  b.include(s.second);
-  return b;
-}
 
 /// The numbers of the segments, each after a number for its place, in an order of place: what is
 /// near on the map comes near in the array, and so under the same boxes of a tree.

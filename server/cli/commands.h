@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
-#include "server/config/config.h"
+#include "core/layer/layer_options.h"
+#include "server/config/load_config.h"
 
 namespace trapeze {
 
@@ -22,7 +22,7 @@ struct CoverageArguments {
   std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
 };
 /// Sets what is to become of a source. Throws std::runtime_error that says what is wrong.
-void apply(const CoverageArguments& arguments, GeneralizationOptions& options);
+void apply(const CoverageArguments& arguments, LayerOptions& options);
 
 struct ServeArguments {
   std::string config;                    // may be empty

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "core/io/load/open_layer.h"
+#include "core/io/prepared/open_layer.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 /// Versions of trapezoids over all tolerances, and the dust that small polygons leave.
 void print_history(const Layer& layer, const LoadReport& report) {
-  const Layer::Size size = layer.size();
+  const LayerSize size = layer.size();
   const double vertices = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
   fmt::print("  trapezoids            {} versions, {:.2f} per vertex\n", size.trapezoids,
              static_cast<double>(size.trapezoids) / vertices);
@@ -97,7 +97,7 @@ std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
   return coverage;
 }
 
-void apply(const CoverageArguments& arguments, GeneralizationOptions& options) {
+void apply(const CoverageArguments& arguments, LayerOptions& options) {
   options.coverage = coverage_or_throw(arguments.mode).value_or(kUsualCoverage);
   options.close_gaps = arguments.close_gaps.value_or(0);
   if (options.close_gaps > 0 && options.coverage == CoverageMode::off) {

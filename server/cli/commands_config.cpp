@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "server/cli/commands.h"
-#include "server/config/config.h"
 #include "server/config/config_print.h"
+#include "server/config/load_config.h"
 
 namespace trapeze {
 

@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/source/source_stamp.h"
 #include "server/cli/commands.h"
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 #include "server/data/dataset.h"
 #include "server/data/load_progress.h"
 

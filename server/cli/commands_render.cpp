@@ -6,7 +6,7 @@
 
 #include "server/base/url.h"
 #include "server/cli/commands.h"
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 #include "server/data/dataset.h"
 #include "server/tiles/start_renderers.h"
 #include "server/tiles/tile_painter.h"

@@ -10,8 +10,8 @@
 
 #include "server/base/build_id.h"
 #include "server/cli/commands.h"
-#include "server/config/config.h"
 #include "server/config/config_settings.h"
+#include "server/config/load_config.h"
 #include "server/service/service.h"
 
 namespace trapeze {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 
 namespace trapeze {
 

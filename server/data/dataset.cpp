@@ -7,7 +7,7 @@
 #include <future>
 #include <numeric>
 
-#include "core/io/load/open_layer.h"
+#include "core/io/prepared/open_layer.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
 

@@ -9,9 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/io/file/mapped_file.h"
 #include "core/io/load/load_layer.h"
-#include "core/io/prepared/mapped_file.h"
 #include "core/layer/layer.h"
+#include "core/layer/untested_layer.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
 
@@ -23,6 +24,7 @@ struct ServedLayer {
   LoadReport report;
   std::uint64_t revision = 0;                   // revision_of(*layer)
   std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
+  std::unique_ptr<const UntestedLayer> untested = std::make_unique<UntestedLayer>(*layer);
 
   /// False if its prepared file has been cut off.
   bool is_whole() const { return file == nullptr || file->is_whole(); }

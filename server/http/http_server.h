@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "server/base/limits.h"
 #include "server/http/client_address.h"
 #include "server/http/http_message.h"
-#include "server/tiles/tile_request.h"
 
 namespace trapeze {
 

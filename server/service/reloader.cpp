@@ -1,4 +1,5 @@
 #include "server/service/reloader.h"
+#include "server/config/load_config.h"
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
@@ -185,7 +186,8 @@ void Reloader::forget_retired() {
   if (datasets.empty()) return;
   for (const auto& dataset : datasets) {
     for (const ServedLayer& served : dataset->layers()) {
-      for (const std::uint64_t mesh : served.layer->mesh_ids()) tiles_.forget(mesh);
+      tiles_.forget(served.layer->mesh().id);
+      if (const auto mesh = served.untested->mesh_id()) tiles_.forget(*mesh);
     }
   }
   datasets.clear();

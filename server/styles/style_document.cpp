@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "server/base/json_text.h"
-#include "server/tiles/tile_request.h"
 
 namespace trapeze {
 namespace {

@@ -47,8 +47,8 @@ DebugMarks debug_marks(const StyleQuery& query) {
 }  // namespace
 
 const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
-  const Layer& layer = *dataset->layers()[paint.layer].layer;
-  return paint.topology == Topology::fast ? layer.without_topology_test() : layer;
+  const ServedLayer& served = dataset->layers()[paint.layer];
+  return paint.topology == Topology::fast ? served.untested->get() : *served.layer;
 }
 
 const ServedLayer* TilePlan::damaged_layer() const {

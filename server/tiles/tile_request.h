@@ -7,15 +7,12 @@
 #include <vector>
 
 #include "core/grid/web_mercator.h"
+#include "server/base/limits.h"
 #include "server/base/problem.h"
 #include "server/styles/style_book.h"
 #include "server/styles/style_parameters.h"
 
 namespace trapeze {
-
-constexpr std::size_t kMaxTargetLength = 4096;  // bytes of path and query together
-constexpr std::size_t kMaxLayersPerTile = 16;
-constexpr int kMaxScale = 4;
 
 enum class TileFormat : std::uint8_t { png, webp };
 

@@ -4,15 +4,15 @@
 
 #include <cstdint>
 
-#include "core/adapt/adaptable_graph.h"
 #include "core/grid/rings.h"
+#include "core/layer/layer_options.h"
 #include "tests/fuzz/input_share.h"
 
 namespace trapeze::fuzzing {
 
 /// What is done to a graph.
 struct Operations {
-  GeneralizationOptions generalization;
+  LayerOptions generalization;
   std::uint32_t seed = 0;             // of the order of removals, and of tolerances
   double greatest_tolerance = 65536;  // cells
   Checks checks = Checks::all;

@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "core/io/source/source_name.h"
-#include "server/config/config.h"
 #include "server/config/config_print.h"
 #include "server/config/config_settings.h"
+#include "server/config/load_config.h"
 #include "tests/fuzz/require.h"
 
 namespace trapeze {

@@ -26,10 +26,11 @@
 
 #include <unistd.h>
 
-#include "core/io/prepared/checksum.h"
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/checksum.h"
+#include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/layer/layer_builder.h"
+#include "core/layer/untested_layer.h"
 #include "render/software/software_renderer.h"
 #include "tests/fuzz/input_share.h"
 #include "tests/fuzz/require.h"
@@ -179,7 +180,7 @@ void use(const Layer& layer, std::uint32_t hash) {
   // So that none of the reading is left out.
   [[maybe_unused]] volatile const std::size_t seen =
       bytes + rings.points.size() +
-      (builds_again ? layer.without_topology_test().memory() : layer.memory());
+      (builds_again ? UntestedLayer(layer).get().memory() : layer.memory());
 }
 
 /// What is done to the file when all changes are made.

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
 #include "core/borders/gap_closing.h"
 #include "core/borders/polygons.h"

@@ -4,27 +4,18 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "core/adapt/adaptable_graph.h"
-#include "core/io/load/load_layer.h"
+#include "core/io/export/export_crs.h"
+#include "core/io/load/load_report.h"
+#include "core/layer/layer_options.h"
 
 namespace trapeze {
 
-enum class ExportCrs {
-  degrees,      // EPSG:4326, longitude first
-  web_mercator  // EPSG:3857, metres
-};
-
-/// By its EPSG name; none if it is another.
-std::optional<ExportCrs> export_crs_from_name(std::string_view name);
-
 struct ExportOptions {
   double epsilon = 0;  // the tolerance, in cells; 0: nothing is removed
-  GeneralizationOptions generalization;
+  LayerOptions generalization;
   ExportCrs crs = ExportCrs::degrees;
   bool overwrite = false;  // replace an output that exists
   unsigned threads = 0;    // 0: one a core

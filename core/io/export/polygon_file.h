@@ -8,7 +8,7 @@
 
 #include <ogrsf_frmts.h>
 
-#include "core/io/export/export_layer.h"
+#include "core/io/export/export_crs.h"
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/gdal_messages.h"

@@ -10,7 +10,7 @@
 #include <ogr_spatialref.h>
 
 #include "core/borders/polygons.h"
-#include "core/io/export/export_layer.h"
+#include "core/io/export/export_crs.h"
 
 namespace trapeze {
 

@@ -119,7 +119,7 @@ void FeatureBuilder::count(const Subject& subject, const BuildOutcome& outcome) 
   tally_.remark(subject.order, subject.id, "repaired: its rings cross or touch");
 }
 
-void build_waiting(std::vector<FeatureBuilder>& builders, const GeneralizationOptions& options) {
+void build_waiting(std::vector<FeatureBuilder>& builders, const LayerOptions& options) {
   std::vector<WaitingFeature> waiting;
   for (FeatureBuilder& builder : builders) {
     for (WaitingFeature& feature : builder.take_waiting()) waiting.push_back(std::move(feature));

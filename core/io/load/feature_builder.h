@@ -11,7 +11,7 @@
 
 #include <ogr_geometry.h>
 
-#include "core/io/load/load_layer.h"
+#include "core/io/load/load_report.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_ring_reader.h"
 #include "core/layer/layer_builder.h"
@@ -66,7 +66,7 @@ struct WaitingFeature {
 class FeatureBuilder {
  public:
   /// `source` must outlive the builder.
-  FeatureBuilder(const FeatureSource& source, const GeneralizationOptions& generalization)
+  FeatureBuilder(const FeatureSource& source, const LayerOptions& generalization)
       : reader_(source), generalization_(generalization), builder_(generalization) {}
 
   /// Builds the graph of one feature; if coverages are wanted, reads its rings only, and lets it
@@ -97,7 +97,7 @@ class FeatureBuilder {
   void count(std::span<WaitingFeature* const> features, const Assembly& assembly);
 
   SourceRingReader reader_;
-  GeneralizationOptions generalization_;
+  LayerOptions generalization_;
   LayerBuilder builder_;
   std::vector<WaitingFeature> waiting_;
   BuildTally tally_;
@@ -105,6 +105,6 @@ class FeatureBuilder {
 
 /// Builds all features that wait in the builders, with those with which they share borders, on a
 /// thread for each builder. What comes of it does not depend on their number.
-void build_waiting(std::vector<FeatureBuilder>& builders, const GeneralizationOptions& options);
+void build_waiting(std::vector<FeatureBuilder>& builders, const LayerOptions& options);
 
 }  // namespace trapeze

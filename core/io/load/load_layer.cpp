@@ -29,8 +29,7 @@ constexpr unsigned kMaxThreads = 256;
 // Builds batches, on threads of its own or, if there is to be only one thread, at once.
 class BuilderPool {
  public:
-  BuilderPool(unsigned threads, const FeatureSource& source,
-              const GeneralizationOptions& generalization)
+  BuilderPool(unsigned threads, const FeatureSource& source, const LayerOptions& generalization)
       : queue_(kWaitingBatchesPerBuilder * threads) {
     for (unsigned i = 0; i < threads; ++i) builders_.emplace_back(source, generalization);
     if (threads == 1) return;

@@ -8,7 +8,7 @@
 
 #include "core/borders/gap_closing.h"
 #include "core/grid/web_mercator.h"
-#include "core/io/prepared/checksum.h"
+#include "core/io/file/checksum.h"
 #include "core/layer/layer_arrays.h"
 #include "core/layer/layer_builder.h"
 #include "core/sweep/clean_rings.h"
@@ -64,7 +64,7 @@ void add_coverage(Random& random, double gap, FeatureTable& features, LayerBuild
   builder.add_coverage(rows, std::vector<const Rings*>(pointers.begin(), pointers.end()));
 }
 
-std::unique_ptr<Layer> build_probe(GeneralizationOptions options) {
+std::unique_ptr<Layer> build_probe(LayerOptions options) {
   options.coverage = CoverageMode::on;
   FeatureTable features(std::vector<Field>{});
   std::vector<LayerBuilder> builders;
@@ -90,7 +90,7 @@ std::array<std::int64_t, 4> probe_projection() {
 
 }  // namespace
 
-std::uint64_t build_fingerprint(const GeneralizationOptions& options) {
+std::uint64_t build_fingerprint(const LayerOptions& options) {
   const std::unique_ptr<Layer> layer = build_probe(options);
   const LayerArrays a = arrays_of(*layer);
   const std::array<std::int64_t, 4> projected = probe_projection();

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/adapt/adaptable_graph.h"
+#include "core/layer/layer_options.h"
 
 namespace trapeze {
 
@@ -11,6 +11,6 @@ namespace trapeze {
 /// with the same tolerances, by the same method. It is the checksum of a small layer that is built
 /// for the purpose (in about a millisecond), so that no change to the method can be forgotten; what
 /// is read from a source, and how, is counted by kReadingVersion. Equal on every machine.
-std::uint64_t build_fingerprint(const GeneralizationOptions& options);
+std::uint64_t build_fingerprint(const LayerOptions& options);
 
 }  // namespace trapeze

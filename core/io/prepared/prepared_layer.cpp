@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/file/byte_stream.h"
+#include "core/io/file/mapped_file.h"
+#include "core/io/file/prepared_file.h"
 #include "core/io/prepared/build_fingerprint.h"
-#include "core/io/prepared/byte_stream.h"
-#include "core/io/prepared/mapped_file.h"
-#include "core/io/prepared/prepared_file.h"
 #include "core/layer/layer_arrays.h"
 
 namespace trapeze {
@@ -121,7 +121,7 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
-  const Layer::Size& size = numbers.size;
+  const LayerSize& size = numbers.size;
   for (const std::uint64_t sum : {size.vertices, size.trapezoids, size.edges, size.motes}) {
     out.add(sum);
   }
@@ -140,7 +140,7 @@ LayerArrays read_numbers(ByteReader& in) {
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();
   }
-  Layer::Size& size = numbers.size;
+  LayerSize& size = numbers.size;
   for (auto* sum : {&size.vertices, &size.trapezoids, &size.edges, &size.motes}) {
     *sum = in.take<std::uint64_t>();
   }
@@ -226,7 +226,7 @@ std::string text_of(double number) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-void check_options(const GeneralizationOptions& options, const PreparedDemands& demands) {
+void check_options(const LayerOptions& options, const PreparedDemands& demands) {
   if (demands.weights && *demands.weights != options.weights) {
     throw PreparedFileError("was prepared with the weights " +
                             std::string(name_of(options.weights)) + ", and " +
@@ -242,7 +242,7 @@ void check_options(const GeneralizationOptions& options, const PreparedDemands& 
   }
 }
 
-void check_fingerprint(const GeneralizationOptions& options, std::uint64_t fingerprint) {
+void check_fingerprint(const LayerOptions& options, std::uint64_t fingerprint) {
   if (build_fingerprint(options) == fingerprint) return;
   throw PreparedFileError("was prepared by a version of Trapeze that builds layers otherwise");
 }

@@ -11,7 +11,7 @@
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/prepared_file.h"
 #include "core/io/source/gdal_messages.h"
 #include "core/io/source/source_name.h"
 

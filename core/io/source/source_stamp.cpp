@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/io/prepared/checksum.h"
+#include "core/io/file/checksum.h"
 #include "core/io/source/open_source.h"
 
 namespace trapeze {

@@ -5,6 +5,7 @@
 
 #include "core/graph/check_graph.h"
 #include "core/layer/layer_builder.h"
+#include "core/layer/untested_layer.h"
 #include "tests/core/borders/coverage_shapes.h"
 
 namespace trapeze {
@@ -110,7 +111,7 @@ TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {
 
 /// A layer of a coverage, all of whose features are to be together.
 std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
-  GeneralizationOptions options;
+  LayerOptions options;
   options.coverage = CoverageMode::on;
   std::vector<LayerBuilder> builders;
   builders.emplace_back(options);
@@ -193,7 +194,8 @@ TEST(CoverageLayer, DustOfAllFeaturesTogetherMakesUpForWhatIsDrawn) {
 
 TEST(CoverageLayer, WithoutTheTestItIsItsPolygonsApart) {
   const auto layer = layer_of({rings_from_text(kLeft10), rings_from_text(kRight10)});
-  const Layer& fast = layer->without_topology_test();
+  const UntestedLayer untested(*layer);
+  const Layer& fast = untested.get();
   std::vector<TrapezoidRange> ranges;
   fast.select({layer->bounds(), 0}, ranges);
   EXPECT_DOUBLE_EQ(area_of(fast.mesh(), ranges), 200);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/layer/layer_builder.h"
+#include "core/layer/untested_layer.h"
 #include "tests/core/shapes/shapes.h"
 
 namespace trapeze {
@@ -112,8 +113,8 @@ TEST(LayerArrays, GiveALayerThatAnswersAsTheOneTheyWereTakenFrom) {
   for (std::uint32_t t = 0; t < built->mesh().trapezoids.size(); ++t) {
     EXPECT_EQ(again->feature_of(t), built->feature_of(t));
   }
-  EXPECT_TRUE(std::ranges::equal(again->without_topology_test().mesh().trapezoids,
-                                 built->without_topology_test().mesh().trapezoids));
+  EXPECT_TRUE(std::ranges::equal(UntestedLayer(*again).get().mesh().trapezoids,
+                                 UntestedLayer(*built).get().mesh().trapezoids));
 }
 
 TEST(LayerArrays, OfALayerWithoutAnythingGiveOne) {

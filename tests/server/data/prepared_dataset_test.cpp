@@ -11,6 +11,7 @@
 
 #include "core/io/prepared/prepared_layer.h"
 #include "render/make_renderer.h"
+#include "server/config/load_config.h"
 #include "server/data/dataset.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"

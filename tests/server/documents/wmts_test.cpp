@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/base/xml_text.h"
+#include "server/config/load_config.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/make_renderer.h"
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 
 namespace trapeze::testing {
 namespace {

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "render/make_renderer.h"
+#include "server/config/load_config.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
 

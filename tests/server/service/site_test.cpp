@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/picture/png.h"
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {

@@ -107,7 +107,7 @@ std::vector<Rings> plots_and_crumbs() {
 }
 
 ServedLayer layer_of(const std::string& name, CoverageMode coverage) {
-  GeneralizationOptions options;
+  LayerOptions options;
   options.coverage = coverage;
   std::vector<LayerBuilder> builders;
   builders.emplace_back(options);

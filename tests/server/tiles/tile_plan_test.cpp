@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/config/load_config.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {

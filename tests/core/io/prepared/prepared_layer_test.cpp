@@ -16,12 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "core/io/load/open_layer.h"
-#include "core/io/prepared/checksum.h"
-#include "core/io/prepared/mapped_file.h"
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/checksum.h"
+#include "core/io/file/mapped_file.h"
+#include "core/io/file/prepared_file.h"
+#include "core/io/prepared/open_layer.h"
 #include "core/io/source/open_source.h"
 #include "core/layer/layer_arrays.h"
+#include "core/layer/untested_layer.h"
 #include "tests/core/io/source/written_source.h"
 #include "tests/core/io/temporary_folder.h"
 
@@ -188,8 +189,7 @@ TEST_F(PreparedLayerTest, OpensAsTheLayerThatWasSaved) {
     const LoadedLayer loaded = prepare(kMixed, prepared_, options);
     const LoadedLayer opened = open_prepared_layer(prepared_);
     expect_equal_layers(*opened.layer, *loaded.layer);
-    expect_equal_layers(opened.layer->without_topology_test(),
-                        loaded.layer->without_topology_test());
+    expect_equal_layers(UntestedLayer(*opened.layer).get(), UntestedLayer(*loaded.layer).get());
     EXPECT_EQ(opened.revision, kRevision);
   }
 }

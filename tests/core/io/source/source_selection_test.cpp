@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/io/load/load_layer.h"
-#include "core/io/load/open_layer.h"
+#include "core/io/prepared/open_layer.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/source/source_name.h"
 #include "core/io/source/source_stamp.h"

@@ -1,4 +1,4 @@
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 
 #include <gmock/gmock.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
-#include "core/io/load/open_layer.h"
+#include "core/io/prepared/open_layer.h"
 
 #include <stdexcept>
 
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
 
 namespace trapeze {

@@ -1,4 +1,4 @@
-#include "core/io/prepared/checksum.h"
+#include "core/io/file/checksum.h"
 
 #include <cerrno>
 #include <cstdio>

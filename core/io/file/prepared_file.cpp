@@ -1,4 +1,4 @@
-#include "core/io/prepared/prepared_file.h"
+#include "core/io/file/prepared_file.h"
 
 #include <algorithm>
 #include <cstring>
@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/grid/for_each_in_parallel.h"
-#include "core/io/prepared/atomic_file.h"
-#include "core/io/prepared/checksum.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/checksum.h"
 
 namespace trapeze {
 namespace {

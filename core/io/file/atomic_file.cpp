@@ -1,4 +1,4 @@
-#include "core/io/prepared/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

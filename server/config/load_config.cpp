@@ -1,4 +1,4 @@
-#include "server/config/config.h"
+#include "server/config/load_config.h"
 
 #include <spdlog/fmt/fmt.h>
 #include <toml++/toml.h>
@@ -17,7 +17,6 @@
 #include "server/config/expand_variables.h"
 #include "server/styles/style_book.h"
 #include "server/styles/style_parameters.h"
-#include "server/tiles/tile_request.h"
 
 namespace trapeze {
 namespace {

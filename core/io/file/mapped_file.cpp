@@ -1,4 +1,4 @@
-#include "core/io/prepared/mapped_file.h"
+#include "core/io/file/mapped_file.h"
 
 #include <fcntl.h>
 #include <signal.h>

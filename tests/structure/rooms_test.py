@@ -1,0 +1,72 @@
+"""The folders of the source know each other in one direction, and no two files in a circle.
+
+Each folder may include from itself and from those above it in the list."""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+ROOMS = [
+    "core/grid", "core/mesh", "core/graph", "core/sweep", "core/borders", "core/adapt", "core/layer",
+    "core/io/file", "core/io/source", "core/io/load", "core/io/prepared", "core/io/export",
+    "render/coverage", "render/gl", "render/software", "render/picture", "render/text", "render",
+    "server/base", "server/http", "server/styles", "server/config", "server/data", "server/tiles",
+    "server/documents", "server/service", "server/cli",
+]
+
+
+def included_by(path):
+    return re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE)
+
+
+def units():
+    """Headers and their sources together, by the name without an ending, with what they include."""
+    found = {}
+    for top in ("core", "render", "server"):
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix in (".h", ".cpp"):
+                unit = path.relative_to(ROOT).with_suffix("")
+                names = {pathlib.PurePath(name).with_suffix("") for name in included_by(path)}
+                found.setdefault(unit, set()).update(names - {unit})
+    return found
+
+
+def rooms_out_of_order(graph):
+    for unit, included in graph.items():
+        for other in sorted(included):
+            here, there = str(unit.parent), str(other.parent)
+            if here not in ROOMS:
+                yield f"{unit}: {here}/ is not in the list of rooms"
+            elif there not in ROOMS:
+                yield f"{unit} includes {other}.h, which is in no room"
+            elif ROOMS.index(there) > ROOMS.index(here):
+                yield f"{unit} includes {other}.h of a room above its own"
+
+
+def circles(graph):
+    """A path back to where it began for every file that has one."""
+    done = set()
+
+    def visit(unit, path):
+        if unit in path:
+            yield " -> ".join(map(str, path[path.index(unit):] + [unit]))
+        elif unit not in done:
+            for other in sorted(graph.get(unit, ())):
+                yield from visit(other, path + [unit])
+            done.add(unit)
+
+    for unit in graph:
+        yield from visit(unit, [])
+
+
+def main():
+    graph = units()
+    problems = [*rooms_out_of_order(graph), *(f"a circle: {c}" for c in circles(graph))]
+    print(*problems, sep="\n")
+    print(f"{len(graph)} units of {len(ROOMS)} rooms, {len(problems)} problems")
+    return bool(problems) or len(graph) < 100
+
+
+sys.exit(main())
