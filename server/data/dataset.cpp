@@ -139,7 +139,8 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
 
 Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
   ContentHash hash;
-  for (const ServedLayer& layer : layers_) {
+  for (ServedLayer& layer : layers_) {
+    layer.untested = std::make_unique<UntestedLayer>(*layer.layer);
     hash.add(layer.config.name);
     hash.add(layer.revision);
   }

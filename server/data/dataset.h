@@ -22,9 +22,9 @@ struct ServedLayer {
   LayerConfig config;
   std::unique_ptr<const Layer> layer;
   LoadReport report;
-  std::uint64_t revision = 0;                   // revision_of(*layer)
-  std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
-  std::unique_ptr<const UntestedLayer> untested = std::make_unique<UntestedLayer>(*layer);
+  std::uint64_t revision = 0;                          // revision_of(*layer)
+  std::shared_ptr<const MappedFile> file = {};         // of a prepared layer
+  std::unique_ptr<const UntestedLayer> untested = {};  // beside `layer`; made by Dataset
 
   /// False if its prepared file has been cut off.
   bool is_whole() const { return file == nullptr || file->is_whole(); }
