@@ -131,6 +131,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
     }));
   }
   std::vector<ServedLayer> served;
+  served.reserve(loading.size());
   for (std::future<ServedLayer>& layer : loading) served.push_back(layer.get());
   progress.finish();
   for (const ServedLayer& layer : served) log_report(layer.report, *layer.layer);
