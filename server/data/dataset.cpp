@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/io/prepared/open_layer.h"
+#include "core/layer/layer_arrays.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
 
@@ -98,6 +99,9 @@ std::uint64_t revision_of(const Layer& layer) {
   hash.add(mesh.vertices);
   hash.add(mesh.edges);
   hash.add(mesh.trapezoids);
+  const LayerArrays arrays = arrays_of(layer);
+  hash.add(arrays.feature_of);
+  hash.add(arrays.outline_ends);
   const FeatureTable& features = layer.features();
   for (const Field& field : features.fields()) hash.add(field.name);
   for (std::uint32_t row = 0; row < features.size(); ++row) {
