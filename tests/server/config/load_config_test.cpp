@@ -176,8 +176,8 @@ struct BadConfig {
 TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
   const BadConfig bad[] = {
       {"[server]\nprot = 1", ":2:1: ", "unknown key server.prot; allowed here are address, port"},
-      {"sevrer = 1",
-       ":1:1: ", "unknown key sevrer; allowed here are server, limits, log, admin, styles, layer"},
+      {"sevrer = 1", ":1:1: ",
+       "unknown key sevrer; allowed here are server, limits, text, log, admin, styles, layer"},
       {"[server]\nport = 70000", ":2:8: ", "server.port takes an integer from 0 to 65535"},
       {"[server]\nport = -1", ":2:8: ", "server.port takes an integer"},
       {"[server]\nport = \"80\"", ":2:8: ", "server.port takes an integer"},
