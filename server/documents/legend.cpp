@@ -118,6 +118,7 @@ constexpr int kRowHeight = 16;
 constexpr int kSwatchWidth = 20;
 constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
+constexpr double kMaxSwatchStroke = 4;
 constexpr int kMaxLabelWidth = 320;
 constexpr int kTextSize = 12;
 constexpr int kBaseLine =
@@ -157,8 +158,10 @@ class Swatch {
 
   /// The result lasts until the next call.
   const Picture& draw(const ClassPaint& paint, const LayerLegend& layer) {
-    // Of an outline that is not too wide, both sides are seen.
-    const double inset = scale_ * std::min(layer.stroke.width / 2, kSwatchHeight / 4.0);
+    // Wider outlines would leave nothing of the fill.
+    Stroke stroke = layer.stroke;
+    stroke.width = std::min(stroke.width, kMaxSwatchStroke);
+    const double inset = scale_ * stroke.width / 2;
     fill_rectangle(inset);
     PaintedClass fill{&fill_, paint.fill};
     PaintedClass line{&line_, paint.stroke};
@@ -168,7 +171,7 @@ class Swatch {
       painted.pattern = &pattern_;
     }
     if (layer.stroke.width > 0) {
-      draw_outline(layer.stroke, inset);
+      draw_outline(stroke, inset);
       painted.lines = {&line, 1};
     }
     composer_.compose({&painted, 1}, view_.width, view_.height, kPaper, picture_);
