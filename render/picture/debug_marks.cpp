@@ -1,12 +1,12 @@
 #include "render/picture/debug_marks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <string_view>
 #include <utility>
 #include <vector>
+
+#include "render/picture/blend.h"
 
 namespace trapeze {
 namespace {
@@ -20,23 +20,6 @@ struct Position {
 Position position_of(Point p, const View& view) {
   return {static_cast<double>(p.x - view.origin_x) / view.cells_per_pixel,
           static_cast<double>(p.y - view.origin_y) / view.cells_per_pixel};
-}
-
-/// Source over, the colour's opacity multiplied with `share`.
-void blend(Picture& picture, int column, int row, Rgba colour, double share) {
-  if (column < 0 || row < 0 || column >= picture.width || row >= picture.height) return;
-  Rgba& below =
-      picture.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
-                     static_cast<std::size_t>(column)];
-  const double over = colour.a / 255.0 * share;
-  const double under = below.a / 255.0 * (1 - over);
-  const double alpha = over + under;
-  if (alpha <= 0) return;
-  const auto mix = [&](std::uint8_t a, std::uint8_t b) {
-    return static_cast<std::uint8_t>(std::lround((a * over + b * under) / alpha));
-  };
-  below = {mix(colour.r, below.r), mix(colour.g, below.g), mix(colour.b, below.b),
-           static_cast<std::uint8_t>(std::lround(alpha * 255))};
 }
 
 /// Cuts the part of the segment off that lies more than a pixel outside; false if nothing is left.
@@ -238,41 +221,6 @@ std::vector<std::uint32_t> junctions_of(const MeshView& mesh, Pairs features_by_
   return junctions;
 }
 
-constexpr int kGlyphWidth = 3;
-constexpr int kGlyphHeight = 5;
-
-/// Rows of three bits, the leftmost pixel highest.
-constexpr std::array<std::uint8_t, kGlyphHeight> glyph(char c) {
-  switch (c) {
-    case '0':
-      return {7, 5, 5, 5, 7};
-    case '1':
-      return {2, 6, 2, 2, 7};
-    case '2':
-      return {7, 1, 7, 4, 7};
-    case '3':
-      return {7, 1, 7, 1, 7};
-    case '4':
-      return {5, 5, 7, 1, 1};
-    case '5':
-      return {7, 4, 7, 1, 7};
-    case '6':
-      return {7, 4, 7, 5, 7};
-    case '7':
-      return {7, 1, 2, 2, 2};
-    case '8':
-      return {7, 5, 7, 5, 7};
-    case '9':
-      return {7, 5, 7, 1, 7};
-    case '/':
-      return {1, 1, 2, 4, 4};
-    case 'x':
-      return {0, 5, 2, 5, 0};
-    default:
-      return {0, 0, 0, 0, 0};
-  }
-}
-
 }  // namespace
 
 void spread_palette(Picture& picture) {
@@ -354,7 +302,7 @@ void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges
   }
 }
 
-void mark_border(std::string_view text, Rgba colour, Picture& picture) {
+void mark_border(Rgba colour, Picture& picture) {
   for (int i = 0; i < picture.width; ++i) {
     blend(picture, i, 0, colour, 1);
     blend(picture, i, picture.height - 1, colour, 1);
@@ -362,24 +310,6 @@ void mark_border(std::string_view text, Rgba colour, Picture& picture) {
   for (int i = 1; i + 1 < picture.height; ++i) {
     blend(picture, 0, i, colour, 1);
     blend(picture, picture.width - 1, i, colour, 1);
-  }
-  // Twice as large as the glyphs, on a plate of white, to be read.
-  constexpr int kZoom = 2;
-  const int length = static_cast<int>(text.size()) * (kGlyphWidth + 1) * kZoom;
-  for (int y = 3; y < 7 + kGlyphHeight * kZoom; ++y) {
-    for (int x = 3; x < 5 + length; ++x) blend(picture, x, y, {255, 255, 255, 255}, 1);
-  }
-  int left = 5;
-  for (const char c : text) {
-    const auto rows = glyph(c);
-    for (int y = 0; y < kGlyphHeight * kZoom; ++y) {
-      for (int x = 0; x < kGlyphWidth * kZoom; ++x) {
-        const bool is_set =
-            (rows[static_cast<std::size_t>(y / kZoom)] >> (kGlyphWidth - 1 - x / kZoom) & 1) != 0;
-        if (is_set) blend(picture, left + x, 5 + y, colour, 1);
-      }
-    }
-    left += (kGlyphWidth + 1) * kZoom;
   }
 }
 

@@ -1,11 +1,10 @@
 // Marks over a picture that show how it came about (paper, Figure 7 f to j): the trapezoids, the
-// vertices that are kept, the faces and their junctions, the border of a tile and its numbers.
+// vertices that are kept, the faces and their junctions, the border of a tile.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <string_view>
 
 #include "core/mesh/trapezoid_mesh.h"
 #include "render/coverage/coverage.h"
@@ -41,8 +40,7 @@ void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges
                     std::span<const TrapezoidRange> level_edges, const FeatureOf& feature_of,
                     const View& view, Rgba colour, Picture& picture);
 
-/// Draws a line along the border of the picture, and the text in its upper left corner: digits,
-/// slashes, 'x' and spaces, five pixels high.
-void mark_border(std::string_view text, Rgba colour, Picture& picture);
+/// Draws a line along the border of the picture.
+void mark_border(Rgba colour, Picture& picture);
 
 }  // namespace trapeze

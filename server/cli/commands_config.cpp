@@ -1,14 +1,19 @@
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "server/cli/commands.h"
 #include "server/config/config_print.h"
 #include "server/config/load_config.h"
+#include "server/tiles/open_fonts.h"
 
 namespace trapeze {
 
 int run_config_check(const std::string& path) {
-  const LoadedConfig loaded = load_config(path, {});
+  LoadedConfig loaded = load_config(path, {});
+  for (std::string& problem : find_font_problems(loaded.config.text.fonts)) {
+    loaded.problems.push_back({loaded.origins["text.fonts"], "text.fonts: " + std::move(problem)});
+  }
   if (!loaded.problems.empty()) {
     std::cerr << problems_text(loaded.problems) << '\n';
     return 1;

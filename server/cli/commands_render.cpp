@@ -8,6 +8,7 @@
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
+#include "server/tiles/open_fonts.h"
 #include "server/tiles/start_renderers.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_request.h"
@@ -64,7 +65,7 @@ int run_render(const RenderArguments& arguments) {
   const auto kind = renderer_kind_from(arguments.renderer);
   if (!kind) throw std::runtime_error("--renderer takes auto, egl, osmesa or software");
   auto renderers = start_renderers({*kind, arguments.device}, 1);
-  TilePainter painter(std::move(renderers.front()));
+  TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
   const TilePlan plan = value_or_throw(plan_tile(request, Dataset::load(layers)));
   const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();

@@ -79,6 +79,10 @@ struct LimitsConfig {
   double drawn_burst = 2000;    // so many of them at once
 };
 
+struct TextConfig {
+  std::vector<std::string> fonts;  // as Fonts::add() takes them, in order; empty: usual_fonts()
+};
+
 enum class LogFormat { text, json };
 
 struct LogConfig {
@@ -96,6 +100,7 @@ struct AdminConfig {
 struct Config {
   ServerConfig server;
   LimitsConfig limits;
+  TextConfig text;
   LogConfig log;
   AdminConfig admin;
   std::map<std::string, StyleQuery> styles;  // by name, for which is_url_name() holds

@@ -102,6 +102,7 @@ Json type_schema(SettingType type) {
     case SettingType::path:
       return {{"type", "string"}};
     case SettingType::list:
+    case SettingType::paths:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};
   }
   return {};

@@ -423,6 +423,19 @@ void append_limits(std::vector<Setting<Config>>& all) {
       "how many of them it may ask for at once after a rest"));
 }
 
+void append_text(std::vector<Setting<Config>>& all) {
+  auto fonts = list<Config>(
+      "text.fonts", [](auto& c) -> auto& { return c.text.fonts; },
+      "a list of files of fonts, of a collection \"FILE#N\", its font number N from 0",
+      [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
+      same,
+      "the fonts of legends and marks: each character is of the first that has it; an empty list: "
+      "those of the Debian packages fonts-dejavu-core, fonts-noto-core and fonts-noto-cjk that are "
+      "installed");
+  fonts.type = SettingType::paths;
+  all.push_back(std::move(fonts));
+}
+
 void append_log_and_admin(std::vector<Setting<Config>>& all) {
   all.push_back(choice<std::string, Config>(
       "log.level", [](auto& c) -> auto& { return c.log.level; }, level_words(),
@@ -452,6 +465,7 @@ const std::vector<Setting<Config>>& config_settings() {
     std::vector<Setting<Config>> all;
     append_server(all);
     append_limits(all);
+    append_text(all);
     append_log_and_admin(all);
     return all;
   }();

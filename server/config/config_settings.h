@@ -15,7 +15,7 @@ namespace trapeze {
 using SettingValue =
     std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
-enum class SettingType { boolean, integer, number, text, path, list };
+enum class SettingType { boolean, integer, number, text, path, list, paths };
 
 template <typename Owner>
 struct Setting {
@@ -35,7 +35,7 @@ struct Setting {
   std::string name() const { return table.empty() ? "layer." + key : table + "." + key; }
 };
 
-/// All of [server], [limits], [log] and [admin].
+/// All of [server], [limits], [text], [log] and [admin].
 const std::vector<Setting<Config>>& config_settings();
 /// All of [[layer]] that is one value: all but its style.
 const std::vector<Setting<LayerConfig>>& layer_settings();

@@ -60,8 +60,8 @@ class ConfigReader {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
-             fmt::format("unknown key {}; allowed here are server, limits, log, admin, "
-                         "styles, layer",
+             fmt::format("unknown key {}; allowed here are server, limits, text, log, "
+                         "admin, styles, layer",
                          key.str()));
       }
     }
@@ -144,6 +144,11 @@ class ConfigReader {
 
   template <typename Owner>
   SettingValue with_path(const Setting<Owner>& setting, const SettingValue& value) const {
+    if (setting.type == SettingType::paths) {
+      auto paths = std::get<std::vector<std::string>>(value);
+      for (std::string& path : paths) path = relative_to_config(path_, path);
+      return paths;
+    }
     if (setting.type != SettingType::path) return value;
     const auto& text = std::get<std::string>(value);
     const bool is_word = std::ranges::find(setting.choices, text) != setting.choices.end();
@@ -165,6 +170,7 @@ class ConfigReader {
       case SettingType::path:
         return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
       case SettingType::list:
+      case SettingType::paths:
         return list_of(node);
     }
     return std::nullopt;
@@ -395,6 +401,7 @@ std::optional<SettingValue> value_in(SettingType type, const std::string& text) 
     case SettingType::path:
       return text;
     case SettingType::list:
+    case SettingType::paths:
       return words_in(text);
   }
   return std::nullopt;
@@ -407,7 +414,7 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
     if (value && assign(setting, loaded.config, *value)) {
       loaded.origins[change.setting] = change.origin;
     } else {
-      const bool is_list = setting.type == SettingType::list;
+      const bool is_list = setting.type == SettingType::list || setting.type == SettingType::paths;
       loaded.problems.push_back(
           {change.origin,
            fmt::format("takes {}{}", setting.takes, is_list ? ", with commas between them" : "")});

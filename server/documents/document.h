@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/text/fonts.h"
 #include "server/base/url.h"
 #include "server/data/dataset.h"
 #include "server/styles/style_book.h"
@@ -14,6 +15,7 @@ namespace trapeze {
 struct DocumentRequest {
   const Dataset& dataset;
   const StyleBook& styles;
+  const Fonts& fonts;
   std::string base_url;           // how this server is reached, without a '/' at the end
   std::vector<std::string> path;  // decoded segments, hostile
   std::vector<QueryPair> query;   // hostile; what its style says is in it

@@ -3,10 +3,16 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
+#include "render/coverage/stroke.h"
+#include "render/picture/compose.h"
+#include "render/picture/debug_marks.h"
+#include "render/picture/pattern.h"
 #include "render/picture/png.h"
-#include "render/text/bitmap_text.h"
+#include "render/text/fonts.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
 #include "server/tiles/layer_style.h"
@@ -26,7 +32,8 @@ struct LegendEntry {
 struct LayerLegend {
   std::string name;
   std::string title;
-  double stroke_width = 0;
+  Stroke stroke;
+  Pattern pattern;
   double opacity = 1;
   std::vector<LegendEntry> entries;
 };
@@ -59,7 +66,7 @@ std::vector<std::string> labels_of(const Classing& classing, const std::string& 
 }
 
 LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) {
-  LayerLegend legend{config.name, config.title, style.stroke.width, style.opacity, {}};
+  LayerLegend legend{config.name, config.title, style.stroke, style.pattern, style.opacity, {}};
   const std::vector<std::string> labels = labels_of(style.classing, config.title);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     legend.entries.push_back({labels[i], style.paints[i]});
@@ -87,10 +94,10 @@ Json entry_json(const LegendEntry& entry, const LayerLegend& layer) {
   Json json = {{"label", entry.label},
                {"fill", css_colour(entry.paint.fill)},
                {"fill-opacity", entry.paint.fill.a / 255.0 * layer.opacity}};
-  if (layer.stroke_width > 0) {
+  if (layer.stroke.width > 0) {
     json["stroke"] = css_colour(entry.paint.stroke);
     json["stroke-opacity"] = entry.paint.stroke.a / 255.0 * layer.opacity;
-    json["stroke-width"] = layer.stroke_width;
+    json["stroke-width"] = layer.stroke.width;
   }
   return json;
 }
@@ -111,7 +118,11 @@ constexpr int kRowHeight = 16;
 constexpr int kSwatchWidth = 20;
 constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
+constexpr double kMaxSwatchStroke = 4;
 constexpr int kMaxLabelWidth = 320;
+constexpr int kTextSize = 12;
+constexpr int kBaseLine =
+    12;  // of text below the top of its row, so that capitals are in the middle
 constexpr int kMaxHeight = 8192;  // many layers of many classes are a short request
 constexpr Rgba kPaper{255, 255, 255, 255};
 constexpr Rgba kInk{0x22, 0x22, 0x22, 255};
@@ -138,31 +149,106 @@ int left_of_label(const LegendRow& row) {
   return row.entry == nullptr ? kMargin : kMargin + kSwatchWidth + kSwatchGap;
 }
 
-Rgba over_paper(Rgba colour) {
-  const auto mix = [&](std::uint8_t c) {
-    return static_cast<std::uint8_t>((c * colour.a + 255 * (255 - colour.a) + 127) / 255);
-  };
-  return {mix(colour.r), mix(colour.g), mix(colour.b), 255};
-}
+/// A polygon drawn as the map does it: in a picture of its own, on paper.
+class Swatch {
+ public:
+  explicit Swatch(int scale)
+      : scale_(scale),
+        view_{kGridMin, kGridMin, kCellsPerPixel, kSwatchWidth * scale, kSwatchHeight * scale} {}
 
-void fill_box(Picture& picture, int left, int top, int width, int height, Rgba colour) {
-  for (int y = top; y < top + height; ++y) {
-    const auto row = picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.width + left;
-    std::fill(row, row + width, colour);
+  /// The result lasts until the next call.
+  const Picture& draw(const ClassPaint& paint, const LayerLegend& layer) {
+    // Wider outlines would leave nothing of the fill.
+    Stroke stroke = layer.stroke;
+    stroke.width = std::min(stroke.width, kMaxSwatchStroke);
+    const double inset = scale_ * stroke.width / 2;
+    fill_rectangle(inset);
+    PaintedClass fill{&fill_, paint.fill};
+    PaintedClass line{&line_, paint.stroke};
+    PaintedLayer painted{{&fill, 1}, nullptr, layer.pattern.colour, {}, layer.opacity};
+    if (layer.pattern.kind != PatternKind::none) {
+      draw_pattern(layer.pattern, view_, scale_, pattern_);
+      painted.pattern = &pattern_;
+    }
+    if (layer.stroke.width > 0) {
+      draw_outline(stroke, inset);
+      painted.lines = {&line, 1};
+    }
+    composer_.compose({&painted, 1}, view_.width, view_.height, kPaper, picture_);
+    if (layer.stroke.width == 0) draw_frame();
+    return picture_;
   }
-}
 
-void draw_swatch(const LegendRow& row, int top, int scale, Picture& picture) {
-  const int left = kMargin * scale;
-  const int width = kSwatchWidth * scale;
-  const int height = kSwatchHeight * scale;
-  const ClassPaint& paint = row.entry->paint;
-  const bool is_outlined = row.layer->stroke_width > 0;
-  const double opacity = row.layer->opacity;
-  fill_box(picture, left, top, width, height,
-           is_outlined ? over_paper(with_opacity(paint.stroke, opacity)) : kFrame);
-  fill_box(picture, left + scale, top + scale, width - 2 * scale, height - 2 * scale,
-           over_paper(with_opacity(paint.fill, opacity)));
+ private:
+  static constexpr double kCellsPerPixel = 1024;
+
+  void fill_rectangle(double inset) {
+    const auto level_of = [inset](int place, int length) {
+      return std::max(0.0, std::min(place + 1.0, length - inset) - std::max<double>(place, inset));
+    };
+    fill_.resize(view_.width, view_.height);
+    for (int y = 0; y < view_.height; ++y) {
+      for (int x = 0; x < view_.width; ++x) {
+        const double share = level_of(x, view_.width) * level_of(y, view_.height);
+        fill_.row_begin(y)[x] = static_cast<std::uint8_t>(share * 255 + 0.5);
+      }
+    }
+  }
+
+  void draw_outline(const Stroke& stroke, double inset) {
+    const auto cell = [](double pixels) {
+      return static_cast<std::int32_t>(kGridMin + std::lround(pixels * kCellsPerPixel));
+    };
+    const std::int32_t west = cell(inset);
+    const std::int32_t north = cell(inset);
+    const std::int32_t east = cell(view_.width - inset);
+    const std::int32_t south = cell(view_.height - inset);
+    const std::array<Point, 4> corners{Point{west, north}, Point{east, north}, Point{east, south},
+                                       Point{west, south}};
+    const double width = east - west;
+    const double height = south - north;
+    const std::array<OutlineEdge, 4> edges{OutlineEdge{0, 1, 0}, OutlineEdge{1, 2, width},
+                                           OutlineEdge{2, 3, width + height},
+                                           OutlineEdge{3, 0, 2 * width + height}};
+    line_.resize(view_.width, view_.height);
+    line_.fill(0);
+    stroker_.draw(corners, edges, stroke, view_, scale_, line_);
+  }
+
+  // Without an outline, pale colours would not stand out from the paper.
+  void draw_frame() {
+    spread_palette(picture_);
+    for (int y = 0; y < view_.height; ++y) {
+      for (int x = 0; x < view_.width; ++x) {
+        const bool is_inside =
+            x >= scale_ && x < view_.width - scale_ && y >= scale_ && y < view_.height - scale_;
+        if (!is_inside) pixel(x, y) = kFrame;
+      }
+    }
+  }
+
+  Rgba& pixel(int x, int y) {
+    return picture_.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) +
+                           static_cast<std::size_t>(x)];
+  }
+
+  int scale_;
+  View view_;
+  Coverage fill_;
+  Coverage pattern_;
+  Coverage line_;
+  Stroker stroker_;
+  Composer composer_;
+  Picture picture_;
+};
+
+void copy_into(const Picture& part, int left, int top, Picture& picture) {
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) {
+      picture.pixels[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
+                     static_cast<std::size_t>(left + x)] = part.at(x, y);
+    }
+  }
 }
 
 /// In pixels at scale 1.
@@ -170,25 +256,43 @@ int height_of(const std::vector<LegendRow>& rows) {
   return static_cast<int>(rows.size()) * kRowHeight + 2 * kMargin;
 }
 
-Picture draw_legend(const std::vector<LegendRow>& rows, int scale) {
-  int width = 0;
+/// Labels as wide as there is room, by row.
+std::vector<std::string> fitted_labels(const std::vector<LegendRow>& rows, const Fonts& fonts) {
+  std::vector<std::string> labels;
   for (const LegendRow& row : rows) {
-    const int label = std::min(text_width(row.label), kMaxLabelWidth);
-    width = std::max(width, left_of_label(row) + label + kMargin);
+    labels.push_back(fonts.fitted(row.label, kTextSize, kMaxLabelWidth));
+  }
+  return labels;
+}
+
+Picture blank_legend(const std::vector<LegendRow>& rows, const std::vector<std::string>& labels,
+                     const Fonts& fonts, int scale) {
+  int width = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int label = fonts.width_of(labels[i], kTextSize);
+    width = std::max(width, left_of_label(rows[i]) + label + kMargin);
   }
   Picture picture;
   picture.width = width * scale;
   picture.height = height_of(rows) * scale;
   picture.pixels.assign(
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kPaper);
-  int top = kMargin * scale;
-  for (const LegendRow& row : rows) {
+  return picture;
+}
+
+Picture draw_legend(const std::vector<LegendRow>& rows, const Fonts& fonts, int scale) {
+  const std::vector<std::string> labels = fitted_labels(rows, fonts);
+  Picture picture = blank_legend(rows, labels, fonts, scale);
+  Swatch swatch(scale);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const LegendRow& row = rows[i];
+    const int top = kMargin + static_cast<int>(i) * kRowHeight;
     if (row.entry != nullptr) {
-      draw_swatch(row, top + (kRowHeight - kSwatchHeight) / 2 * scale, scale, picture);
+      copy_into(swatch.draw(row.entry->paint, *row.layer), kMargin * scale,
+                (top + (kRowHeight - kSwatchHeight) / 2) * scale, picture);
     }
-    draw_text(row.label, left_of_label(row) * scale, top + (kRowHeight - kTextAscent) / 2 * scale,
-              scale, kInk, picture);
-    top += kRowHeight * scale;
+    fonts.draw(labels[i], left_of_label(row) * scale, (top + kBaseLine) * scale,
+               {kTextSize * scale, kInk}, picture);
   }
   return picture;
 }
@@ -220,7 +324,7 @@ OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& 
                                "or ask for .json.",
                                kMaxHeight)};
   }
-  return Document{"image/png", PngEncoder().encode(draw_legend(rows, scale))};
+  return Document{"image/png", PngEncoder().encode(draw_legend(rows, request.fonts, scale))};
 }
 
 }  // namespace

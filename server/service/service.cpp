@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/http/static_files.h"
+#include "server/tiles/open_fonts.h"
 #include "server/tiles/start_renderers.h"
 
 namespace trapeze {
@@ -82,11 +83,13 @@ Service::Service(const Config& config, LayerSource source)
   drawing.queue = config.server.queue;
   drawing.deadline = milliseconds(config.server.deadline_ms);
   drawing.batch = config.server.batch;
+  drawing.fonts = open_fonts(config.text.fonts);
   drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
   auto renderers = start_renderers(config.server.renderer, worker_count(config));
   warm_up(renderers);
   tiles_ = std::make_unique<TileService>(drawing, std::move(renderers));
   SiteOptions options = site_options(config);
+  options.fonts = drawing.fonts;
   if (config.server.metrics) options.metrics = [this] { return metrics_text(); };
   options.is_stopping = [this] { return server_->is_stopping(); };
   site_ = std::make_unique<Site>(std::move(options), std::move(files), data_, *tiles_, cache_);

@@ -322,7 +322,8 @@ void Site::handle_document(const DocumentRoute& route, const HttpRequest& reques
   if (const auto* problem = std::get_if<Problem>(&expanded)) {
     return respond(problem_response(*problem));
   }
-  const DocumentRequest asked{*dataset, *styles_, std::move(std::get<std::string>(base)),
+  const DocumentRequest asked{*dataset,         *styles_,
+                              *options_.fonts,  std::move(std::get<std::string>(base)),
                               std::move(*path), std::move(std::get<0>(expanded))};
   if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
     const auto* problem = std::get_if<Problem>(&*tile);

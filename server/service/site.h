@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/text/fonts.h"
 #include "server/data/dataset.h"
 #include "server/http/http_message.h"
 #include "server/http/rate_limit.h"
@@ -39,6 +40,8 @@ struct SiteOptions {
   std::function<std::string()> metrics = {};
   /// Whether the server is about to end, and so not ready any more; empty: never.
   std::function<bool()> is_stopping = {};
+  /// What legends are written in.
+  std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   /// Styles by name, and the memory in bytes for those that are posted.
   std::map<std::string, StyleQuery> styles = {};
   std::size_t posted_styles = StyleBook::kDefaultBudget;

@@ -9,6 +9,7 @@
 #include "render/coverage/stopwatch.h"
 #include "render/picture/debug_marks.h"
 #include "render/picture/webp.h"
+#include "render/text/label.h"
 
 namespace trapeze {
 namespace {
@@ -19,6 +20,7 @@ constexpr Rgba kMeshColour{0x20, 0x30, 0x48, 150};
 constexpr Rgba kVertexColour{0xc0, 0x20, 0x20, 255};
 constexpr Rgba kJunctionColour{0x10, 0x18, 0x30, 255};
 constexpr Rgba kBorderColour{0x70, 0x20, 0x90, 255};
+constexpr int kLabelSize = 13;
 
 View with_margin(const View& view) {
   constexpr int kPixels = 4;
@@ -30,8 +32,9 @@ View with_margin(const View& view) {
 }  // namespace
 
 TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer,
-                         std::shared_ptr<FeatureClassCache> classes)
-    : renderer_(std::move(renderer)), classes_(std::move(classes)) {}
+                         std::shared_ptr<FeatureClassCache> classes,
+                         std::shared_ptr<const Fonts> fonts)
+    : renderer_(std::move(renderer)), classes_(std::move(classes)), fonts_(std::move(fonts)) {}
 
 std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
   return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
@@ -182,7 +185,8 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
   if (!plan.debug.tile) return;
   std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);
   if (plan.scale > 1) text += fmt::format(" {}x", plan.scale);
-  mark_border(text, kBorderColour, picture);
+  mark_border(kBorderColour, picture);
+  draw_label(text, 3, 3, {kLabelSize, kBorderColour}, *fonts_, picture);
 }
 
 }  // namespace trapeze

@@ -18,6 +18,7 @@
 #include "render/coverage/coverage.h"
 #include "render/picture/compose.h"
 #include "render/picture/png.h"
+#include "render/text/fonts.h"
 #include "server/styles/feature_classes.h"
 #include "server/tiles/layer_drawing.h"
 #include "server/tiles/tile_plan.h"
@@ -58,9 +59,10 @@ class TilePainter {
     Deadline deadline;
   };
 
-  /// Painters may share what keeps the classes of features.
+  /// Painters may share what keeps the classes of features, and the fonts, which are for marks.
   explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer,
-                       std::shared_ptr<FeatureClassCache> classes = new_class_cache());
+                       std::shared_ptr<FeatureClassCache> classes = new_class_cache(),
+                       std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>());
 
   /// Large enough for the classes that the requests of one map name.
   static std::shared_ptr<FeatureClassCache> new_class_cache();
@@ -94,6 +96,7 @@ class TilePainter {
 
   std::unique_ptr<CoverageRenderer> renderer_;
   std::shared_ptr<FeatureClassCache> classes_;
+  std::shared_ptr<const Fonts> fonts_;
   Composer composer_;
   PngEncoder encoder_;
   using ConstantKey = std::tuple<std::string, int, TileFormat>;  // colour, side

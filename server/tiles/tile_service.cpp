@@ -17,7 +17,9 @@ TileService::TileService(const TileServiceOptions& options,
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
-        [this, painter = TilePainter(std::move(renderer), classes)]() mutable { work(painter); });
+        [this, painter = TilePainter(std::move(renderer), classes, options.fonts)]() mutable {
+          work(painter);
+        });
   }
 }
 

@@ -39,6 +39,8 @@ struct TileServiceOptions {
   // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
   // waited for; but a tile waits until those of its pass are drawn too.
   std::size_t batch = 8;
+  // For marks.
+  std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   // Told once of every tile, however many asked for it, from whatever thread answers.
   std::function<void(const TileAnswer&)> observe = {};
 };

@@ -198,6 +198,29 @@ TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
   std::filesystem::remove(path);
 }
 
+TEST(ProgramTest, AFontThatCannotBeUsedIsFoundByConfigCheckAndDoesNotKeepFromDrawing) {
+  const std::string font = scratch_path("broken.ttf");
+  std::ofstream(font) << "these are words";
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[text]\nfonts = [\"" << font << "\", \"/nowhere/a.ttf\"]\n";
+  Program check({"config", "check", path});
+  EXPECT_EQ(check.wait(), 1);
+  EXPECT_THAT(check.output(),
+              AllOf(HasSubstr(path + ":2: text.fonts: the font "),
+                    HasSubstr("broken.ttf is in no format of fonts that is known"),
+                    HasSubstr(path + ":2: text.fonts: the font /nowhere/a.ttf is not there")));
+  auto arguments = serve_arguments({fixture("rings.geojson")});
+  arguments.insert(arguments.end(), {"--config", path});
+  Program serve(arguments);
+  serve.port();
+  serve.send_signal(SIGTERM);
+  EXPECT_EQ(serve.wait(), 0);
+  EXPECT_THAT(serve.output(), AllOf(HasSubstr("/nowhere/a.ttf is not there"),
+                                    HasSubstr("there is no font: legends show no text")));
+  std::filesystem::remove(path);
+  std::filesystem::remove(font);
+}
+
 TEST(ProgramTest, ConfigurationsAreCheckedAndPrinted) {
   const std::string path = scratch_path("trapeze.toml");
   std::ofstream(path) << "[server]\nport = 1\nqueue = 0\nprot = 2\n";

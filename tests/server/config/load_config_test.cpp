@@ -119,6 +119,9 @@ TEST_F(ConfigTest, ReadsEveryKey) {
     allowed_hosts = ["maps.example", "*.cdn.example:80"]
     web_root = "web"
 
+    [text]
+    fonts = ["fonts/a.ttf", "/usr/share/fonts/b.ttc#2"]
+
     [[layer]]
     name = "lakes"
     file = "water.fgb"
@@ -146,6 +149,9 @@ TEST_F(ConfigTest, ReadsEveryKey) {
             (std::vector<std::string>{"maps.example", "*.cdn.example:80"}));
   const auto folder = std::filesystem::path(path_).parent_path();
   EXPECT_EQ(std::filesystem::path(config.server.web_root), (folder / "web").lexically_normal());
+  EXPECT_EQ(config.text.fonts,
+            (std::vector<std::string>{(folder / "fonts/a.ttf").lexically_normal().string(),
+                                      "/usr/share/fonts/b.ttc#2"}));
   ASSERT_EQ(config.layers.size(), 2u);
   const LayerConfig& lakes = config.layers[0];
   EXPECT_EQ(lakes.name, "lakes");
@@ -176,8 +182,8 @@ struct BadConfig {
 TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
   const BadConfig bad[] = {
       {"[server]\nprot = 1", ":2:1: ", "unknown key server.prot; allowed here are address, port"},
-      {"sevrer = 1",
-       ":1:1: ", "unknown key sevrer; allowed here are server, limits, log, admin, styles, layer"},
+      {"sevrer = 1", ":1:1: ",
+       "unknown key sevrer; allowed here are server, limits, text, log, admin, styles, layer"},
       {"[server]\nport = 70000", ":2:8: ", "server.port takes an integer from 0 to 65535"},
       {"[server]\nport = -1", ":2:8: ", "server.port takes an integer"},
       {"[server]\nport = \"80\"", ":2:8: ", "server.port takes an integer"},
@@ -187,6 +193,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\naddress = \"localhost\"", ":2:11: ", "server.address takes an IPv4"},
       {"[server]\ndevice = 1", ":2:10: ", "server.device takes a string"},
       {"[server]\nmetrics = 1", ":2:11: ", "server.metrics takes true or false"},
+      {"[text]\nfonts = [\"a.ttf\", \"\"]", ":2:19: ", "text.fonts takes a list of files of fonts"},
       {"[server]\ntrusted_proxies = [\"10.0.0.0/8\", \"10.0.0.0/33\"]", ":2:34: ", "ranges"},
       {"[limits]\ndrawn_burst = 0.5", ":2:15: ", "a number from 1 to"},
       {"[limits]\ndrawn_burst = nan", ":2:15: ", "a number from 1 to"},

@@ -4,11 +4,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "render/picture/png.h"
+#include "server/tiles/open_fonts.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
 namespace {
+
+SiteOptions with_usual_fonts() {
+  SiteOptions options;
+  options.fonts = open_fonts({});
+  return options;
+}
 
 class LegendTest : public ::testing::Test {
  protected:
@@ -21,7 +32,21 @@ class LegendTest : public ::testing::Test {
     return decode_png(*response.body);
   }
 
-  testing::SampleSite sample_;
+  /// The pixels of the swatch in a row of the picture, from the north-west.
+  static std::vector<Rgba> swatch(const Picture& picture, int row, int scale = 1) {
+    std::vector<Rgba> pixels;
+    for (int y = 0; y < 12 * scale; ++y) {
+      for (int x = 0; x < 20 * scale; ++x) {
+        pixels.push_back(picture.at(6 * scale + x, (6 + 16 * row + 2) * scale + y));
+      }
+    }
+    return pixels;
+  }
+  static Rgba pixel_of(const std::vector<Rgba>& swatch, int x, int y) {
+    return swatch[static_cast<std::size_t>(y * 20 + x)];
+  }
+
+  testing::SampleSite sample_{true, {}, with_usual_fonts()};
 };
 
 TEST_F(LegendTest, NamesTheLayersTopmostFirstWithTheirColours) {
@@ -43,6 +68,100 @@ TEST_F(LegendTest, ThePictureShowsTheColoursOnWhite) {
   const Picture twice = this->picture("/legend/rings,west@2x.png");
   EXPECT_EQ(twice.width, 2 * picture.width);
   EXPECT_EQ(twice.height, 2 * picture.height);
+}
+
+TEST_F(LegendTest, LabelsOfEveryScriptDiffer) {
+  std::set<std::string> seen;
+  const std::vector<std::string> names = {"Gr%C3%B6%C3%9Fe", "Grose", "%D8%B9%D8%B1%D8%A8",
+                                          "%D8%A8%D8%B1%D8%B9", "%D7%A2%D7%91"};
+  for (const std::string& name : names) {
+    const auto response = sample_.get("/legend/rings.png?color-by=name&classes=" + name + ":red");
+    ASSERT_EQ(response.status, 200);
+    seen.insert(*response.body);
+  }
+  EXPECT_EQ(seen.size(), names.size());
+}
+
+TEST_F(LegendTest, LabelsThatAreTooWideEndBeforeTheBorder) {
+  const std::string label(300, 'W');
+  const Picture picture =
+      this->picture("/legend/rings.png?color-by=name&classes=" + label + ":red");
+  EXPECT_LE(picture.width, 6 + 20 + 6 + 320 + 6);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = picture.width - 5; x < picture.width; ++x) {
+      EXPECT_EQ(picture.at(x, y), (Rgba{255, 255, 255, 255}));
+    }
+  }
+}
+
+TEST_F(LegendTest, WithoutAFontColoursAreShownAndNoText) {
+  testing::SampleSite mute;
+  const auto response = mute.get("/legend/rings,west.png");
+  ASSERT_EQ(response.status, 200);
+  const Picture picture = decode_png(*response.body);
+  EXPECT_EQ(picture.width, 6 + 20 + 6 + 6);
+  EXPECT_EQ(swatch(picture, 1), swatch(this->picture("/legend/rings,west.png"), 1));
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 27; x < picture.width; ++x) {
+      EXPECT_EQ(picture.at(x, y), (Rgba{255, 255, 255, 255}));
+    }
+  }
+}
+
+TEST_F(LegendTest, PatternsAreShown) {
+  std::set<std::string> seen;
+  for (const char* pattern : {"none", "checker", "crosshatch", "dots", "hatch", "stripes"}) {
+    const Picture picture = this->picture(
+        std::string("/legend/rings.png?fill=lime&pattern-color=blue&pattern=") + pattern);
+    const auto pixels = swatch(picture, 0);
+    std::string text;
+    int blue = 0;
+    for (int i = 0; i < 16 * 8; ++i) {
+      const Rgba pixel = pixel_of(pixels, 2 + i % 16, 2 + i / 16);
+      text += to_hex(pixel);
+      blue += pixel.b > 100 ? 1 : 0;
+    }
+    seen.insert(text);
+    EXPECT_EQ(blue > 0, pattern != std::string("none")) << pattern;
+    EXPECT_NE(text.find("00ff00"), std::string::npos) << pattern;
+  }
+  EXPECT_EQ(seen.size(), 6u);
+}
+
+TEST_F(LegendTest, OutlinesAreAsWideAsInTheMap) {
+  constexpr Rgba kLime{0, 255, 0, 255};
+  constexpr Rgba kBlue{0, 0, 255, 255};
+  for (const int width : {1, 2, 3}) {
+    const auto pixels = swatch(
+        picture("/legend/rings.png?fill=lime&stroke=blue&stroke-width=" + std::to_string(width)),
+        0);
+    for (int x = 0; x < 10; ++x) {
+      EXPECT_EQ(pixel_of(pixels, x, 6), x < width ? kBlue : kLime) << width << ", " << x;
+    }
+  }
+  const auto wide = swatch(picture("/legend/rings.png?fill=lime&stroke=blue&stroke-width=30"), 0);
+  EXPECT_EQ(pixel_of(wide, 3, 6), kBlue);
+  EXPECT_EQ(pixel_of(wide, 4, 6), kLime) << "something of the fill is left";
+}
+
+TEST_F(LegendTest, OutlinesAreDashedAsInTheMap) {
+  const auto pixels = swatch(
+      picture("/legend/rings.png?fill=lime&stroke=blue&stroke-width=2&stroke-dasharray=4,4"), 0);
+  int dashes = 0;
+  for (int x = 2; x < 18; ++x) {
+    const auto is_blue = [&](int column) {
+      return pixel_of(pixels, column, 0) == Rgba{0, 0, 255, 255};
+    };
+    dashes += is_blue(x) && !is_blue(x - 1) ? 1 : 0;
+  }
+  EXPECT_EQ(dashes, 2);
+}
+
+TEST_F(LegendTest, TheOpacityOfALayerHoldsForItsWholeSwatch) {
+  const auto pixels =
+      swatch(picture("/legend/rings.png?fill=lime&stroke=blue&stroke-width=2&opacity=0.5"), 0);
+  EXPECT_EQ(pixel_of(pixels, 0, 6), (Rgba{128, 128, 255, 255}));
+  EXPECT_EQ(pixel_of(pixels, 10, 6), (Rgba{128, 255, 128, 255}));
 }
 
 TEST_F(LegendTest, WhatIsWrongIsSaid) {

@@ -6,12 +6,20 @@
 
 #include "render/make_renderer.h"
 #include "server/config/load_config.h"
+#include "server/tiles/open_fonts.h"
 
 namespace trapeze::testing {
 namespace {
 
 std::vector<std::unique_ptr<CoverageRenderer>> software_renderers() {
   return make_renderers({RendererKind::software, {}}, 2).renderers;
+}
+
+TileServiceOptions tile_options() {
+  static const std::shared_ptr<const Fonts> fonts = open_fonts({});
+  TileServiceOptions options;
+  options.fonts = fonts;
+  return options;
 }
 
 }  // namespace
@@ -36,7 +44,7 @@ std::shared_ptr<const Dataset> sample_dataset() {
 }
 
 SampleSite::SampleSite(bool is_loaded, StaticFiles files, SiteOptions options)
-    : tiles_({}, software_renderers()),
+    : tiles_(tile_options(), software_renderers()),
       site_(std::move(options), std::move(files), data_, tiles_, cache_) {
   if (is_loaded) data_.set(sample_dataset());
 }

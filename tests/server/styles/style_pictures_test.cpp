@@ -58,6 +58,7 @@ std::shared_ptr<const Dataset> plots() {
   served.config.title = "Plots";
   served.config.style = testing::style_of("fill=808080");
   served.layer = LayerBuilder::join(builders, std::move(features));
+  served.untested = std::make_unique<UntestedLayer>(*served.layer);
   served.revision = revision_of(*served.layer);
   std::vector<ServedLayer> layers;
   layers.push_back(std::move(served));

@@ -1,0 +1,12 @@
+// A pixel of a picture under a colour.
+#pragma once
+
+#include "render/picture/compose.h"
+
+namespace trapeze {
+
+/// Lays the colour over one pixel, source over, its opacity multiplied with `share`, 0..1.
+/// `picture` is not indexed; nothing is done outside of it.
+void blend(Picture& picture, int column, int row, Rgba colour, double share);
+
+}  // namespace trapeze

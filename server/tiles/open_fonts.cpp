@@ -1,0 +1,45 @@
+#include "server/tiles/open_fonts.h"
+
+#include <spdlog/spdlog.h>
+
+#include <stdexcept>
+
+#include "render/text/usual_fonts.h"
+
+namespace trapeze {
+namespace {
+
+/// Adds the files that can be used; for the others, what is wrong with them.
+std::vector<std::string> add_fonts(const std::vector<std::string>& files, Fonts& fonts) {
+  std::vector<std::string> problems;
+  for (const std::string& file : files) {
+    try {
+      fonts.add(file);
+    } catch (const std::runtime_error& error) {
+      problems.emplace_back(error.what());
+    }
+  }
+  return problems;
+}
+
+}  // namespace
+
+std::shared_ptr<const Fonts> open_fonts(const std::vector<std::string>& files) {
+  const auto fonts = std::make_shared<Fonts>();
+  for (const std::string& problem : add_fonts(files.empty() ? usual_fonts() : files, *fonts)) {
+    spdlog::warn("{}", problem);
+  }
+  if (fonts->is_empty()) {
+    spdlog::warn(
+        "there is no font: legends show no text; install fonts-dejavu-core, or name files in "
+        "text.fonts");
+  }
+  return fonts;
+}
+
+std::vector<std::string> find_font_problems(const std::vector<std::string>& files) {
+  Fonts fonts;
+  return add_fonts(files, fonts);
+}
+
+}  // namespace trapeze

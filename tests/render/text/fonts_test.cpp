@@ -1,0 +1,418 @@
+#include "render/text/fonts.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render/text/usual_fonts.h"
+#include "render/text/utf8.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr Rgba kWhite{255, 255, 255, 255};
+constexpr Rgba kInk{0, 0, 0, 255};
+constexpr int kSize = 24;
+
+/// The usual font of that name; empty if it is not installed.
+std::string font_file(std::string_view name) {
+  const auto files = usual_fonts();
+  const auto found = std::ranges::find_if(
+      files, [name](const std::string& file) { return file.find(name) != std::string::npos; });
+  return found == files.end() ? std::string() : *found;
+}
+
+std::string dejavu() {
+  const std::string file = font_file("/DejaVuSans.ttf");
+  if (file.empty()) throw std::runtime_error("these tests need fonts-dejavu-core");
+  return file;
+}
+
+/// Levels of ink, 0 to 255, row by row.
+struct Drawing {
+  int width = 0;
+  std::vector<int> levels;
+
+  int at(int x, int y) const {
+    return levels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(x)];
+  }
+  long ink() const {
+    long sum = 0;
+    for (const int level : levels) sum += level;
+    return sum;
+  }
+  /// Of the columns from `from` on, as many as said.
+  long ink_of(int from, int count) const {
+    long sum = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const int x = static_cast<int>(i) % width;
+      if (x >= from && x < from + count) sum += levels[i];
+    }
+    return sum;
+  }
+
+  friend bool operator==(const Drawing&, const Drawing&) = default;
+};
+
+constexpr int kHeight = 2 * kSize;
+constexpr int kBase = kSize + kSize / 2;
+
+Picture blank(int width, int height) {
+  Picture picture;
+  picture.width = width;
+  picture.height = height;
+  picture.pixels.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kWhite);
+  return picture;
+}
+
+class FontsTest : public ::testing::Test {
+ protected:
+  FontsTest() { fonts_.add(dejavu()); }
+
+  static Drawing drawn_by(const Fonts& fonts, std::string_view line) {
+    Picture picture = blank(std::max(1, fonts.width_of(line, kSize)), kHeight);
+    fonts.draw(line, 0, kBase, {kSize, kInk}, picture);
+    Drawing drawing{picture.width, {}};
+    for (const Rgba pixel : picture.pixels) drawing.levels.push_back(255 - pixel.r);
+    return drawing;
+  }
+  Drawing drawn(std::string_view line) const { return drawn_by(fonts_, line); }
+  int width(std::string_view line) const { return fonts_.width_of(line, kSize); }
+
+  Fonts fonts_;
+};
+
+TEST_F(FontsTest, AccentsAreDrawn) {
+  for (const auto& [accented, plain] : std::vector<std::pair<std::string, std::string>>{
+           {"\u00f6", "o"}, {"\u00f1", "n"}, {"\u00da", "U"}, {"\u0159", "r"}, {"\u1ea5", "a"}}) {
+    EXPECT_GT(drawn(accented).ink(), drawn(plain).ink()) << accented;
+  }
+  EXPECT_NE(drawn("\u00df"), drawn("s"));
+}
+
+TEST_F(FontsTest, AnAccentThatFollowsItsLetterIsDrawnOverIt) {
+  EXPECT_EQ(width("e\u0301"), width("e"));
+  EXPECT_EQ(drawn("e\u0301"), drawn("\u00e9"));
+  EXPECT_EQ(width("x\u0323\u0302"), width("x")) << "there is no such letter";
+  EXPECT_GT(drawn("x\u0323\u0302").ink(), drawn("x").ink());
+}
+
+TEST_F(FontsTest, LettersAreAntialiased) {
+  const Drawing drawing = drawn("S");
+  const auto grey =
+      std::ranges::count_if(drawing.levels, [](int level) { return level > 20 && level < 235; });
+  EXPECT_GT(grey, 10);
+  EXPECT_TRUE(std::ranges::any_of(drawing.levels, [](int level) { return level == 255; }));
+}
+
+TEST_F(FontsTest, EveryLetterOfAsciiDiffersFromEveryOther) {
+  for (char a = '!'; a < 127; ++a) {
+    for (char b = '!'; b < a; ++b) EXPECT_NE(drawn({&a, 1}), drawn({&b, 1})) << a << b;
+  }
+}
+
+TEST_F(FontsTest, LettersStandOnTheBaseLine) {
+  const Drawing drawing = drawn("H");
+  long below = 0;
+  for (int y = kBase; y < kHeight; ++y) {
+    for (int x = 0; x < drawing.width; ++x) below += drawing.at(x, y);
+  }
+  EXPECT_EQ(below, 0);
+  int foot = 0;
+  for (int x = 0; x < drawing.width; ++x) foot = std::max(foot, drawing.at(x, kBase - 1));
+  EXPECT_EQ(foot, 255);
+}
+
+TEST_F(FontsTest, WidthsOfWordsAddUp) {
+  for (const auto& [a, b] : std::vector<std::pair<std::string, std::string>>{
+           {"Haus", " und Hof"}, {"Gr\u00f6\u00dfe ", "Nandu"}, {"\u05e9\u05dc", "\u05d5\u05dd"}}) {
+    EXPECT_NEAR(width(a + b), width(a) + width(b), 2) << a << b;
+  }
+  EXPECT_EQ(width(""), 0);
+}
+
+TEST_F(FontsTest, WidthsGrowInProportionToTheSize) {
+  const std::string line = "Gr\u00f6\u00dfe Nandu \u0627\u0644\u0639\u0631\u0628\u064a\u0629";
+  const int once = fonts_.width_of(line, 12);
+  for (int scale = 2; scale <= 4; ++scale) {
+    EXPECT_NEAR(fonts_.width_of(line, 12 * scale), once * scale, 2 * scale) << scale;
+  }
+}
+
+TEST_F(FontsTest, ArabicLettersAreJoined) {
+  const std::string beh = "\u0628";
+  const std::string apart = beh + "\u200c" + beh + "\u200c" + beh;  // zero width non-joiner
+  EXPECT_LT(width(beh + beh + beh), width(apart) - 3) << "forms of letters that stand alone";
+  // Joined on the base line: no column between the first and the last letter is without ink.
+  const Drawing joined = drawn(beh + beh + beh);
+  for (int x = 3; x + 3 < joined.width; ++x) EXPECT_GT(joined.ink_of(x, 1), 0) << x;
+  EXPECT_LT(width("\u0644\u0627"), width("\u0644") + width("\u0627"))
+      << "lam and alef are one sign";
+}
+
+TEST_F(FontsTest, HebrewRunsFromRightToLeft) {
+  const std::string wide = "\u05e9";    // shin
+  const std::string narrow = "\u05d9";  // yod
+  const Drawing line = drawn(wide + narrow);
+  const int left = width(narrow);
+  EXPECT_NEAR(static_cast<double>(line.ink_of(0, left)), static_cast<double>(drawn(narrow).ink()),
+              0.1 * static_cast<double>(line.ink()))
+      << "the second letter is the left one";
+}
+
+TEST_F(FontsTest, NumbersWithinHebrewRunFromLeftToRight) {
+  const std::string alef = "\u05d0";
+  const Drawing line = drawn(alef + " 17");
+  const Drawing number = drawn("17");
+  const Drawing reversed = drawn("71");
+  const auto first_columns = [&](const Drawing& drawing) {
+    std::vector<int> levels;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < number.width - 1; ++x) levels.push_back(drawing.at(x, y));
+    }
+    return levels;
+  };
+  EXPECT_EQ(first_columns(line), first_columns(number));
+  EXPECT_NE(first_columns(line), first_columns(reversed));
+}
+
+TEST_F(FontsTest, ALineThatBeginsInLatinRunsFromLeftToRight) {
+  const Drawing line = drawn("W \u05d9");
+  EXPECT_NEAR(static_cast<double>(line.ink_of(0, width("W"))),
+              static_cast<double>(drawn("W").ink()), 300);
+  const Drawing other = drawn("\u05d9 W");
+  EXPECT_NEAR(static_cast<double>(other.ink_of(0, width("W"))),
+              static_cast<double>(drawn("W").ink()), 300)
+      << "begun by Hebrew it runs from right to left";
+}
+
+TEST_F(FontsTest, DevanagariIsCombined) {
+  if (font_file("Devanagari").empty()) GTEST_SKIP() << "fonts-noto-core is not installed";
+  fonts_.add(font_file("Devanagari"));
+  const std::string ka = "\u0915";
+  const std::string virama = "\u094d";
+  const std::string ssa = "\u0937";
+  EXPECT_LT(width(ka + virama + ssa), width(ka) + width(ssa) - 3) << "a conjunct";
+  // The vowel sign i is written before the consonant that it follows.
+  const Drawing alone = drawn(ka);
+  const Drawing ki = drawn(ka + "\u093f");
+  const auto foot_of_last_columns = [&](const Drawing& drawing) {
+    double ink = 0;
+    for (int y = kBase - kSize / 3; y < kHeight; ++y) {
+      for (int x = drawing.width - alone.width; x < drawing.width; ++x) ink += drawing.at(x, y);
+    }
+    return ink;
+  };
+  EXPECT_GT(ki.width, alone.width);
+  EXPECT_NEAR(foot_of_last_columns(ki), foot_of_last_columns(alone),
+              0.1 * foot_of_last_columns(alone))
+      << "the consonant is the right one";
+}
+
+TEST_F(FontsTest, ThaiMarksStandOverTheirLetters) {
+  if (font_file("Thai").empty()) GTEST_SKIP() << "fonts-noto-core is not installed";
+  fonts_.add(font_file("Thai"));
+  EXPECT_EQ(width("\u0e01\u0e35\u0e49"), width("\u0e01"));
+  EXPECT_GT(drawn("\u0e01\u0e35\u0e49").ink(), drawn("\u0e01").ink());
+}
+
+TEST_F(FontsTest, WhatTheFirstFontLacksIsDrawnInTheNextOne) {
+  const std::string han = "\u65e5\u672c";
+  const Drawing boxes = drawn(han);
+  if (font_file("CJK").empty()) GTEST_SKIP() << "fonts-noto-cjk is not installed";
+  const Drawing latin = drawn("Tag");
+  fonts_.add(font_file("CJK"));
+  EXPECT_NE(drawn(han), boxes);
+  EXPECT_EQ(width(han), 2 * kSize) << "Han characters are squares";
+  EXPECT_EQ(drawn("Tag"), latin) << "what the first font has stays with it";
+}
+
+TEST_F(FontsTest, ACharacterInNoFontIsABox) {
+  const Drawing box = drawn("\u65e5");
+  EXPECT_GT(box.ink(), 0);
+  EXPECT_EQ(drawn("\u672c"), box);
+  EXPECT_NEAR(width("\u65e5\u672c"), 2 * width("\u65e5"), 1);
+}
+
+TEST_F(FontsTest, ALetterAndItsMarkAreOfOneFont) {
+  const std::string file = font_file("NotoSans-Regular");
+  if (file.empty()) GTEST_SKIP() << "fonts-noto-core is not installed";
+  // DejaVu Sans has no U+1DCA, Noto Sans has it and the letter.
+  const std::string marked = "o\u1dca";
+  Fonts noto;
+  noto.add(file);
+  ASSERT_NE(drawn("o"), drawn_by(noto, "o"));
+  fonts_.add(file);
+  EXPECT_EQ(drawn(marked), drawn_by(noto, marked));
+}
+
+TEST_F(FontsTest, BytesThatAreNoTextAreDrawnAsTheSignForThat) {
+  EXPECT_EQ(drawn("a\xff"
+                  "b"),
+            drawn("a\ufffd"
+                  "b"));
+  EXPECT_EQ(drawn("\xe6\x97"), drawn("\ufffd"));
+}
+
+TEST_F(FontsTest, ControlCharactersAreNotDrawn) {
+  EXPECT_EQ(drawn("a\x01\x1b"
+                  "b\x7f"),
+            drawn("ab"));
+  EXPECT_EQ(drawn("a\nb"), drawn("a b"));
+  EXPECT_EQ(width("\u202e\u202c\u2066\u2069\u200f\ufeff"), 0) << "marks of direction have no width";
+}
+
+TEST_F(FontsTest, TheWorkForALineIsBoundedHoweverLongItIs) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string longest(Fonts::kMostCharacters, 'm');
+  const std::string longer(std::size_t{8} << 20, 'm');
+  EXPECT_EQ(width(longer), width(longest));
+  std::string mixed;
+  while (mixed.size() < 100'000) mixed += "a\u05d0\u202e\u0301\u0628\xff";
+  EXPECT_LE(width(fonts_.fitted(mixed, kSize, 500)), 500);
+  Picture picture = blank(100, 30);
+  fonts_.draw(mixed, 0, 20, {kSize, kInk}, picture);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST_F(FontsTest, AFittedLineIsTheLineIfItFits) {
+  EXPECT_EQ(fonts_.fitted("Haus", kSize, width("Haus")), "Haus");
+  EXPECT_EQ(fonts_.fitted("", kSize, 0), "");
+}
+
+TEST_F(FontsTest, AFittedLineIsTheLongestBeginningWithAnEllipsis) {
+  const std::string line = "Gr\u00f6\u00dfenverh\u00e4ltnisse";
+  for (int most = width("\u2026"); most < width(line); most += 7) {
+    const std::string fitted = fonts_.fitted(line, kSize, most);
+    EXPECT_LE(width(fitted), most);
+    ASSERT_TRUE(fitted.ends_with("\u2026")) << fitted;
+    const std::string begin = fitted.substr(0, fitted.size() - std::string("\u2026").size());
+    EXPECT_TRUE(line.starts_with(begin)) << fitted;
+    EXPECT_EQ(characters_of_line(begin, 100).find(U'\ufffd'), std::u32string::npos)
+        << "characters are kept whole";
+    std::size_t next = begin.size() + 1;
+    while ((static_cast<unsigned char>(line[next]) & 0xc0) == 0x80) ++next;
+    EXPECT_GT(width(line.substr(0, next) + "\u2026"), most) << "one more would not have fitted";
+  }
+}
+
+TEST_F(FontsTest, WhatLiesOutsideOfThePictureIsLeftOut) {
+  Picture picture = blank(8, 8);
+  fonts_.draw("WWWW", -15, 12, {kSize, kInk}, picture);
+  fonts_.draw("W", 100, 100, {kSize, kInk}, picture);
+  fonts_.draw("W", -100, -100, {kSize, kInk}, picture);
+  Picture large = blank(200, 60);
+  fonts_.draw("WWWW", 5, 32, {kSize, kInk}, large);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(picture.at(x, y), large.at(x + 20, y + 20));
+  }
+}
+
+TEST_F(FontsTest, TextIsLaidOverWhatIsThereInItsColour) {
+  Picture picture = blank(kSize, kHeight);
+  std::ranges::fill(picture.pixels, Rgba{0, 0, 255, 255});
+  fonts_.draw("\u2588", 0, kBase, {kSize, {255, 0, 0, 128}}, picture);  // full block
+  EXPECT_EQ(picture.at(kSize / 3, kBase - 5), (Rgba{128, 0, 127, 255}));
+}
+
+TEST_F(FontsTest, ThreadsDrawTheSameAtTheSameTime) {
+  const std::string line = "Gr\u00f6\u00dfe \u0627\u0644\u0639\u0631\u0628\u064a\u0629";
+  const Drawing expected = drawn(line);
+  std::vector<int> different(4);
+  std::vector<std::thread> threads;
+  for (int& count : different) {
+    threads.emplace_back([&, size = 10 + static_cast<int>(&count - different.data())] {
+      for (int i = 0; i < 25; ++i) {
+        fonts_.width_of(line, size);
+        count += drawn(line) == expected ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(different, ::testing::Each(0));
+}
+
+TEST(NoFontsTest, WithoutAFontNothingIsDrawnAndNothingBreaks) {
+  const Fonts none;
+  EXPECT_TRUE(none.is_empty());
+  EXPECT_EQ(none.width_of("Haus", 12), 0);
+  EXPECT_EQ(none.fitted("Haus", 12, 10), "Haus");
+  Picture picture = blank(20, 20);
+  none.draw("Haus", 0, 15, {12, kInk}, picture);
+  EXPECT_TRUE(std::ranges::all_of(picture.pixels, [](Rgba pixel) { return pixel == kWhite; }));
+}
+
+class FontFilesTest : public ::testing::Test {
+ protected:
+  FontFilesTest() : folder_(::testing::TempDir() + "font_files_test") {
+    std::filesystem::create_directories(folder_);
+  }
+  ~FontFilesTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& bytes) const {
+    const std::string path = folder_ + "/" + name;
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+  }
+  static std::string dejavu_bytes() {
+    std::ifstream file(dejavu(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Empty if the font can be used.
+  static std::string fault_of(const std::string& file) {
+    try {
+      Fonts().add(file);
+      return {};
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  }
+
+  std::string folder_;
+};
+
+TEST_F(FontFilesTest, WhatIsWrongWithAFontIsSaidWithTheNameOfItsFile) {
+  EXPECT_EQ(fault_of("/nowhere/a.ttf"), "the font /nowhere/a.ttf is not there");
+  EXPECT_THAT(fault_of(folder_), HasSubstr("is not there")) << "a folder";
+  const std::string words = write("words.ttf", "these are words");
+  EXPECT_EQ(fault_of(words), "the font " + words + " is in no format of fonts that is known");
+  EXPECT_THAT(fault_of(write("empty.ttf", "")), HasSubstr("empty.ttf is "));
+  EXPECT_THAT(fault_of(dejavu() + "#7"), HasSubstr("has no font of that number"));
+}
+
+TEST_F(FontFilesTest, AFontThatIsCutShortIsRefused) {
+  const std::string bytes = dejavu_bytes();
+  for (const int share : {1, 10, 50}) {
+    const std::string cut =
+        write("cut.ttf", bytes.substr(0, bytes.size() * static_cast<std::size_t>(share) / 100));
+    EXPECT_THAT(fault_of(cut), HasSubstr("cut.ttf")) << share << " % of it";
+  }
+}
+
+TEST_F(FontFilesTest, AFontThatIsRefusedLeavesTheOthers) {
+  Fonts fonts;
+  fonts.add(dejavu());
+  const int before = fonts.width_of("Haus", 12);
+  EXPECT_THROW(fonts.add(write("words.ttf", "these are words")), std::runtime_error);
+  EXPECT_EQ(fonts.width_of("Haus", 12), before);
+}
+
+TEST_F(FontFilesTest, ANumberNamesAFontOfACollection) {
+  EXPECT_EQ(fault_of(dejavu() + "#0"), "");
+  const std::string named = write("a#b.ttf", dejavu_bytes());
+  EXPECT_EQ(fault_of(named), "") << "a sign within a name";
+}
+
+}  // namespace
+}  // namespace trapeze
