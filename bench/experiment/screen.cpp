@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "render/gl/context_search.h"
+
 namespace trapeze::experiment {
 
 Screen::Screen(const std::string& device) {

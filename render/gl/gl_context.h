@@ -5,15 +5,17 @@
 // since a display is one object in the whole process, whoever asked for it.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "render/gl/gl_functions.h"
 
 namespace trapeze {
+
+/// The least OpenGL that will do: 4.3, core.
+constexpr int kLeastGlMajor = 4;
+constexpr int kLeastGlMinor = 3;
 
 enum class ContextPath { egl_device, egl_software_device, egl_surfaceless, osmesa };
 
@@ -81,36 +83,5 @@ class CurrentContext {
  private:
   GlContext& context_;
 };
-
-/// What there is to try, best first: hardware devices, software devices, surfaceless, OSMesa.
-std::vector<ContextCandidate> list_context_candidates();
-
-/// Opens that one; it is current nowhere afterwards. Throws std::runtime_error with the reason.
-std::unique_ptr<GlContext> open_context(const ContextCandidate& candidate);
-
-struct ContextRequest {
-  bool egl = true;
-  bool osmesa = true;
-  /// The device to prefer: its index in EGL's list, or a part of its name or of the renderer's
-  /// name, in any case. Empty: no preference. A device that is preferred but does not work is
-  /// reported, and the others are tried.
-  std::string device;
-};
-
-/// One candidate and why it was not taken.
-struct ContextFailure {
-  std::string candidate;
-  std::string reason;
-};
-
-struct ContextSearch {
-  bool found = false;
-  std::vector<ContextFailure> failures;
-};
-
-/// Opens one candidate after another and hands each that opens to `use`, until one is taken without
-/// an exception. Never throws because of a candidate or its use: the reason is kept.
-ContextSearch use_first_context(const ContextRequest& request,
-                                const std::function<void(std::unique_ptr<GlContext>)>& use);
 
 }  // namespace trapeze

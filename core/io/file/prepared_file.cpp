@@ -77,15 +77,17 @@ class Cutter {
 }  // namespace
 
 std::string name_of(SectionKind kind) {
-  static constexpr std::array<const char*, 18> names = {"description",
+  static constexpr std::array<const char*, 20> names = {"description",
                                                         "vertices",
                                                         "edges",
                                                         "trapezoids",
                                                         "lifespans",
                                                         "features",
                                                         "index",
+                                                        "index of level edges",
                                                         "index of dust",
                                                         "index of merged dust",
+                                                        "grains",
                                                         "outlines",
                                                         "ends of rings",
                                                         "ends of outlines",

@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "render/gl/context_search.h"
+
 namespace trapeze {
 namespace {
 

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "render/gl/context_search.h"
 #include "render/make_renderer.h"
 #include "render/software/software_renderer.h"
 #include "tests/render/compare_renderers.h"

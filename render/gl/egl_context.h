@@ -1,0 +1,17 @@
+// Contexts by EGL: devices, and surfaceless.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/gl/gl_context.h"
+
+namespace trapeze {
+
+/// What EGL has to try, best first; nothing without EGL.
+std::vector<ContextCandidate> list_egl_candidates();
+
+/// Opens one of those. Throws std::runtime_error with the reason.
+std::unique_ptr<GlContext> open_egl_context(const ContextCandidate& candidate);
+
+}  // namespace trapeze

@@ -1,0 +1,16 @@
+// Instead of osmesa_context.cpp where there is no OSMesa.
+#include <stdexcept>
+
+#include "render/gl/osmesa_context.h"
+
+namespace trapeze {
+
+bool has_osmesa() {
+  return false;
+}
+
+std::unique_ptr<GlContext> open_osmesa_context(const ContextCandidate&) {
+  throw std::runtime_error("this program was built without OSMesa");
+}
+
+}  // namespace trapeze
