@@ -9,8 +9,8 @@
 // that no font has is the first font's sign for that, mostly a box.
 //
 // Thread-safety: const methods may be called from any thread. Faces of FreeType are for one thread
-// at a time, so they take turns at a mutex: at most kMostCharacters a turn, which takes less than
-// a millisecond or two. Fonts are added before others use them.
+// at a time, so callers take turns at a mutex, with kMostCharacters at most a turn. Fonts are added
+// before others use them.
 #pragma once
 
 #include <cstddef>
