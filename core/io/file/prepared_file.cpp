@@ -97,6 +97,7 @@ std::string name_of(SectionKind kind) {
                                                         "numbers of a column",
                                                         "nulls of a column",
                                                         "texts of a column"};
+  static_assert(names.size() == static_cast<std::size_t>(SectionKind::texts));
   const auto number = static_cast<std::uint32_t>(kind);
   return number >= 1 && number <= names.size() ? names[number - 1] : "unknown section";
 }
