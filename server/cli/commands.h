@@ -1,8 +1,11 @@
-// The commands of the program, one function each. They return the exit status and throw
-// std::exception for what main reports: a file, a port, a renderer that does not work.
+// The commands of the program, one function each. They return the exit status: 0 if all is done, 1
+// if something failed or was found wrong. For what main reports they throw UsageError, which ends
+// with 2, or another std::exception, a file, a port, a renderer that does not work, which ends
+// with 1.
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,7 +15,13 @@
 
 namespace trapeze {
 
-/// None if the name is empty. Throws std::runtime_error that says what --coverage takes.
+/// The command line asks for what no run of the program can do.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// None if the name is empty. Throws UsageError that says what --coverage takes.
 std::optional<CoverageMode> coverage_or_throw(const std::string& name);
 
 /// What is done about polygons that share borders.
@@ -21,7 +30,7 @@ struct CoverageArguments {
       mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
   std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
 };
-/// Sets what is to become of a source. Throws std::runtime_error that says what is wrong.
+/// Sets what is to become of a source. Throws UsageError that says what is wrong.
 void apply(const CoverageArguments& arguments, LayerOptions& options);
 
 struct ServeArguments {

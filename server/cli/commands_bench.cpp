@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -46,7 +45,7 @@ std::vector<std::string> names() {
 [[noreturn]] void throw_unknown(const std::string& name) {
   std::string text = "there is no benchmark '" + name + "' beside this program";
   for (const std::string& known : names()) text.append("; there is ").append(known);
-  throw std::runtime_error(text + "; build the release preset for all of them");
+  throw UsageError(text + "; build the release preset for all of them");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <stdexcept>
 
 #include "core/io/prepared/open_layer.h"
 #include "server/cli/commands.h"
@@ -70,13 +69,11 @@ void print_report(const LoadReport& report, const Layer& layer) {
 }
 
 /// False if the file cannot be read.
-bool check_file(const std::string& file, const CoverageArguments& coverage) {
+bool check_file(const std::string& file, const OpenOptions& how) {
   LoadedLayer loaded;
   try {
     LoadProgress progress(file);
-    OpenOptions options;
-    options.coverage = coverage_or_throw(coverage.mode);
-    options.close_gaps = coverage.close_gaps;
+    OpenOptions options = how;
     options.progress = [&progress](double share) { progress.show(share); };
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {
@@ -93,7 +90,7 @@ bool check_file(const std::string& file, const CoverageArguments& coverage) {
 std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
   if (name.empty()) return std::nullopt;
   const auto coverage = coverage_from_name(name);
-  if (!coverage) throw std::runtime_error("--coverage takes auto, on or off");
+  if (!coverage) throw UsageError("--coverage takes auto, on or off");
   return coverage;
 }
 
@@ -101,14 +98,17 @@ void apply(const CoverageArguments& arguments, LayerOptions& options) {
   options.coverage = coverage_or_throw(arguments.mode).value_or(kUsualCoverage);
   options.close_gaps = arguments.close_gaps.value_or(0);
   if (options.close_gaps > 0 && options.coverage == CoverageMode::off) {
-    throw std::runtime_error("--close-gaps needs --coverage auto or on");
+    throw UsageError("--close-gaps needs --coverage auto or on");
   }
 }
 
 int run_check(const CheckArguments& arguments) {
+  OpenOptions how;
+  how.coverage = coverage_or_throw(arguments.coverage.mode);
+  how.close_gaps = arguments.coverage.close_gaps;
   bool is_all_read = true;
   for (const std::string& file : arguments.files) {
-    is_all_read &= check_file(file, arguments.coverage);
+    is_all_read &= check_file(file, how);
   }
   return is_all_read ? 0 : 1;
 }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 
 #include "core/grid/tolerance.h"
 #include "core/grid/web_mercator.h"
@@ -23,7 +22,7 @@ double epsilon_of(int zoom, double pixels) {
 
 template <class T>
 T known(const std::optional<T>& value, const char* words) {
-  if (!value) throw std::runtime_error(words);
+  if (!value) throw UsageError(words);
   return *value;
 }
 
@@ -35,10 +34,10 @@ std::optional<Topology> topology_from_name(const std::string& name) {
 
 ExportOptions options_from(const ExportArguments& arguments) {
   if (arguments.zoom < 0 || arguments.zoom > kMaxZoom) {
-    throw std::runtime_error(fmt::format("--zoom takes a whole number from 0 to {}", kMaxZoom));
+    throw UsageError(fmt::format("--zoom takes a whole number from 0 to {}", kMaxZoom));
   }
   if (!std::isfinite(arguments.simplify) || arguments.simplify < 0) {
-    throw std::runtime_error("--simplify takes a number of pixels, 0 or more");
+    throw UsageError("--simplify takes a number of pixels, 0 or more");
   }
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);

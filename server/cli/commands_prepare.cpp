@@ -22,7 +22,7 @@ constexpr const char* kExtension = ".trapeze";
 WeightRule weights_or_throw(const std::string& name) {
   const auto rule = weight_rule_from_name(name);
   if (!rule) {
-    throw std::runtime_error("--weights takes douglas-peucker, raised-parents or effective-area");
+    throw UsageError("--weights takes douglas-peucker, raised-parents or effective-area");
   }
   return *rule;
 }

@@ -1,9 +1,11 @@
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
 
+#include "render/picture/webp.h"
 #include "server/base/url.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
@@ -20,9 +22,9 @@ namespace {
 template <typename T>
 T value_or_throw(OrProblem<T> result) {
   if (const auto* problem = std::get_if<Problem>(&result)) {
-    throw std::runtime_error(problem->value.empty() ? problem->detail
-                                                    : fmt::format("{} Given was \"{}\".",
-                                                                  problem->detail, problem->value));
+    throw UsageError(problem->value.empty()
+                         ? problem->detail
+                         : fmt::format("{} Given was \"{}\".", problem->detail, problem->value));
   }
   return std::move(std::get<T>(result));
 }
@@ -31,11 +33,23 @@ TileId tile_of_text(const std::string& text) {
   const std::size_t first = text.find('/');
   const std::size_t second = first == std::string::npos ? first : text.find('/', first + 1);
   if (second == std::string::npos) {
-    throw std::runtime_error(fmt::format("--tile takes Z/X/Y, given was \"{}\"", text));
+    throw UsageError(fmt::format("--tile takes Z/X/Y, given was \"{}\"", text));
   }
   const std::string_view view = text;
   return value_or_throw(parse_tile_id(
       view.substr(0, first), view.substr(first + 1, second - first - 1), view.substr(second + 1)));
+}
+
+/// What the end of a file's name says.
+TileFormat format_of(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".png") return TileFormat::png;
+  if (extension != ".webp") {
+    throw UsageError(
+        fmt::format("--output takes a name that ends in .png or .webp, given was \"{}\"", path));
+  }
+  if (!has_webp()) throw UsageError("--output: this program was built without WebP; take .png");
+  return TileFormat::webp;
 }
 
 TileRequest make_request(const RenderArguments& arguments, const std::vector<LayerConfig>& layers) {
@@ -43,8 +57,9 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   for (const LayerConfig& layer : layers) request.layers.push_back(layer.name);
   request.tile = tile_of_text(arguments.tile);
   request.scale = arguments.scale;
+  request.format = format_of(arguments.output);
   const auto query = decode_query(arguments.style);
-  if (!query) throw std::runtime_error("--style takes a query string such as fill=red");
+  if (!query) throw UsageError("--style takes a query string such as fill=red");
   const auto expanded = value_or_throw(StyleBook().expand(*query));
   request.style = value_or_throw(StyleQuery::parse(expanded, request.layers));
   return request;
@@ -63,7 +78,7 @@ int run_render(const RenderArguments& arguments) {
   const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
   const TileRequest request = make_request(arguments, layers);
   const auto kind = renderer_kind_from(arguments.renderer);
-  if (!kind) throw std::runtime_error("--renderer takes auto, egl, osmesa or software");
+  if (!kind) throw UsageError("--renderer takes auto, egl, osmesa or software");
   auto renderers = start_renderers({*kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
   const TilePlan plan = value_or_throw(plan_tile(request, Dataset::load(layers)));

@@ -24,11 +24,19 @@ void limit_zooms(Config& config) {
   }
 }
 
+bool is_of_command_line(const ConfigProblem& problem) {
+  return problem.where.starts_with("--");
+}
+
 Config configure(const ServeArguments& arguments) {
   LoadedConfig loaded = load_serve_config(arguments);
-  if (!loaded.problems.empty()) throw std::runtime_error(problems_text(loaded.problems));
+  if (!loaded.problems.empty()) {
+    const std::string text = problems_text(loaded.problems);
+    if (std::ranges::all_of(loaded.problems, is_of_command_line)) throw UsageError(text);
+    throw std::runtime_error(text);
+  }
   if (loaded.config.layers.empty()) {
-    throw std::runtime_error(
+    throw UsageError(
         "there is nothing to serve: name files, or a configuration with "
         "[[layer]] by --config");
   }

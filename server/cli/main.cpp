@@ -13,11 +13,15 @@
 
 #include "core/borders/gap_closing.h"
 #include "server/base/build_id.h"
+#include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 #include "server/config/config_settings.h"
 #include "server/styles/parameter_table.h"
 
 namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
 
 constexpr const char* kDescription =
     "Trapeze serves maps of polygons as PNG tiles, and simplifies while it draws.\n\n"
@@ -30,7 +34,11 @@ constexpr const char* kDescription =
     "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
     "file\n"
-    "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png";
+    "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png\n"
+    "  trapeze parameters                          what a style can say, as a table\n\n"
+    "The exit status is 0 if all is done, 1 if something failed or was found wrong, and 2 if the\n"
+    "command line is wrong. Results go to standard output; what goes wrong is told on standard\n"
+    "error.";
 
 constexpr const char* kServeFooter =
     "\nExamples:\n"
@@ -97,11 +105,14 @@ constexpr const char* kDeviceHelp = "The EGL device to prefer: its index, or a p
 trapeze::ConfigOverride parse_assignment(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
-  const bool is_known = std::ranges::any_of(
-      trapeze::config_settings(), [&name](const auto& setting) { return setting.name() == name; });
+  std::vector<std::string> known;
+  for (const auto& setting : trapeze::config_settings()) known.push_back(setting.name());
+  const bool is_known = std::ranges::find(known, name) != known.end();
   if (equals == std::string::npos || !is_known) {
-    throw CLI::ValidationError(
-        "--set", text + " is no TABLE.KEY=VALUE of a setting; `trapeze config print` shows them");
+    throw trapeze::UsageError(
+        "--set: " + text +
+        " is no TABLE.KEY=VALUE of a setting; `trapeze config print` shows them" +
+        (is_known ? "" : trapeze::did_you_mean(name, known)));
   }
   return {name, text.substr(equals + 1), "--set " + name};
 }
@@ -279,9 +290,9 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
       ->type_name("QUERY");
   render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
   render->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
-  render->add_option("--output", arguments.output, "The PNG to write")
+  render->add_option("--output", arguments.output, "The picture to write: .png or .webp")
       ->required()
-      ->type_name("F.png");
+      ->type_name("F");
 }
 
 /// What follows the name of a benchmark is for the benchmark, --help included.
@@ -299,9 +310,47 @@ void add_bench(CLI::App& app, std::string& name) {
       ->required();
 }
 
-/// For those who edit the README: not in the help.
 void add_parameters(CLI::App& app) {
-  app.add_subcommand("parameters", "Print the table of query parameters as Markdown")->group("");
+  app.add_subcommand("parameters", "Print what a style can say, as a table in Markdown");
+}
+
+/// The command whose options were read last, or the program if there was none.
+const CLI::App& innermost(const CLI::App& app) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  return chosen.empty() ? app : innermost(*chosen.front());
+}
+
+/// What could stand in the place of something unknown: options of the command and of the program,
+/// or commands.
+std::vector<std::string> known_names(const CLI::App& app, const CLI::App& command,
+                                     bool are_options) {
+  std::vector<std::string> names;
+  if (!are_options) {
+    for (const CLI::App* sub : command.get_subcommands({})) names.push_back(sub->get_name());
+    return names;
+  }
+  for (const CLI::App* each : {&command, &app}) {
+    for (const CLI::Option* option : each->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+/// Says what is wrong, what may have been meant, and where there is more to read.
+std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = innermost(app);
+  const std::string who = &command == &app ? "trapeze" : "trapeze " + command.get_name();
+  const std::string more = "; `" + who + " --help` tells more";
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (unknown.empty()) return error.what() + more;
+  // What is mistyped comes first: that a required option is missing may follow from it.
+  const std::string name = unknown.front().substr(0, unknown.front().find('='));
+  const bool is_option = name.starts_with('-');
+  const bool is_command = !is_option && !command.get_subcommands({}).empty();
+  const char* kind = is_option ? "no option " : is_command ? "no command " : "no place for ";
+  return "there is " + (kind + name) + more +
+         trapeze::did_you_mean(name, known_names(app, command, is_option));
 }
 
 int run(int argc, char** argv) {
@@ -331,11 +380,12 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error);
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+    throw trapeze::UsageError(usage_problem(app, error));
   }
   if (app.get_subcommands().empty()) {
     std::cerr << app.help();
-    return 1;
+    return kWrongUsage;
   }
   if (is_verbose) spdlog::set_level(spdlog::level::debug);
   serve.is_verbose = is_verbose;
@@ -363,8 +413,11 @@ int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
     return run(argc, argv);
+  } catch (const trapeze::UsageError& error) {
+    std::cerr << "trapeze: " << error.what() << '\n';
+    return kWrongUsage;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return 1;
+    std::cerr << "trapeze: " << error.what() << '\n';
+    return kFailed;
   }
 }

@@ -11,7 +11,9 @@
 #include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
+#include "server/base/nearest_name.h"
 #include "server/base/url.h"
 #include "server/config/config_settings.h"
 #include "server/config/expand_variables.h"
@@ -60,9 +62,11 @@ class ConfigReader {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
-             fmt::format("unknown key {}; allowed here are server, limits, text, log, "
-                         "admin, styles, layer",
-                         key.str()));
+             fmt::format("unknown key {}; allowed here are server, limits, text, log, admin, "
+                         "styles, layer{}",
+                         key.str(),
+                         did_you_mean(key.str(), {"server", "limits", "text", "log", "admin",
+                                                  "styles", "layer"})));
       }
     }
   }
@@ -110,13 +114,12 @@ class ConfigReader {
   template <typename Owner>
   void fail_unknown(const toml::key& key, const std::vector<Setting<Owner>>& settings,
                     const std::string& name, std::string_view other_key) {
-    std::string allowed;
-    for (const auto& setting : settings) {
-      allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", setting.key);
-    }
-    if (!other_key.empty()) allowed += fmt::format(", {}", other_key);
+    std::vector<std::string> allowed;
+    for (const auto& setting : settings) allowed.emplace_back(setting.key);
+    if (!other_key.empty()) allowed.emplace_back(other_key);
     fail(key.source().begin,
-         fmt::format("unknown key {}.{}; allowed here are {}", name, key.str(), allowed));
+         fmt::format("unknown key {}.{}; allowed here are {}{}", name, key.str(),
+                     fmt::join(allowed, ", "), did_you_mean(key.str(), allowed)));
   }
 
   template <typename Owner>
@@ -286,7 +289,10 @@ class ConfigReader {
     const bool is_for_all_layers = layer.empty() && has_layers;
     if (parameter == nullptr || parameter->id == ParameterId::style ||
         (!parameter->is_per_layer && !is_for_all_layers)) {
-      fail(key.source().begin, fmt::format("a style does not know \"{}\"", key.str()));
+      std::vector<std::string> known;
+      for (const StyleParameter& each : style_parameters()) known.emplace_back(each.name);
+      fail(key.source().begin,
+           fmt::format("a style does not know \"{}\"{}", key.str(), did_you_mean(name, known)));
       return std::nullopt;
     }
     const auto text = query_text_of(node);

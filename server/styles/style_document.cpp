@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/base/json_text.h"
+#include "server/base/nearest_name.h"
 
 namespace trapeze {
 namespace {
@@ -117,15 +118,17 @@ class DocumentReader {
   }
 
   static Problem unknown(const std::string& name, const std::string& layer) {
-    std::vector<std::string_view> known;
+    std::vector<std::string> known;
     for (const StyleParameter& parameter : style_parameters()) {
       if (parameter.id == ParameterId::style || (!layer.empty() && !parameter.is_per_layer)) {
         continue;
       }
-      known.push_back(parameter.name);
+      known.emplace_back(parameter.name);
     }
+    const auto nearest = nearest_name(name, known);
     return wrong(
-        fmt::format("A style does not know \"{}\"{}.", name, layer.empty() ? "" : " for one layer"),
+        fmt::format("A style does not know \"{}\"{}{}", name, layer.empty() ? "" : " for one layer",
+                    nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
         name, fmt::format("{}", fmt::join(known, ", ")));
   }
 

@@ -78,6 +78,10 @@ test('the replicas may do nothing that they need not, and end in time', () => {
   }
 });
 
+test('a replica may take the memory that a reload of the sample does', () => {
+  for (const name of replicas) assert.ok(parseInt(compose.services[name].mem_limit) >= 2, name);
+});
+
 test('their variables are settings', () => {
   const defaultsTaken = (value) => value.replace(/\$\{\w+:-([^}]*)\}/g, '$1');
   for (const name of replicas) {

@@ -23,15 +23,14 @@ async function validate(manifest) {
 }
 
 const manifests = readdirSync(folder)
-  .filter((name) => name.endsWith('.yaml'))
+  .filter((name) => name.endsWith('.yaml') && name !== 'kustomization.yaml')
   .flatMap((name) => yaml.loadAll(readFileSync(path.join(folder, name), 'utf8')));
 const named = (kind) => manifests.find((manifest) => manifest.kind === kind);
 
 test('every manifest is as its schema says', async () => {
   const kinds = manifests.map((manifest) => manifest.kind);
-  for (const kind of ['ConfigMap', 'Deployment', 'Service', 'HorizontalPodAutoscaler', 'PodDisruptionBudget']) {
-    assert.ok(kinds.includes(kind), kind);
-  }
+  const wanted = ['ConfigMap', 'Deployment', 'Service', 'HorizontalPodAutoscaler', 'PodDisruptionBudget'];
+  for (const kind of [...wanted, 'Job', 'Ingress']) assert.ok(kinds.includes(kind), kind);
   for (const manifest of manifests) await validate(manifest);
 });
 
@@ -66,6 +65,59 @@ test('the parts name each other', () => {
   for (const mount of pod.spec.containers[0].volumeMounts) assert.ok(volumes.includes(mount.name));
   const claims = pod.spec.volumes.flatMap((volume) => volume.persistentVolumeClaim?.claimName ?? []);
   assert.deepEqual(claims, [named('PersistentVolumeClaim').metadata.name]);
+});
+
+test('the job writes the volume that the replicas read, and is none of them', () => {
+  const pod = named('Job').spec.template;
+  const claims = pod.spec.volumes.map((volume) => volume.persistentVolumeClaim.claimName);
+  assert.deepEqual(claims, [named('PersistentVolumeClaim').metadata.name]);
+  assert.notDeepEqual(pod.metadata.labels, named('Service').spec.selector);
+  const [prepare] = pod.spec.containers;
+  const folder = prepare.args[prepare.args.indexOf('--output') + 1];
+  assert.deepEqual(prepare.volumeMounts.map((mount) => mount.mountPath), [folder]);
+  const made = prepare.args.flatMap((file) => file.match(/(\w+)\.fgb$/)?.[1] ?? []);
+  const served = [...named('ConfigMap').data['trapeze.toml'].matchAll(/^prepared = "(.*)"/gm)];
+  assert.deepEqual(served.map((match) => match[1]), made.map((name) => `${folder}/${name}.trapeze`));
+  const [wait] = named('Deployment').spec.template.spec.initContainers;
+  for (const [, file] of served) assert.ok(wait.args[0].includes(file), file);
+});
+
+test('the Ingress leads to the service, under the public address', () => {
+  const [{ host, http }] = named('Ingress').spec.rules;
+  const { name, port } = http.paths[0].backend.service;
+  const service = named('Service');
+  assert.equal(name, service.metadata.name);
+  assert.ok(service.spec.ports.some((each) => each.name === port.name));
+  assert.ok(named('ConfigMap').data['trapeze.toml'].includes(`"https://${host}"`));
+});
+
+test('the number of replicas is said by the autoscaler alone', () => {
+  assert.equal(named('Deployment').spec.replicas, undefined);
+  assert.ok(named('HorizontalPodAutoscaler').spec.minReplicas > 1);
+});
+
+test('one image is built, labelled and started, of the version of the project', () => {
+  const root = path.join(folder, '../..');
+  const read = (name) => readFileSync(path.join(root, name), 'utf8');
+  const [, version] = read('CMakeLists.txt').match(/^project\([^)]*VERSION ([\d.]+)/m);
+  const kustomization = yaml.load(read('docker/kubernetes/kustomization.yaml'));
+  assert.deepEqual(
+    kustomization.resources,
+    readdirSync(folder).filter((name) => name !== 'kustomization.yaml'),
+  );
+  assert.deepEqual(kustomization.images, [{ name: 'trapeze', newName: 'trapeze', newTag: version }]);
+  const pods = [named('Deployment'), named('Job')].map((each) => each.spec.template.spec);
+  const containers = pods.flatMap((pod) => [...(pod.initContainers ?? []), ...pod.containers]);
+  for (const { image } of containers) assert.equal(image, `trapeze:${version}`);
+  assert.equal(yaml.load(read('docker/compose.yaml'))['x-trapeze'].image, `trapeze:${version}`);
+  const dockerfile = read('docker/Dockerfile');
+  assert.ok(dockerfile.includes(`-t trapeze:${version} `));
+  assert.ok(dockerfile.includes(`org.opencontainers.image.version="${version}"`));
+});
+
+test('a replica may take the memory that a reload of the sample does', () => {
+  const [, gigabytes] = named('Deployment').spec.template.spec.containers[0].resources.limits.memory.match(/^(\d+)Gi$/);
+  assert.ok(gigabytes >= 2);
 });
 
 test('the configuration in them is right, and ends in time', () => {

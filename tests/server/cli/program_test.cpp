@@ -271,7 +271,6 @@ TEST(ProgramTest, APortInUseIsAnErrorThatNamesIt) {
 TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{"serve"}, "nothing to serve"},
-      {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
       {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "--renderer: takes \"auto\""},
       {{"serve", "--port", "70000", fixture("rings.geojson")}, "--port: takes an integer from 0"},
       {{"serve", "--set", "limits.scale=9", fixture("rings.geojson")}, "from 1 to 4"},
@@ -279,8 +278,6 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"serve", "--set", "limits.scale", fixture("rings.geojson")}, "TABLE.KEY=VALUE"},
       {{"config"}, "subcommand"},
       {{"config", "check"}, "FILE"},
-      {{"config", "check", "/nosuch.toml"}, "/nosuch.toml"},
-      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
       {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
        "no such tile"},
       {{"render", fixture("rings.geojson"), "--tile", "0", "--output", "x.png"}, "Z/X/Y"},
@@ -297,8 +294,9 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--coverage", "yes", "--output",
         "x.fgb"},
        "auto, on or off"},
-      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
-       "--output takes a folder"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.jpg"},
+       ".png or .webp"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "png"}, ".png or .webp"},
       {{"bench"}, "NAME"},
       {{"bench", "nosuch", "--help"}, "no benchmark 'nosuch'"},
       {{"bench", "../trapeze"}, "no benchmark '../trapeze'"},
@@ -319,15 +317,31 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--crs", "EPSG:25832", "--output",
         "x.fgb"},
        "EPSG:4326 or EPSG:3857"},
-      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
-      {{"export", fixture("nosuch.fgb"), "--zoom", "3", "--output", "x.fgb"}, "nosuch.fgb"},
       {{}, "Usage"},
-      {{"sevre"}, "sevre"}};
+      {{"sevre"}, "there is no command sevre; `trapeze --help` tells more; did you mean serve?"},
+      {{"config", "chek"}, "did you mean check?"},
+      {{"serve", "--prot", "9000", fixture("rings.geojson")}, "did you mean --port?"},
+      {{"prepare", fixture("rings.geojson"), "--ouput=x"}, "did you mean --output?"},
+      {{"serve", "--set", "limits.zom=9", fixture("rings.geojson")}, "did you mean limits.zoom?"}};
   for (const auto& [arguments, says] : wrong) {
     Program program(arguments);
-    const auto status = program.wait();
-    EXPECT_TRUE(status && *status != 0 && *status < 128) << says;
+    EXPECT_EQ(program.wait(), 2) << says;
     EXPECT_THAT(program.output(), HasSubstr(says));
+  }
+}
+
+TEST(ProgramTest, WhatFailsIsToldInOneStyleAndEndsWithOne) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> failing = {
+      {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
+      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
+      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
+       "--output takes a folder"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
+      {{"export", fixture("nosuch.fgb"), "--zoom", "3", "--output", "x.fgb"}, "nosuch.fgb"}};
+  for (const auto& [arguments, says] : failing) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 1) << says;
+    EXPECT_THAT(program.output(), AllOf(::testing::StartsWith("trapeze: "), HasSubstr(says)));
   }
 }
 
@@ -344,6 +358,26 @@ TEST(ProgramTest, RendersOneTileIntoAFile) {
   EXPECT_EQ(picture.at(10, 10), (Rgba{0, 0, 255, 255}));
   EXPECT_EQ(picture.at(140, 140), (Rgba{255, 0, 0, 255}));
   EXPECT_EQ(picture.at(500, 10).a, 0);
+}
+
+TEST(ProgramTest, RendersWhatTheNameOfTheOutputSays) {
+  const std::string path = scratch_path("tile.webp");
+  Program program({"render", fixture("rings.geojson"), "--tile", "0/0/0", "--renderer", "software",
+                   "--output", path});
+  ASSERT_EQ(program.wait(), 0) << program.output();
+  const std::string bytes = read_file(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(bytes.substr(0, 4), "RIFF");
+  EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+}
+
+TEST(ProgramTest, PrintsTheTableOfParametersAndSaysSoInItsHelp) {
+  Program table({"parameters"});
+  EXPECT_EQ(table.wait(), 0);
+  EXPECT_THAT(table.output(), AllOf(HasSubstr("fill-opacity"), HasSubstr("|")));
+  Program help({"--help"});
+  EXPECT_EQ(help.wait(), 0);
+  EXPECT_THAT(help.output(), ::testing::ContainsRegex("\n  parameters +Print what a style"));
 }
 
 TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {

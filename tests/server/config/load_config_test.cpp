@@ -182,6 +182,8 @@ struct BadConfig {
 TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
   const BadConfig bad[] = {
       {"[server]\nprot = 1", ":2:1: ", "unknown key server.prot; allowed here are address, port"},
+      {"[server]\nprot = 1", ":2:1: ", "did you mean port?"},
+      {"sevrer = 1", ":1:1: ", "did you mean server?"},
       {"sevrer = 1", ":1:1: ",
        "unknown key sevrer; allowed here are server, limits, text, log, admin, styles, layer"},
       {"[server]\nport = 70000", ":2:8: ", "server.port takes an integer from 0 to 65535"},

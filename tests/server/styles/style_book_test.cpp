@@ -111,7 +111,7 @@ TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {
   for (const auto& [json, says] : std::vector<std::pair<std::string, std::string>>{
            {"", "not JSON"},
            {"[1]", "JSON object"},
-           {R"({"fil": 1})", "does not know \"fil\""},
+           {R"({"fil": 1})", "does not know \"fil\"; did you mean \"fill\"?"},
            {R"({"fill": true})", "fill takes a colour"},
            {R"({"fill": {"a": 1}})", "fill takes a colour"},
            {R"({"fill": "reddish"})", "fill takes a colour"},

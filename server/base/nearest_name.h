@@ -1,0 +1,20 @@
+// What somebody meant who mistyped a name.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trapeze {
+
+/// The name that the fewest slips lead to: a letter missing, added or changed, or two neighbours in
+/// each other's place. The first of equals; none if all would take more than a slip in three
+/// letters. Case does not count. Bytes are compared, which is enough for names of ours.
+std::optional<std::string> nearest_name(std::string_view mistyped,
+                                        const std::vector<std::string>& names);
+
+/// "; did you mean NAME?", or nothing if no name is near: the end of a sentence that refuses one.
+std::string did_you_mean(std::string_view mistyped, const std::vector<std::string>& names);
+
+}  // namespace trapeze
