@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/io/prepared/open_layer.h"
+#include "core/layer/layer_arrays.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
 
@@ -94,10 +95,16 @@ Problem damaged_layer(const ServedLayer& layer) {
 
 std::uint64_t revision_of(const Layer& layer) {
   ContentHash hash;
-  const MeshView& mesh = layer.mesh();
-  hash.add(mesh.vertices);
-  hash.add(mesh.edges);
-  hash.add(mesh.trapezoids);
+  const LayerArrays arrays = arrays_of(layer);
+  hash.add(arrays.vertices);
+  hash.add(arrays.edges);
+  hash.add(arrays.trapezoids);
+  hash.add(arrays.lifespans);
+  hash.add(arrays.feature_of);
+  hash.add(arrays.grains);
+  hash.add(arrays.outline_points);
+  hash.add(arrays.ring_ends);
+  hash.add(arrays.outline_ends);
   const FeatureTable& features = layer.features();
   for (const Field& field : features.fields()) hash.add(field.name);
   for (std::uint32_t row = 0; row < features.size(); ++row) {
@@ -143,7 +150,7 @@ Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
     hash.add(layer.config.name);
     hash.add(layer.revision);
   }
-  generation_ = fmt::format("{:016x}", hash.value());
+  generation_ = hash.hex();
 }
 
 std::optional<std::size_t> Dataset::find(std::string_view name) const {

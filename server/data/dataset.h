@@ -33,7 +33,8 @@ struct ServedLayer {
 /// 503: what is to be said of a layer that is not whole.
 Problem damaged_layer(const ServedLayer& layer);
 
-/// A hash of geometry and attributes: equal on every machine that loaded the same layer.
+/// A hash of geometry, attributes and which feature has which: equal on every machine that loaded
+/// the same layer.
 std::uint64_t revision_of(const Layer& layer);
 
 /// Thread-safety: immutable, any number of threads may read.
