@@ -18,7 +18,7 @@ std::string hash_of_executable() {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     hash.add(std::string_view(block.data(), static_cast<std::size_t>(file.gcount())));
   }
-  return fmt::format("{}-{:016x}", version(), hash.value());
+  return fmt::format("{}-{}", version(), hash.hex());
 }
 
 }  // namespace

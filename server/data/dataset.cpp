@@ -95,12 +95,15 @@ Problem damaged_layer(const ServedLayer& layer) {
 
 std::uint64_t revision_of(const Layer& layer) {
   ContentHash hash;
-  const MeshView& mesh = layer.mesh();
-  hash.add(mesh.vertices);
-  hash.add(mesh.edges);
-  hash.add(mesh.trapezoids);
   const LayerArrays arrays = arrays_of(layer);
+  hash.add(arrays.vertices);
+  hash.add(arrays.edges);
+  hash.add(arrays.trapezoids);
+  hash.add(arrays.lifespans);
   hash.add(arrays.feature_of);
+  hash.add(arrays.grains);
+  hash.add(arrays.outline_points);
+  hash.add(arrays.ring_ends);
   hash.add(arrays.outline_ends);
   const FeatureTable& features = layer.features();
   for (const Field& field : features.fields()) hash.add(field.name);
@@ -149,7 +152,7 @@ Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
     hash.add(layer.config.name);
     hash.add(layer.revision);
   }
-  generation_ = fmt::format("{:016x}", hash.value());
+  generation_ = hash.hex();
 }
 
 std::optional<std::size_t> Dataset::find(std::string_view name) const {

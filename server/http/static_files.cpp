@@ -57,7 +57,7 @@ StaticFile load_file(const fs::path& path) {
   std::string bytes = read_bytes(path);
   ContentHash hash;
   hash.add(bytes);
-  return {content_type_of(path.filename().string()), fmt::format("\"{:016x}\"", hash.value()),
+  return {content_type_of(path.filename().string()), fmt::format("\"{}\"", hash.hex()),
           std::make_shared<const std::string>(std::move(bytes))};
 }
 

@@ -105,7 +105,7 @@ HttpResponse fresh_document(const HttpRequest& request, Document made) {
   ContentHash hash;
   hash.add(made.content_type);
   hash.add(made.bytes);
-  return document(request, made.content_type, fmt::format("\"{:016x}\"", hash.value()),
+  return document(request, made.content_type, fmt::format("\"{}\"", hash.hex()),
                   std::make_shared<const std::string>(std::move(made.bytes)));
 }
 

@@ -83,7 +83,7 @@ std::string entity_tag_of(std::string_view key) {
   ContentHash hash;
   hash.add(build_id());
   hash.add(key);
-  return fmt::format("\"{:016x}\"", hash.value());
+  return fmt::format("\"{}\"", hash.hex());
 }
 
 double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {

@@ -16,8 +16,9 @@
 namespace trapeze {
 namespace {
 
-// To be raised when another polygon or attribute is read from the same source.
-constexpr std::uint64_t kReadingVersion = 1;
+// To be raised when another polygon or attribute is read from the same source, or when what was
+// read is given another revision.
+constexpr std::uint64_t kReadingVersion = 2;
 
 constexpr int kShapes = 12;
 constexpr int kVertices = 9;

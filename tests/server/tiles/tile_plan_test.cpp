@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/config/load_config.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -102,6 +103,30 @@ TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
   layers[0].name = "rings";  // the same name, other contents
   plan.dataset = Dataset::load(layers);
   EXPECT_NE(entity_tag_of(plan.key()), tag);
+}
+
+/// A meadow and a lake, each a ring of coordinates.
+std::string meadow_and_lake(const std::string& meadow, const std::string& lake) {
+  const auto feature = [](const std::string& kind, const std::string& ring) {
+    return R"({"type":"Feature","properties":{"kind":")" + kind +
+           R"("},"geometry":{"type":"Polygon","coordinates":[[)" + ring + "]]}}";
+  };
+  return R"({"type":"FeatureCollection","features":[)" + feature("meadow", meadow) + "," +
+         feature("lake", lake) + "]}";
+}
+
+TEST_F(TilePlanTest, FeaturesThatChangePlacesChangeTheTag) {
+  const std::string west = "[0,0],[9,0],[9,9],[0,9],[0,0]";
+  const std::string east = "[20,0],[29,0],[29,9],[20,9],[20,0]";
+  const TemporaryFolder folder;
+  const auto load = [&](const std::string& text) {
+    return Dataset::load(layers_of_files({folder.write("land.geojson", text)}));
+  };
+  const auto before = load(meadow_and_lake(west, east));
+  const auto after = load(meadow_and_lake(east, west));
+  EXPECT_NE(after->layers()[0].revision, before->layers()[0].revision);
+  EXPECT_NE(after->generation(), before->generation());
+  EXPECT_EQ(load(meadow_and_lake(west, east))->generation(), before->generation());
 }
 
 TEST_F(TilePlanTest, ToleranceIsAQuarterOfAnOutputPixel) {
