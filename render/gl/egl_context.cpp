@@ -143,12 +143,12 @@ class EglContext final : public GlContext {
   }
 
   std::unique_ptr<GlContext> create_shared() override {
-    return std::unique_ptr<GlContext>(new EglContext(*this));
+    return std::unique_ptr<GlContext>(new EglContext(this));
   }
 
  private:
-  EglContext(EglContext& other) : display_(other.display_), config_(other.config_) {
-    create(other.context_, other.info().candidate);
+  explicit EglContext(EglContext* other) : display_(other->display_), config_(other->config_) {
+    create(other->context_, other->info().candidate);
   }
 
   EGLConfig choose_config(const char* extensions) const {

@@ -23,6 +23,7 @@ std::vector<std::unique_ptr<CoverageRenderer>> renderers_of(std::unique_ptr<GlCo
     store = std::make_shared<GlMeshStore>(contexts.back()->gl());
   }
   std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+  renderers.reserve(contexts.size());
   for (auto& context : contexts) {
     renderers.push_back(std::make_unique<GlRenderer>(std::move(context), store));
   }
@@ -35,6 +36,7 @@ std::vector<std::unique_ptr<CoverageRenderer>> renderers_of(std::unique_ptr<GlCo
 void choose_llvmpipe_threads(int renderers) {
   constexpr int kFew = 4;
   if (renderers == 1) return;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): before there are threads that draw
   setenv("LP_NUM_THREADS", renderers <= kFew ? "0" : std::to_string(renderers).c_str(), 0);
 }
 

@@ -25,11 +25,11 @@ class OsmesaContext final : public GlContext {
   void release() noexcept override { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
 
   std::unique_ptr<GlContext> create_shared() override {
-    return std::unique_ptr<GlContext>(new OsmesaContext(*this));
+    return std::unique_ptr<GlContext>(new OsmesaContext(this));
   }
 
  private:
-  OsmesaContext(OsmesaContext& other) { create(other.context_, other.info().candidate); }
+  explicit OsmesaContext(OsmesaContext* other) { create(other->context_, other->info().candidate); }
 
   void create(OSMesaContext share, const ContextCandidate& candidate) {
     const std::array<int, 9> attributes{OSMESA_FORMAT,
