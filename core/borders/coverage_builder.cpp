@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -125,37 +126,92 @@ struct SetMap {
   }
 };
 
-/// The faces of the graph are sets: how much of the map each covers.
-std::vector<double> areas_of_sets(const TrapezoidalGraph& g, std::size_t count) {
-  std::vector<Int128> doubled(count, 0);
+/// What becomes of the features along an edge of a map of sets, each list in ascending order.
+struct Crossing {
+  std::vector<std::uint32_t> staying;  // on both of its sides
+  std::vector<std::uint32_t> left;     // on its left side only
+  std::vector<std::uint32_t> right;
+
+  void assign(const std::vector<std::uint32_t>& left_set,
+              const std::vector<std::uint32_t>& right_set) {
+    staying.clear();
+    left.clear();
+    right.clear();
+    std::ranges::set_intersection(left_set, right_set, std::back_inserter(staying));
+    std::ranges::set_difference(left_set, right_set, std::back_inserter(left));
+    std::ranges::set_difference(right_set, left_set, std::back_inserter(right));
+  }
+
+  /// The pairs of features that overlap on one of its sides and not on the other.
+  std::size_t pairs() const {
+    const auto on_side = [this](std::size_t n) { return n * staying.size() + n * (n - 1) / 2; };
+    return (left.empty() ? 0 : on_side(left.size())) + (right.empty() ? 0 : on_side(right.size()));
+  }
+};
+
+/// Sums up areas of features, and of pairs of them, from the edges of a map of sets: a strip of an
+/// edge counts for what lies on one of its sides only. Exact.
+class OverlapAreas {
+ public:
+  explicit OverlapAreas(std::size_t features) : doubled_(features, 0) {}
+
+  void add(const Crossing& crossing, Int128 doubled_strip) {
+    add_side(crossing.left, crossing.staying, doubled_strip);
+    add_side(crossing.right, crossing.staying, -doubled_strip);
+  }
+
+  void store(CoverageOutcome& outcome) const {
+    for (std::size_t i = 0; i < doubled_.size(); ++i) outcome.areas[i] = halved(doubled_[i]);
+    for (const auto& [pair, doubled] : doubled_overlaps_) {
+      if (doubled == 0) continue;  // side by side
+      outcome.overlaps.push_back({static_cast<std::uint32_t>(pair >> 32),
+                                  static_cast<std::uint32_t>(pair), halved(doubled)});
+    }
+    std::ranges::sort(outcome.overlaps, {}, [](const Overlap& overlap) {
+      return std::pair(overlap.lower, overlap.upper);
+    });
+  }
+
+ private:
+  static double halved(Int128 doubled) { return static_cast<double>(doubled) / 2; }
+
+  void add_side(const std::vector<std::uint32_t>& features,
+                const std::vector<std::uint32_t>& staying, Int128 doubled_strip) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      doubled_[features[i]] += doubled_strip;
+      for (const std::uint32_t other : staying) add_pair(features[i], other, doubled_strip);
+      for (std::size_t k = 0; k < i; ++k) add_pair(features[i], features[k], doubled_strip);
+    }
+  }
+
+  void add_pair(std::uint32_t a, std::uint32_t b, Int128 doubled_strip) {
+    doubled_overlaps_[std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)] += doubled_strip;
+  }
+
+  std::vector<Int128> doubled_;
+  std::unordered_map<std::uint64_t, Int128> doubled_overlaps_;
+};
+
+/// Areas and overlaps of the features whose map this is. False, and a failure in words, if more lie
+/// over each other than can be accounted for in a second or two.
+bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
+  constexpr std::size_t kMostPairs = std::size_t{1} << 24;
+  OverlapAreas areas(outcome.areas.size());
+  Crossing crossing;
+  std::size_t pairs = 0;
   for (std::size_t i = 0; i < g.edges().size(); ++i) {
     if (g.is_frame(EdgeId(i))) continue;
     const Edge& edge = g.edge(EdgeId(i));
-    const Int128 strip = doubled_strip(g, edge);
-    doubled[edge.face[kLeft]] += strip;
-    doubled[edge.face[kRight]] -= strip;
-  }
-  std::vector<double> areas;
-  for (const Int128 area : doubled) areas.push_back(static_cast<double>(area) / 2);
-  return areas;
-}
-
-void note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> overlaps;
-  const std::vector<double> areas = areas_of_sets(g, sets.size());
-  for (std::uint32_t number = 0; number < areas.size(); ++number) {
-    if (areas[number] == 0) continue;  // nowhere on the map
-    const std::vector<std::uint32_t>& set = sets[number];
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      outcome.areas[set[i]] += areas[number];
-      for (std::size_t k = i + 1; k < set.size(); ++k) {
-        overlaps[{set[i], set[k]}] += areas[number];
-      }
+    crossing.assign(sets[edge.face[kLeft]], sets[edge.face[kRight]]);
+    pairs += crossing.pairs();
+    if (pairs > kMostPairs) {
+      outcome.failure = "too many of its features lie over each other";
+      return false;
     }
+    areas.add(crossing, doubled_strip(g, edge));
   }
-  for (const auto& [pair, area] : overlaps) {
-    outcome.overlaps.push_back({pair.first, pair.second, area});
-  }
+  areas.store(outcome);
+  return true;
 }
 
 /// How many edges each feature has in common with a neighbour, which begins where it ends.
@@ -187,31 +243,32 @@ std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most)
 
 /// Without these, in ascending order, no two overlap. First go those that have the fewest edges in
 /// common with neighbours: an overseas region that is there a second time as a country, and not the
-/// motherland.
-std::vector<std::uint32_t> features_to_leave_out(std::vector<Overlap> overlaps,
+/// motherland. Of several, that with the most overlaps goes, and of these the last one.
+std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& overlaps,
                                                  const std::vector<std::size_t>& common_edges) {
+  std::vector<std::vector<std::uint32_t>> overlapping(common_edges.size());
+  for (const Overlap& overlap : overlaps) {
+    overlapping[overlap.lower].push_back(overlap.upper);
+    overlapping[overlap.upper].push_back(overlap.lower);
+  }
+  std::vector<std::size_t> count;  // of the overlaps with features that are still there
+  for (const auto& others : overlapping) count.push_back(others.size());
+  const auto goes_first = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(common_edges[a], count[b], b) < std::tuple(common_edges[b], count[a], a);
+  };
+  std::set<std::uint32_t, decltype(goes_first)> waiting(goes_first);
+  for (std::uint32_t i = 0; i < count.size(); ++i) {
+    if (count[i] > 0) waiting.insert(i);
+  }
   std::vector<std::uint32_t> apart;
-  std::vector<std::size_t> count(common_edges.size());
-  while (!overlaps.empty()) {
-    std::fill(count.begin(), count.end(), 0u);
-    for (const Overlap& overlap : overlaps) {
-      ++count[overlap.lower];
-      ++count[overlap.upper];
-    }
-    // Of several, that with the most overlaps, and of these the last one.
-    const auto goes_before = [&](std::uint32_t a, std::uint32_t b) {
-      return std::tuple(common_edges[a], count[b], b) < std::tuple(common_edges[b], count[a], a);
-    };
-    std::uint32_t worst = overlaps.front().lower;
-    for (const Overlap& overlap : overlaps) {
-      for (const std::uint32_t feature : {overlap.lower, overlap.upper}) {
-        if (goes_before(feature, worst)) worst = feature;
-      }
-    }
+  while (!waiting.empty()) {
+    const std::uint32_t worst = *waiting.begin();
+    waiting.erase(waiting.begin());
     apart.push_back(worst);
-    std::erase_if(overlaps, [worst](const Overlap& overlap) {
-      return overlap.lower == worst || overlap.upper == worst;
-    });
+    for (const std::uint32_t other : overlapping[worst]) {
+      // Its place among the others changes; those that went before are not there any more.
+      if (waiting.erase(other) > 0 && --count[other] > 0) waiting.insert(other);
+    }
   }
   std::sort(apart.begin(), apart.end());
   return apart;
@@ -329,7 +386,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     if (!map.sweep(boundary_, trapezoidation_, graph, outcome)) return outcome;
     outcome.areas.assign(features.size(), 0);
     outcome.overlaps.clear();
-    note_areas(graph, map.sets, outcome);
+    if (!note_areas(graph, map.sets, outcome)) return outcome;
     const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
     if (overlaps.empty()) break;
     const std::vector<std::uint32_t> apart = features_to_leave_out(

@@ -39,6 +39,14 @@ class Features {
 constexpr const char* kLeft10 = "0 0, 10 0, 10 10, 0 10";
 constexpr const char* kRight10 = "10 0, 20 0, 20 10, 10 10";
 
+std::string rectangle(int x, int y, int width, int height) {
+  const std::string left = std::to_string(x) + " ";
+  const std::string right = std::to_string(x + width) + " ";
+  const std::string top = std::to_string(y);
+  const std::string bottom = std::to_string(y + height);
+  return left + top + ", " + right + top + ", " + right + bottom + ", " + left + bottom;
+}
+
 TEST(CoverageGroups, ModesAreFoundByTheirNames) {
   for (const CoverageMode mode : {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
     EXPECT_EQ(coverage_from_name(name_of(mode)), mode);
@@ -100,6 +108,46 @@ TEST(CoverageGroups, ALittleOverlapIsNoReason) {
   const Assembly assembly = features.assembly(CoverageMode::automatic);
   EXPECT_THAT(assembly.together, ElementsAre(0, 1));
   EXPECT_EQ(assembly.outcome.overlaps.size(), 1u);
+}
+
+TEST(CoverageGroups, ParcelsThatAreThereTwiceCostOneOfEachPair) {
+  constexpr int kColumns = 60;
+  std::vector<std::string> texts;
+  for (int i = 0; i < 2 * kColumns * kColumns; ++i) {
+    texts.push_back(rectangle(i % kColumns * 10, i / kColumns % kColumns * 10, 10, 10));
+  }
+  Features features(texts);
+  const Assembly assembly = features.assembly(CoverageMode::automatic);
+  EXPECT_EQ(assembly.together.size(), std::size_t{kColumns * kColumns});
+  EXPECT_EQ(assembly.apart.size(), std::size_t{kColumns * kColumns});
+  EXPECT_EQ(assembly.outcome.shared_edges, std::size_t{2 * kColumns * (kColumns - 1)});
+}
+
+TEST(CoverageGroups, OverlapsOfAHeapOfFeaturesAreExact) {
+  // Rectangles from one corner, each over all the others, so that i and k overlap by the smaller
+  // height and width of both.
+  constexpr int kCount = 120;
+  std::vector<std::string> texts;
+  for (int i = 0; i < kCount; ++i) {
+    texts.push_back(rectangle(0, 0, 10 + i, 10 + kCount - i));
+  }
+  Features features(texts);
+  const Assembly assembly = features.assembly(CoverageMode::on);
+  ASSERT_EQ(assembly.outcome.overlaps.size(), std::size_t{kCount * (kCount - 1) / 2});
+  for (const Overlap& overlap : assembly.outcome.overlaps) {
+    EXPECT_EQ(overlap.area, (10.0 + overlap.lower) * (10.0 + kCount - overlap.upper));
+  }
+}
+
+TEST(CoverageGroups, TooManyOverEachOtherStayApartInWords) {
+  const std::vector<std::string> texts(6000, kLeft10);
+  Features features(texts);
+  for (const CoverageMode mode : {CoverageMode::on, CoverageMode::automatic}) {
+    const Assembly assembly = features.assembly(mode);
+    EXPECT_FALSE(assembly.outcome.built);
+    EXPECT_EQ(assembly.outcome.failure, "too many of its features lie over each other");
+    EXPECT_EQ(assembly.apart.size(), texts.size());
+  }
 }
 
 TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {
