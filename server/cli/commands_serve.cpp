@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -102,6 +103,8 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
 }
 
 int run_serve(const ServeArguments& arguments) {
+  // The server goes on when whoever reads its log goes away.
+  std::signal(SIGPIPE, SIG_IGN);
   const Config config = configure(arguments);
   if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
   spdlog::info("trapeze {} (build {})", version(), build_id());

@@ -164,6 +164,9 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void read();
   void await_first_byte();
   void read_request();
+  /// A client that waits for leave to send its body gets it (RFC 9110, section 10.1.1).
+  void ask_for_body();
+  void read_body();
   void on_read(const ErrorCode& error);
   void answer_unreadable(const ErrorCode& error);
   /// Whether it is the request line, and not the fields after it, that broke the limit.
@@ -243,14 +246,33 @@ void HttpServer::Connection::await_first_byte() {
 // The time runs on from the first byte, however slowly the others come.
 void HttpServer::Connection::read_request() {
   stream_.expires_after(state_.options().read_timeout);
-  http::async_read(stream_, buffer_, *parser_,
+  http::async_read_header(stream_, buffer_, *parser_,
+                          [self = shared_from_this()](const ErrorCode& error, std::size_t) {
+                            if (error || self->parser_->is_done()) return self->on_read(error);
+                            self->ask_for_body();
+                          });
+}
+
+void HttpServer::Connection::ask_for_body() {
+  const bool is_expected =
+      beast::iequals(parser_->get()[http::field::expect], "100-continue") && buffer_.size() == 0;
+  if (!is_expected) return read_body();
+  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  net::async_write(stream_, net::buffer(kContinue),
                    [self = shared_from_this()](const ErrorCode& error, std::size_t) {
-                     self->is_reading_ = false;
-                     self->on_read(error);
+                     if (error) return self->on_read(error);
+                     self->read_body();
                    });
 }
 
+void HttpServer::Connection::read_body() {
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](const ErrorCode& error, std::size_t) { self->on_read(error); });
+}
+
 void HttpServer::Connection::on_read(const ErrorCode& error) {
+  is_reading_ = false;
   begin_ = Clock::now();
   stream_.expires_never();
   if (error) return answer_unreadable(error);

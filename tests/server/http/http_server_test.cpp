@@ -127,6 +127,21 @@ TEST_F(HttpServerTest, OtherMethodsAreToldWhatIsAllowed) {
   EXPECT_EQ(client.receive().status, 204);
 }
 
+TEST_F(HttpServerTest, AClientThatAsksMaySendItsBody) {
+  start();
+  RawClient client(port());
+  const std::string header =
+      "POST /styles HTTP/1.1\r\nHost: a\r\nExpect: 100-continue\r\nContent-Length: ";
+  const std::string style = R"({"fill": "teal"})";
+  client.send(header + std::to_string(style.size()) + "\r\n\r\n");
+  EXPECT_EQ(client.receive(true).status, 100);
+  client.send(style);
+  EXPECT_EQ(client.receive().status, 201);
+  // Too much is refused before it is sent.
+  client.send(header + "100000\r\n\r\n");
+  EXPECT_EQ(client.receive().status, 413);
+}
+
 TEST_F(HttpServerTest, RefusesWhatIsTooLongAndSaysSo) {
   start();
   const std::string line = "GET /health HTTP/1.1\r\nHost: a\r\n";
