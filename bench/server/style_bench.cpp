@@ -81,8 +81,7 @@ std::string target_of(const TileId& tile, const std::string& query) {
 TilePlan plan_of(const std::string& target) {
   static const StyleBook styles;
   auto parsed = parse_tiles_target(target, styles);
-  return std::get<TilePlan>(
-      plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset()));
+  return *plan_tile(std::get<TileRequest>(*parsed), dataset());
 }
 
 void paint(benchmark::State& state, const std::string& query) {

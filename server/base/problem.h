@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 namespace trapeze {
 
@@ -27,9 +26,6 @@ struct Problem {
   std::string value;      // what it was set to, as received
   std::string takes;      // what it takes
 };
-
-template <typename T>
-using OrProblem = std::variant<T, Problem>;
 
 /// "Not Found" for 404. Never empty.
 std::string_view reason_phrase(int status);

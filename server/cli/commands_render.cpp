@@ -20,13 +20,14 @@ namespace {
 
 /// The value, or the problem thrown as a sentence for the command line.
 template <typename T>
-T value_or_throw(OrProblem<T> result) {
-  if (const auto* problem = std::get_if<Problem>(&result)) {
-    throw UsageError(problem->value.empty()
-                         ? problem->detail
-                         : fmt::format("{} Given was \"{}\".", problem->detail, problem->value));
+T value_or_throw(Result<T> result) {
+  if (!result) {
+    throw UsageError(
+        result.problem().value.empty()
+            ? result.problem().detail
+            : fmt::format("{} Given was \"{}\".", result.problem().detail, result.problem().value));
   }
-  return std::move(std::get<T>(result));
+  return *std::move(result);
 }
 
 TileId tile_of_text(const std::string& text) {

@@ -307,8 +307,8 @@ class ConfigReader {
   static std::optional<StyleQuery> make_style(const std::vector<QueryPair>& pairs,
                                               const Names& layers) {
     auto style = StyleQuery::parse(pairs, layers);
-    if (std::holds_alternative<Problem>(style)) return std::nullopt;
-    return std::move(std::get<StyleQuery>(style));
+    if (!style) return std::nullopt;
+    return *std::move(style);
   }
 
   StyleQuery read_layer_style(const toml::node& node) {
@@ -325,11 +325,11 @@ class ConfigReader {
   StyleQuery style_or_problem(const toml::node& node, const std::vector<QueryPair>& pairs,
                               const Names& layers) {
     auto style = StyleQuery::parse(pairs, layers);
-    if (const auto* problem = std::get_if<Problem>(&style)) {
-      fail(node, problem->detail);  // set twice, as fill_opacity and fill-opacity
+    if (!style) {
+      fail(node, style.problem().detail);  // set twice, as fill_opacity and fill-opacity
       return {};
     }
-    return std::move(std::get<StyleQuery>(style));
+    return *std::move(style);
   }
 
   void read_styles(const toml::node& node) {

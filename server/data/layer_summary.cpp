@@ -34,8 +34,7 @@ GeographicBounds LayerSummary::bounds() const {
   return box.is_empty() ? kWorldBounds : bounds_in_degrees(box);
 }
 
-OrProblem<LayerSummary> summarize_layers(std::span<const std::string> names,
-                                         const Dataset& dataset) {
+Result<LayerSummary> summarize_layers(std::span<const std::string> names, const Dataset& dataset) {
   LayerSummary summary;
   std::vector<std::string> titles;
   std::vector<std::string> descriptions;

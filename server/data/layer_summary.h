@@ -8,7 +8,7 @@
 
 #include "core/grid/grid.h"
 #include "core/grid/web_mercator.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/data/dataset.h"
 
 namespace trapeze {
@@ -37,8 +37,7 @@ struct LayerSummary {
 };
 
 /// The problem is 404 for a name that is not in the dataset.
-OrProblem<LayerSummary> summarize_layers(std::span<const std::string> names,
-                                         const Dataset& dataset);
+Result<LayerSummary> summarize_layers(std::span<const std::string> names, const Dataset& dataset);
 
 /// The problem to answer with for a layer name that is not in the dataset.
 Problem unknown_layer(const std::string& name, const Dataset& dataset);

@@ -125,11 +125,11 @@ std::string catalog_json(const Dataset& dataset, const std::string& renderer,
   return to_text(json);
 }
 
-OrProblem<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
-                                 const std::string& base_url) {
+Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
+                              const std::string& base_url) {
   const auto summarized = summarize_layers(request.layers, dataset);
-  if (const auto* problem = std::get_if<Problem>(&summarized)) return *problem;
-  const auto& summary = std::get<LayerSummary>(summarized);
+  if (!summarized) return summarized.problem();
+  const auto& summary = *summarized;
   Json json;
   json["tilejson"] = "3.0.0";
   json["name"] = summary.title;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/tiles/tile_request.h"
 
@@ -17,7 +17,7 @@ std::string catalog_json(const Dataset& dataset, const std::string& renderer,
 
 /// TileJSON 3.0 of the layers together, the style of the request in its tile URLs. The problem is
 /// 404 for an unknown layer.
-OrProblem<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
-                                 const std::string& base_url);
+Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dataset,
+                              const std::string& base_url);
 
 }  // namespace trapeze

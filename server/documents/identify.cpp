@@ -45,7 +45,7 @@ Point cell_of(LonLat place) {
   return {to_cell(position.x), to_cell(position.y)};
 }
 
-OrProblem<Point> parse_place(const std::string& text) {
+Result<Point> parse_place(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma != std::string::npos) {
     const std::string_view view = text;
@@ -59,7 +59,7 @@ OrProblem<Point> parse_place(const std::string& text) {
                  takes};
 }
 
-OrProblem<std::optional<double>> parse_zoom(const DocumentRequest& request) {
+Result<std::optional<double>> parse_zoom(const DocumentRequest& request) {
   const std::string* text = request.find("z");
   if (text == nullptr) return std::optional<double>();
   if (const auto zoom = parse_number(*text, 0, kMaxZoom)) return zoom;
@@ -67,20 +67,20 @@ OrProblem<std::optional<double>> parse_zoom(const DocumentRequest& request) {
   return Problem{400, fmt::format("The parameter z takes {}.", takes), "z", *text, takes};
 }
 
-OrProblem<IdentifyRequest> parse_request(const DocumentRequest& request) {
+Result<IdentifyRequest> parse_request(const DocumentRequest& request) {
   if (request.path.size() != 3) {
     return Problem{404, fmt::format("There is nothing here. Features are at {}.", kPattern)};
   }
   auto layers = parse_layer_list(request.path[1]);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  if (!layers) return std::move(layers).problem();
   auto place = parse_place(request.path[2]);
-  if (auto* problem = std::get_if<Problem>(&place)) return std::move(*problem);
+  if (!place) return std::move(place).problem();
   auto zoom = parse_zoom(request);
-  if (auto* problem = std::get_if<Problem>(&zoom)) return std::move(*problem);
-  IdentifyRequest parsed{std::move(std::get<0>(layers)), std::get<0>(place), std::get<0>(zoom), {}};
+  if (!zoom) return std::move(zoom).problem();
+  IdentifyRequest parsed{*std::move(layers), *place, *zoom, {}};
   auto style = StyleQuery::parse(request.query, parsed.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  parsed.style = std::move(std::get<0>(style));
+  if (!style) return std::move(style).problem();
+  parsed.style = *std::move(style);
   return parsed;
 }
 
@@ -123,24 +123,23 @@ Json feature_json(const ServedLayer& served, std::uint32_t row) {
 }
 
 /// The rows of the features that are found, or what is wrong with the style.
-OrProblem<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
-                                                const ServedLayer& served, std::size_t position) {
+Result<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
+                                             const ServedLayer& served, std::size_t position) {
   const auto style = layer_style(request.style, served, position);
-  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+  if (!style) return style.problem();
   if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
   auto rows = features_at(*served.layer, request.place, level_of(request, served.config));
-  const FeatureClassifier classifier(std::get<LayerStyle>(style).classing,
-                                     served.layer->features());
+  const FeatureClassifier classifier(style->classing, served.layer->features());
   std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });
   return rows;
 }
 
 }  // namespace
 
-OrProblem<Document> identify_document(const DocumentRequest& request) {
+Result<Document> identify_document(const DocumentRequest& request) {
   const auto parsed = parse_request(request);
-  if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-  const auto& identify = std::get<IdentifyRequest>(parsed);
+  if (!parsed) return parsed.problem();
+  const auto& identify = *parsed;
   Json features = Json::array();
   std::size_t matched = 0;
   for (auto name = identify.layers.rbegin(); name != identify.layers.rend(); ++name) {
@@ -149,8 +148,8 @@ OrProblem<Document> identify_document(const DocumentRequest& request) {
     const ServedLayer& served = request.dataset.layers()[*position];
     if (!served.is_whole()) return damaged_layer(served);
     const auto rows = find_rows(identify, served, *position);
-    if (const auto* problem = std::get_if<Problem>(&rows)) return *problem;
-    for (const std::uint32_t row : std::get<0>(rows)) {
+    if (!rows) return rows.problem();
+    for (const std::uint32_t row : *rows) {
       if (++matched <= kMaxIdentified) features.push_back(feature_json(served, row));
     }
   }

@@ -1,7 +1,7 @@
 // Which features lie under a place on the map, with their attributes as they stand in the source.
 #pragma once
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/documents/document.h"
 
 namespace trapeze {
@@ -12,6 +12,6 @@ constexpr std::size_t kMaxIdentified = 100;  // features in one answer
 /// those of the topmost layer first, each with its layer, source id, bounds and attributes, but
 /// without its geometry. With z, 0 to 24 and not only whole, by the polygons as they are drawn at
 /// that zoom, `simplify` included; without it by the true ones.
-OrProblem<Document> identify_document(const DocumentRequest& request);
+Result<Document> identify_document(const DocumentRequest& request);
 
 }  // namespace trapeze

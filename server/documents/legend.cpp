@@ -74,18 +74,18 @@ LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) 
   return legend;
 }
 
-OrProblem<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
-                                              const DocumentRequest& request) {
+Result<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
+                                           const DocumentRequest& request) {
   const auto query = StyleQuery::parse(request.query, layers);
-  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
+  if (!query) return query.problem();
   std::vector<LayerLegend> legend;
   for (auto name = layers.rbegin(); name != layers.rend(); ++name) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
     const ServedLayer& served = request.dataset.layers()[*position];
-    const auto style = layer_style(std::get<StyleQuery>(query), served, *position);
-    if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
-    legend.push_back(legend_of_layer(served.config, std::get<LayerStyle>(style)));
+    const auto style = layer_style(*query, served, *position);
+    if (!style) return style.problem();
+    legend.push_back(legend_of_layer(served.config, *style));
   }
   return legend;
 }
@@ -297,27 +297,27 @@ Picture draw_legend(const std::vector<LegendRow>& rows, const Fonts& fonts, int 
   return picture;
 }
 
-OrProblem<Document> legend_as_json(std::string_view file, const DocumentRequest& request) {
+Result<Document> legend_as_json(std::string_view file, const DocumentRequest& request) {
   file.remove_suffix(kJson.size());
   const auto layers = parse_layer_list(file);
-  if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
-  const auto legend = legend_of(std::get<0>(layers), request);
-  if (const auto* problem = std::get_if<Problem>(&legend)) return *problem;
-  return Document{"application/json", legend_json(std::get<0>(legend))};
+  if (!layers) return layers.problem();
+  const auto legend = legend_of(*layers, request);
+  if (!legend) return legend.problem();
+  return Document{"application/json", legend_json(*legend)};
 }
 
-OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& request) {
+Result<Document> legend_as_png(std::string_view file, const DocumentRequest& request) {
   const auto name = parse_picture_name(file);
-  if (const auto* problem = std::get_if<Problem>(&name)) return *problem;
-  if (std::get<PictureName>(name).format != TileFormat::png) {
+  if (!name) return name.problem();
+  if (name->format != TileFormat::png) {
     return Problem{400, "Legends are pictures in PNG, or JSON."};
   }
-  const auto layers = parse_layer_list(std::get<PictureName>(name).stem);
-  if (const auto* problem = std::get_if<Problem>(&layers)) return *problem;
-  const auto legend = legend_of(std::get<0>(layers), request);
-  if (const auto* problem = std::get_if<Problem>(&legend)) return *problem;
-  const std::vector<LegendRow> rows = rows_of(std::get<0>(legend));
-  const int scale = std::get<PictureName>(name).scale;
+  const auto layers = parse_layer_list(name->stem);
+  if (!layers) return layers.problem();
+  const auto legend = legend_of(*layers, request);
+  if (!legend) return legend.problem();
+  const std::vector<LegendRow> rows = rows_of(*legend);
+  const int scale = name->scale;
   if (height_of(rows) * scale > kMaxHeight) {
     return Problem{400,
                    fmt::format("A legend is at most {} pixels high: name fewer layers or classes, "
@@ -329,7 +329,7 @@ OrProblem<Document> legend_as_png(std::string_view file, const DocumentRequest& 
 
 }  // namespace
 
-OrProblem<Document> legend_document(const DocumentRequest& request) {
+Result<Document> legend_document(const DocumentRequest& request) {
   if (request.path.size() == 2) {
     const std::string& file = request.path[1];
     if (file.ends_with(kJson)) return legend_as_json(file, request);

@@ -1,7 +1,7 @@
 // What the colours of a map mean.
 #pragma once
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/documents/document.h"
 
 namespace trapeze {
@@ -10,6 +10,6 @@ namespace trapeze {
 /// the topmost first, its title and one entry for each way in which its polygons are drawn. The
 /// picture shows a small polygon for each, with pattern and outline as in the
 /// map, but no outline wider than 4 pixels.
-OrProblem<Document> legend_document(const DocumentRequest& request);
+Result<Document> legend_document(const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -66,20 +66,20 @@ struct TiledResource {
   std::string selection;            // "collections=a,b" if only some were asked for
 };
 
-OrProblem<TiledResource> tiled_collection(const std::string& name, const Dataset& dataset) {
+Result<TiledResource> tiled_collection(const std::string& name, const Dataset& dataset) {
   if (!dataset.find(name)) return unknown_layer(name, dataset);
   return TiledResource{"/collections/" + name, {name}, {}};
 }
 
-OrProblem<TiledResource> tiled_dataset(const DocumentRequest& request) {
+Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
   TiledResource resource;
   if (const std::string* selection = request.find("collections")) {
     auto layers = parse_layer_list(*selection);
-    if (auto* problem = std::get_if<Problem>(&layers)) {
-      problem->parameter = "collections";
-      return std::move(*problem);
+    if (!layers) {
+      layers.problem().parameter = "collections";
+      return std::move(layers).problem();
     }
-    resource.layers = std::move(std::get<0>(layers));
+    resource.layers = *std::move(layers);
     resource.selection = fmt::format("collections={}", fmt::join(resource.layers, ","));
     return resource;
   }
@@ -96,10 +96,10 @@ OrProblem<TiledResource> tiled_dataset(const DocumentRequest& request) {
 }
 
 /// What must follow the path of a link to keep the resource and its style.
-OrProblem<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
+Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
   const auto style = StyleQuery::parse(request.query, resource.layers);
-  if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
-  const std::string text = std::get<StyleQuery>(style).canonical_text();
+  if (!style) return style.problem();
+  const std::string text = style->canonical_text();
   std::string query = resource.selection;
   if (!query.empty() && !text.empty()) query += '&';
   query += text;
@@ -171,19 +171,18 @@ Json tileset_head(const LayerSummary& summary) {
           {"tileMatrixSetURI", kTileMatrixSetUri}};
 }
 
-OrProblem<Json> tilesets_json(const TiledResource& resource, const DocumentRequest& request) {
+Result<Json> tilesets_json(const TiledResource& resource, const DocumentRequest& request) {
   const auto summary = summarize_layers(resource.layers, request.dataset);
-  if (const auto* problem = std::get_if<Problem>(&summary)) return *problem;
+  if (!summary) return summary.problem();
   const auto query = query_of(resource, request);
-  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
+  if (!query) return query.problem();
   const std::string url = tiles_url(request, resource);
-  const std::string tileset_url =
-      fmt::format("{}/{}{}", url, kTileMatrixSet, std::get<std::string>(query));
-  Json tileset = tileset_head(std::get<LayerSummary>(summary));
+  const std::string tileset_url = fmt::format("{}/{}{}", url, kTileMatrixSet, *query);
+  Json tileset = tileset_head(*summary);
   tileset["links"] = Json::array(
       {link("self", kJsonType, "The tileset", tileset_url),
        link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request))});
-  const Json self = link("self", kJsonType, "This document", url + std::get<std::string>(query));
+  const Json self = link("self", kJsonType, "This document", url + *query);
   return Json{{"links", Json::array({self})}, {"tilesets", Json::array({tileset})}};
 }
 
@@ -207,25 +206,25 @@ Json limits_json(const LayerSummary& summary) {
   return limits;
 }
 
-OrProblem<Json> tileset_json(const TiledResource& resource, const std::string& matrix_set,
-                             const DocumentRequest& request) {
+Result<Json> tileset_json(const TiledResource& resource, const std::string& matrix_set,
+                          const DocumentRequest& request) {
   if (matrix_set != kTileMatrixSet) return unknown_matrix_set(matrix_set);
   const auto summarized = summarize_layers(resource.layers, request.dataset);
-  if (const auto* problem = std::get_if<Problem>(&summarized)) return *problem;
+  if (!summarized) return summarized.problem();
   const auto query = query_of(resource, request);
-  if (const auto* problem = std::get_if<Problem>(&query)) return *problem;
-  const auto& summary = std::get<LayerSummary>(summarized);
+  if (!query) return query.problem();
+  const auto& summary = *summarized;
   const std::string url = fmt::format("{}/{}", tiles_url(request, resource), kTileMatrixSet);
   Json json = tileset_head(summary);
   if (!summary.description.empty()) json["description"] = summary.description;
   if (!summary.attribution.empty()) json["attribution"] = summary.attribution;
   json["boundingBox"] = bounding_box(summary.bounds());
   json["tileMatrixSetLimits"] = limits_json(summary);
-  Json item = link("item", kPngType, "The tiles",
-                   url + "/{tileMatrix}/{tileRow}/{tileCol}" + std::get<std::string>(query));
+  Json item =
+      link("item", kPngType, "The tiles", url + "/{tileMatrix}/{tileRow}/{tileCol}" + *query);
   item["templated"] = true;
   json["links"] = Json::array(
-      {link("self", kJsonType, "This document", url + std::get<std::string>(query)),
+      {link("self", kJsonType, "This document", url + *query),
        link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request)), item});
   return json;
 }
@@ -290,8 +289,8 @@ std::span<const std::string> path_below_ogc(const DocumentRequest& request) {
 }
 
 /// The resource that a path of tiles begins with.
-OrProblem<TiledResource> tiled_resource(std::span<const std::string> path,
-                                        const DocumentRequest& request) {
+Result<TiledResource> tiled_resource(std::span<const std::string> path,
+                                     const DocumentRequest& request) {
   return path[0] == "collections" ? tiled_collection(path[1], request.dataset)
                                   : tiled_dataset(request);
 }
@@ -303,7 +302,7 @@ std::optional<Problem> check_format(const DocumentRequest& request, std::string_
                  std::string(format)};
 }
 
-OrProblem<Json> find_json(const DocumentRequest& request) {
+Result<Json> find_json(const DocumentRequest& request) {
   const auto path = path_below_ogc(request);
   if (is_path(path, {})) return landing_page(request);
   if (is_path(path, {"conformance"})) return Json{{"conformsTo", kConformance}};
@@ -324,40 +323,39 @@ OrProblem<Json> find_json(const DocumentRequest& request) {
                           is_path(path, {"collections", "*", "map", "tiles", "*"});
   if (!is_list && !is_tileset) return nothing_here();
   const auto resource = tiled_resource(path, request);
-  if (const auto* problem = std::get_if<Problem>(&resource)) return *problem;
-  return is_list ? tilesets_json(std::get<TiledResource>(resource), request)
-                 : tileset_json(std::get<TiledResource>(resource), path.back(), request);
+  if (!resource) return resource.problem();
+  return is_list ? tilesets_json(*resource, request)
+                 : tileset_json(*resource, path.back(), request);
 }
 
-OrProblem<TileRequest> tile_of(std::span<const std::string> path, const DocumentRequest& request) {
+Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentRequest& request) {
   if (auto problem = check_format(request, "png")) return std::move(*problem);
   auto resource = tiled_resource(path, request);
-  if (auto* problem = std::get_if<Problem>(&resource)) return std::move(*problem);
+  if (!resource) return std::move(resource).problem();
   const auto numbers = path.last(4);  // tile matrix set, tile matrix, row, column
   if (numbers[0] != kTileMatrixSet) return unknown_matrix_set(numbers[0]);
   const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2]);
-  if (const auto* problem = std::get_if<Problem>(&tile)) return *problem;
-  TileRequest parsed{
-      std::move(std::get<TiledResource>(resource).layers), std::get<TileId>(tile), 1, {}};
+  if (!tile) return tile.problem();
+  TileRequest parsed{std::move(resource->layers), *tile, 1, {}};
   auto style = StyleQuery::parse(request.query, parsed.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  parsed.style = std::move(std::get<StyleQuery>(style));
+  if (!style) return std::move(style).problem();
+  parsed.style = *std::move(style);
   return parsed;
 }
 
 }  // namespace
 
-OrProblem<Document> ogc_document(const DocumentRequest& request) {
+Result<Document> ogc_document(const DocumentRequest& request) {
   if (auto problem = check_format(request, "json")) return std::move(*problem);
   if (is_path(path_below_ogc(request), {"api"})) {
     return Document{std::string(kOpenApiType), openapi_json(request.base_url)};
   }
   const auto json = find_json(request);
-  if (const auto* problem = std::get_if<Problem>(&json)) return *problem;
-  return Document{std::string(kJsonType), to_text(std::get<Json>(json))};
+  if (!json) return json.problem();
+  return Document{std::string(kJsonType), to_text(*json)};
 }
 
-std::optional<OrProblem<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
+std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
   const auto path = path_below_ogc(request);
   const bool is_tile = is_path(path, {"map", "tiles", "*", "*", "*", "*"}) ||
                        is_path(path, {"collections", "*", "map", "tiles", "*", "*", "*", "*"});

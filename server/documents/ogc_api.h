@@ -4,16 +4,16 @@
 
 #include <optional>
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/documents/document.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
 
 /// Landing page, conformance, OpenAPI, collections, tilesets and tile matrix sets, all JSON.
-OrProblem<Document> ogc_document(const DocumentRequest& request);
+Result<Document> ogc_document(const DocumentRequest& request);
 
 /// The tile that a path below /ogc names; nothing if it names none.
-std::optional<OrProblem<TileRequest>> parse_ogc_tile(const DocumentRequest& request);
+std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -192,7 +192,7 @@ std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
                  std::string(value)};
 }
 
-OrProblem<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styles) {
+Result<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styles) {
   for (const auto& [key, value] :
        std::initializer_list<std::pair<std::string_view, std::string_view>>{
            {"service", "WMTS"},
@@ -202,23 +202,23 @@ OrProblem<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styl
     if (auto problem = check(pairs, key, value)) return std::move(*problem);
   }
   auto layers = parse_layer_list(pairs["layer"]);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  if (!layers) return std::move(layers).problem();
   const auto tile = parse_tile_id(pairs["tilematrix"], pairs["tilecol"], pairs["tilerow"]);
-  if (const auto* problem = std::get_if<Problem>(&tile)) return *problem;
-  TileRequest request{std::move(std::get<0>(layers)), std::get<TileId>(tile), 1, {}};
+  if (!tile) return tile.problem();
+  TileRequest request{*std::move(layers), *tile, 1, {}};
   std::vector<QueryPair> query = pairs.others;
   if (!pairs["style"].empty()) query.emplace_back("style", pairs["style"]);
   const auto expanded = styles.expand(std::move(query));
-  if (const auto* problem = std::get_if<Problem>(&expanded)) return *problem;
-  auto style = StyleQuery::parse(std::get<0>(expanded), request.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  request.style = std::move(std::get<StyleQuery>(style));
+  if (!expanded) return expanded.problem();
+  auto style = StyleQuery::parse(*expanded, request.layers);
+  if (!style) return std::move(style).problem();
+  request.style = *std::move(style);
   return request;
 }
 
 }  // namespace
 
-OrProblem<Document> wmts_document(const DocumentRequest& request) {
+Result<Document> wmts_document(const DocumentRequest& request) {
   if (request.path.size() != 1) {
     return Problem{404, "There is nothing here. The capabilities are at /wmts.xml."};
   }
@@ -233,7 +233,7 @@ OrProblem<Document> wmts_document(const DocumentRequest& request) {
   return Document{"application/xml", capabilities_xml(request)};
 }
 
-std::optional<OrProblem<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
+std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
   if (!is_key_value_path(request)) return std::nullopt;
   const KeyValuePairs pairs = divide(request.query);
   if (lower(pairs["request"]) != "gettile") return std::nullopt;

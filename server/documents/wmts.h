@@ -4,17 +4,17 @@
 
 #include <optional>
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/documents/document.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
 
 /// The capabilities, for /wmts.xml and for /wmts?request=GetCapabilities.
-OrProblem<Document> wmts_document(const DocumentRequest& request);
+Result<Document> wmts_document(const DocumentRequest& request);
 
 /// The tile of /wmts?request=GetTile&...; nothing if another request is made. Further pairs of the
 /// query style the tile. Keys may be written in either case.
-std::optional<OrProblem<TileRequest>> parse_wmts_tile(const DocumentRequest& request);
+std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -254,8 +254,9 @@ void HttpServer::Connection::read_request() {
 }
 
 void HttpServer::Connection::ask_for_body() {
-  const bool is_expected =
-      beast::iequals(parser_->get()[http::field::expect], "100-continue") && buffer_.size() == 0;
+  const auto& header = parser_->get();
+  const bool is_expected = header.version() >= 11 && buffer_.size() == 0 &&
+                           beast::iequals(header[http::field::expect], "100-continue");
   if (!is_expected) return read_body();
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
   net::async_write(stream_, net::buffer(kContinue),

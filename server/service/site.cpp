@@ -25,9 +25,9 @@ namespace trapeze {
 /// Documents, and perhaps tiles, whose path begins with the segment `first`.
 struct DocumentRoute {
   std::string_view first;
-  OrProblem<Document> (*make)(const DocumentRequest& request);
+  Result<Document> (*make)(const DocumentRequest& request);
   /// Nothing if no tile is asked for. Null if there are none here.
-  std::optional<OrProblem<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
+  std::optional<Result<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
 };
 
 namespace {
@@ -234,9 +234,8 @@ HttpResponse Site::answer_catalog(const HttpRequest& request) const {
   const auto dataset = data_.get();
   if (dataset == nullptr) return problem_response(still_loading());
   const auto base = base_url(request);
-  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
-  return json_document(request,
-                       catalog_json(*dataset, tiles_.renderer_name(), std::get<std::string>(base)));
+  if (!base) return problem_response(base.problem());
+  return json_document(request, catalog_json(*dataset, tiles_.renderer_name(), *base));
 }
 
 HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
@@ -244,10 +243,10 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
   const auto dataset = data_.get();
   if (dataset == nullptr) return problem_response(still_loading());
   const auto base = base_url(request);
-  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
-  auto json = tile_json(tiles, *dataset, std::get<std::string>(base));
-  if (const auto* problem = std::get_if<Problem>(&json)) return problem_response(*problem);
-  return json_document(request, std::move(std::get<std::string>(json)));
+  if (!base) return problem_response(base.problem());
+  auto json = tile_json(tiles, *dataset, *base);
+  if (!json) return problem_response(json.problem());
+  return json_document(request, *std::move(json));
 }
 
 // All names, or one style.
@@ -262,14 +261,14 @@ HttpResponse Site::answer_style(std::string_view path, const HttpRequest& reques
 
 HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   const auto base = base_url(request);
-  if (const auto* problem = std::get_if<Problem>(&base)) return problem_response(*problem);
+  if (!base) return problem_response(base.problem());
   auto style = parse_style_document(request.body);
-  if (const auto* problem = std::get_if<Problem>(&style)) return problem_response(*problem);
-  const std::string query = std::get<StyleQuery>(style).canonical_text();
-  const auto id = styles_->post(std::move(std::get<StyleQuery>(style)));
-  if (const auto* problem = std::get_if<Problem>(&id)) return problem_response(*problem);
-  const auto& name = std::get<std::string>(id);
-  const auto& root = std::get<std::string>(base);
+  if (!style) return problem_response(style.problem());
+  const std::string query = style->canonical_text();
+  const auto id = styles_->post(*std::move(style));
+  if (!id) return problem_response(id.problem());
+  const std::string& name = *id;
+  const std::string& root = *base;
   HttpResponse response;
   response.status = 201;
   response.headers = {{"Location", fmt::format("{}{}/{}", root, kStylesPath, name)},
@@ -298,10 +297,10 @@ HttpResponse Site::answer_file(const HttpRequest& request) const {
 
 void Site::handle_tiles(const HttpRequest& request, const Respond& respond) const {
   const auto parsed = parse_tiles_target(request.target, *styles_);
-  if (const auto* problem = std::get_if<Problem>(&parsed)) {
-    return respond(problem_response(*problem));
+  if (!parsed) {
+    return respond(problem_response(parsed.problem()));
   }
-  const auto& tiles = std::get<TilesRequest>(parsed);
+  const auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
     return respond(answer_tile_json(*tile_json, request));
   }
@@ -317,22 +316,21 @@ void Site::handle_document(const DocumentRoute& route, const HttpRequest& reques
   const auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
-  if (const auto* problem = std::get_if<Problem>(&base)) return respond(problem_response(*problem));
+  if (!base) return respond(problem_response(base.problem()));
   auto expanded = styles_->expand(std::move(*query));
-  if (const auto* problem = std::get_if<Problem>(&expanded)) {
-    return respond(problem_response(*problem));
+  if (!expanded) {
+    return respond(problem_response(expanded.problem()));
   }
-  const DocumentRequest asked{*dataset,         *styles_,
-                              *options_.fonts,  std::move(std::get<std::string>(base)),
-                              std::move(*path), std::move(std::get<0>(expanded))};
+  const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
+                              *std::move(base), std::move(*path), *std::move(expanded)};
   if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
-    const auto* problem = std::get_if<Problem>(&*tile);
-    return problem != nullptr ? respond(problem_response(*problem))
-                              : handle_tile(std::get<TileRequest>(*tile), request, respond);
+    const Result<TileRequest>& found = *tile;
+    return found ? handle_tile(*found, request, respond)
+                 : respond(problem_response(found.problem()));
   }
   auto made = route.make(asked);
-  if (const auto* problem = std::get_if<Problem>(&made)) return respond(problem_response(*problem));
-  respond(fresh_document(request, std::move(std::get<Document>(made))));
+  if (!made) return respond(problem_response(made.problem()));
+  respond(fresh_document(request, *std::move(made)));
 }
 
 std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
@@ -359,10 +357,10 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto planned = plan_tile(tile, std::move(dataset));
-  if (const auto* problem = std::get_if<Problem>(&planned)) {
-    return respond(problem_response(*problem));
+  if (!planned) {
+    return respond(problem_response(planned.problem()));
   }
-  auto& plan = std::get<TilePlan>(planned);
+  auto& plan = *planned;
   std::string key = plan.key();
   const std::string entity_tag = entity_tag_of(key);
   if (matches_entity_tag(request.if_none_match, entity_tag)) {
@@ -392,7 +390,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   tiles_.submit(std::move(plan), std::move(key), std::move(answer_with));
 }
 
-OrProblem<std::string> Site::base_url(const HttpRequest& request) const {
+Result<std::string> Site::base_url(const HttpRequest& request) const {
   if (!options_.public_url.empty()) return options_.public_url;
   if (!is_valid_host(request.host)) {
     return Problem{400,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "render/text/fonts.h"
+#include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/http/http_message.h"
 #include "server/http/rate_limit.h"
@@ -78,7 +79,7 @@ class Site {
   std::optional<Problem> find_excess(const TileRequest& tile) const;
   /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
   /// says nonsense.
-  OrProblem<std::string> base_url(const HttpRequest& request) const;
+  Result<std::string> base_url(const HttpRequest& request) const;
 
   const SiteOptions options_;
   const StaticFiles files_;

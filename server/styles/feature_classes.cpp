@@ -57,7 +57,7 @@ std::string Classing::key() const {
 FeatureClassifier::FeatureClassifier(const Classing& classing, const FeatureTable& features)
     : classing_(classing), features_(features) {
   if (classing.filter != nullptr) {
-    filter_ = std::get<BoundFilter>(BoundFilter::bind(*classing.filter, features));
+    filter_ = *BoundFilter::bind(*classing.filter, features);
   }
   for (std::size_t i = 0; i < classing.values.size(); ++i) {
     if (!classing.values[i]) continue;

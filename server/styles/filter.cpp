@@ -556,20 +556,20 @@ std::variant<std::shared_ptr<const Filter>, Filter::Mistake> Filter::parse(std::
   }
 }
 
-OrProblem<BoundFilter> BoundFilter::bind(const Filter& filter, const FeatureTable& features) {
+Result<BoundFilter> BoundFilter::bind(const Filter& filter, const FeatureTable& features) {
   auto root = bind_node(filter.root(), features);
-  if (auto* problem = std::get_if<Problem>(&root)) return std::move(*problem);
-  return BoundFilter(features, std::move(std::get<Node>(root)));
+  if (!root) return std::move(root).problem();
+  return BoundFilter(features, *std::move(root));
 }
 
-OrProblem<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,
-                                                    const FeatureTable& features) {
+Result<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,
+                                                 const FeatureTable& features) {
   Node bound;
   bound.source = &node;
   for (const FilterNode& operand : node.operands) {
     auto inner = bind_node(operand, features);
-    if (auto* problem = std::get_if<Problem>(&inner)) return std::move(*problem);
-    bound.operands.push_back(std::move(std::get<Node>(inner)));
+    if (!inner) return std::move(inner).problem();
+    bound.operands.push_back(*std::move(inner));
   }
   if (!node.operands.empty()) return bound;
   bound.field = features.field_index(node.property);

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/layer/feature_table.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 
 namespace trapeze {
 
@@ -76,7 +76,7 @@ class BoundFilter {
  public:
   /// The problem, 400, names a property that there is not, with those there are, or one that is
   /// compared with what it cannot be.
-  static OrProblem<BoundFilter> bind(const Filter& filter, const FeatureTable& features);
+  static Result<BoundFilter> bind(const Filter& filter, const FeatureTable& features);
 
   bool passes(std::uint32_t row) const;
 
@@ -92,7 +92,7 @@ class BoundFilter {
   BoundFilter(const FeatureTable& features, Node root)
       : features_(&features), root_(std::move(root)) {}
 
-  static OrProblem<Node> bind_node(const FilterNode& node, const FeatureTable& features);
+  static Result<Node> bind_node(const FilterNode& node, const FeatureTable& features);
   Truth evaluate(const Node& node, std::uint32_t row) const;
   Truth evaluate_all(const Node& node, std::uint32_t row) const;
   Truth evaluate_any(const Node& node, std::uint32_t row) const;

@@ -45,7 +45,7 @@ bool sets(const std::vector<QueryPair>& query, std::string_view name) {
 StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
     : named_(shared(std::move(named))), budget_(budget) {}
 
-OrProblem<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) const {
+Result<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
   if (asked == query.end()) return query;
@@ -73,7 +73,7 @@ Problem StyleBook::unknown(const std::string& name) const {
           "style", name, takes};
 }
 
-OrProblem<std::string> StyleBook::post(StyleQuery style) {
+Result<std::string> StyleBook::post(StyleQuery style) {
   constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
   const std::string text = style.canonical_text();
   if (text.size() > kMaxStyleLength) {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/styles/style_parameters.h"
 
@@ -30,11 +30,11 @@ class StyleBook {
 
   /// The query, and in place of its `style` what that style sets and the query does not. The
   /// problem, 400, is a style that there is not.
-  OrProblem<std::vector<QueryPair>> expand(std::vector<QueryPair> query) const;
+  Result<std::vector<QueryPair>> expand(std::vector<QueryPair> query) const;
 
   /// Keeps the style under an id made from what it says: equal styles have equal ids, on every
   /// server. The problem is a style that is too long.
-  OrProblem<std::string> post(StyleQuery style);
+  Result<std::string> post(StyleQuery style);
 
   /// Null if there is none of that name or id.
   std::shared_ptr<const StyleQuery> find(std::string_view name) const;

@@ -71,7 +71,7 @@ class DocumentReader {
     return std::nullopt;
   }
 
-  OrProblem<StyleQuery> finish() const { return StyleQuery::parse(pairs_, layers_); }
+  Result<StyleQuery> finish() const { return StyleQuery::parse(pairs_, layers_); }
 
  private:
   std::optional<Problem> read_member(const std::string& key, const Json& value,
@@ -138,7 +138,7 @@ class DocumentReader {
 
 }  // namespace
 
-OrProblem<StyleQuery> parse_style_document(std::string_view text) {
+Result<StyleQuery> parse_style_document(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) {
     return wrong(json.is_discarded() ? "The body is not JSON."

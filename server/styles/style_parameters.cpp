@@ -554,8 +554,8 @@ std::string describe_values(const StyleParameter& parameter) {
   return {};
 }
 
-OrProblem<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
-                                        std::span<const std::string> layers) {
+Result<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
+                                     std::span<const std::string> layers) {
   StyleQuery query;
   for (const QueryPair& pair : pairs) {
     const auto [layer, parameter] = resolve_name(pair.first, layers);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "render/picture/colour.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/styles/filter.h"
 
@@ -128,8 +128,8 @@ class StyleQuery {
 
   /// Names that are not in the table, or belong to a layer that is not in `layers`, are ignored.
   /// A parameter given twice, or set to what it does not take, is a problem.
-  static OrProblem<StyleQuery> parse(std::span<const QueryPair> pairs,
-                                     std::span<const std::string> layers);
+  static Result<StyleQuery> parse(std::span<const QueryPair> pairs,
+                                  std::span<const std::string> layers);
 
   std::span<const StyleSetting> settings() const { return settings_; }
   /// What holds for `layer`: its own setting, else the one for all layers, else null.

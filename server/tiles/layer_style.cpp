@@ -245,7 +245,7 @@ std::optional<Problem> make_selection(Making& making) {
   const auto* filter = making.settings.find<std::shared_ptr<const Filter>>(ParameterId::filter);
   if (filter == nullptr) return std::nullopt;
   const auto bound = BoundFilter::bind(**filter, making.features);
-  if (const auto* problem = std::get_if<Problem>(&bound)) return *problem;
+  if (!bound) return bound.problem();
   classing.filter = *filter;
   return std::nullopt;
 }
@@ -291,8 +291,8 @@ std::string LayerStyle::key() const {
   return text + fmt::format("{}", opacity);
 }
 
-OrProblem<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
-                                  std::size_t position) {
+Result<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
+                               std::size_t position) {
   const LayerConfig& config = served.config;
   if (auto problem = find_locked(query, config)) return std::move(*problem);
   const StyleQuery style = query.with_defaults(config.name, config.style);

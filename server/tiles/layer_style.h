@@ -10,7 +10,7 @@
 #include "render/coverage/stroke.h"
 #include "render/picture/colour.h"
 #include "render/picture/pattern.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/config/config.h"
 #include "server/data/dataset.h"
 #include "server/styles/feature_classes.h"
@@ -45,8 +45,8 @@ struct LayerStyle {
 
 /// `position` is that of the layer in the dataset. The problem, 400, is a parameter that does not
 /// fit the layer, contradicts another, or is locked.
-OrProblem<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
-                                  std::size_t position);
+Result<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
+                               std::size_t position);
 
 /// What fills the layer at `position` of the dataset if a request does not say.
 Rgba default_fill(const LayerConfig& config, std::size_t position);

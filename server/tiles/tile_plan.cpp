@@ -91,7 +91,7 @@ double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {
   return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
-OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
+Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
   TilePlan plan{dataset,       request.tile, request.scale,
                 kTransparent,  {},           debug_marks(request.style),
                 request.format};
@@ -104,14 +104,13 @@ OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const 
     if (!layer) return unknown_layer(name, *dataset);
     const ServedLayer& served = dataset->layers()[*layer];
     auto style = layer_style(request.style, served, *layer);
-    if (const auto* problem = std::get_if<Problem>(&style)) return *problem;
+    if (!style) return style.problem();
     const LayerConfig& config = served.config;
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
-    if (!std::get<LayerStyle>(style).is_visible() && !plan.debug.any()) continue;
+    if (!style->is_visible() && !plan.debug.any()) continue;
     const StyleQuery query = request.style.with_defaults(name, config.style);
-    plan.layers.push_back({*layer, std::get<LayerStyle>(std::move(style)),
-                           level_of_layer(request, query, name), topology_of_layer(query, name),
-                           small_of_layer(query, name)});
+    plan.layers.push_back({*layer, *std::move(style), level_of_layer(request, query, name),
+                           topology_of_layer(query, name), small_of_layer(query, name)});
   }
   return plan;
 }

@@ -12,7 +12,7 @@
 #include "core/grid/web_mercator.h"
 #include "core/layer/layer.h"
 #include "render/picture/colour.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_request.h"
@@ -69,7 +69,7 @@ struct TilePlan {
 std::string entity_tag_of(std::string_view key);
 
 /// The problem is 404 for a layer that is not in the dataset.
-OrProblem<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
 /// How far the drawn boundary of the layer may be from the true one. The query has the layer's own
 /// defaults in it.

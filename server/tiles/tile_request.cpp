@@ -37,33 +37,29 @@ std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
   return number;
 }
 
-OrProblem<TilesRequest> parse_tile(const std::vector<std::string>& path,
-                                   std::span<const QueryPair> query) {
+Result<TilesRequest> parse_tile(const std::vector<std::string>& path,
+                                std::span<const QueryPair> query) {
   auto layers = parse_layer_list(path[1]);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
+  if (!layers) return std::move(layers).problem();
   auto file = parse_picture_name(path[4]);
-  if (auto* problem = std::get_if<Problem>(&file)) return std::move(*problem);
-  auto tile = parse_tile_id(path[2], path[3], std::get<PictureName>(file).stem);
-  if (auto* problem = std::get_if<Problem>(&tile)) return std::move(*problem);
-  TileRequest request{std::move(std::get<0>(layers)),
-                      std::get<TileId>(tile),
-                      std::get<PictureName>(file).scale,
-                      {},
-                      std::get<PictureName>(file).format};
+  if (!file) return std::move(file).problem();
+  auto tile = parse_tile_id(path[2], path[3], file->stem);
+  if (!tile) return std::move(tile).problem();
+  TileRequest request{*std::move(layers), *tile, file->scale, {}, file->format};
   auto style = StyleQuery::parse(query, request.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  request.style = std::move(std::get<StyleQuery>(style));
+  if (!style) return std::move(style).problem();
+  request.style = *std::move(style);
   return TilesRequest(std::move(request));
 }
 
-OrProblem<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
+Result<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
   file.remove_suffix(kJson.size());
   auto layers = parse_layer_list(file);
-  if (auto* problem = std::get_if<Problem>(&layers)) return std::move(*problem);
-  TileJsonRequest request{std::move(std::get<0>(layers)), {}};
+  if (!layers) return std::move(layers).problem();
+  TileJsonRequest request{*std::move(layers), {}};
   auto style = StyleQuery::parse(query, request.layers);
-  if (auto* problem = std::get_if<Problem>(&style)) return std::move(*problem);
-  request.style = std::move(std::get<StyleQuery>(style));
+  if (!style) return std::move(style).problem();
+  request.style = *std::move(style);
   return TilesRequest(std::move(request));
 }
 
@@ -79,7 +75,7 @@ std::string_view content_type_of(TileFormat format) {
   return format == TileFormat::webp ? "image/webp" : "image/png";
 }
 
-OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
+Result<std::vector<std::string>> parse_layer_list(std::string_view list) {
   std::vector<std::string> layers;
   while (true) {
     const std::size_t comma = std::min(list.find(','), list.size());
@@ -99,7 +95,7 @@ OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list) {
   }
 }
 
-OrProblem<PictureName> parse_picture_name(std::string_view name) {
+Result<PictureName> parse_picture_name(std::string_view name) {
   const bool is_webp = name.ends_with(kWebp);
   if (!is_webp && !name.ends_with(kPng)) {
     return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", kTilePattern)};
@@ -122,7 +118,7 @@ OrProblem<PictureName> parse_picture_name(std::string_view name) {
   return PictureName{name.substr(0, at), suffix[0] - '0', format};
 }
 
-OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
+Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
   for (const std::string_view number : {z, x, y}) {
     if (is_integer(number)) continue;
     return Problem{400,
@@ -147,7 +143,7 @@ Problem malformed_target() {
           "are not allowed."};
 }
 
-OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles) {
+Result<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles) {
   if (target.size() > kMaxTargetLength) {
     return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
   }
@@ -160,13 +156,13 @@ OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleB
   const bool has_style = path->size() == 7 && (*path)[2] == "s";
   if (has_style) take_style(*path, *query);
   auto expanded = styles.expand(std::move(*query));
-  if (auto* problem = std::get_if<Problem>(&expanded)) {
-    if (has_style) problem->status = 404;
-    return std::move(*problem);
+  if (!expanded) {
+    if (has_style) expanded.problem().status = 404;
+    return std::move(expanded).problem();
   }
-  if (path->size() == 5) return parse_tile(*path, std::get<0>(expanded));
+  if (path->size() == 5) return parse_tile(*path, *expanded);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
-    return parse_tile_json(path->back(), std::get<0>(expanded));
+    return parse_tile_json(path->back(), *expanded);
   }
   return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
                                   "/tiles/{{layers}}.json.",

@@ -8,7 +8,7 @@
 
 #include "core/grid/web_mercator.h"
 #include "server/base/limits.h"
-#include "server/base/problem.h"
+#include "server/base/result.h"
 #include "server/styles/style_book.h"
 #include "server/styles/style_parameters.h"
 
@@ -41,10 +41,10 @@ Problem malformed_target();
 /// Parses a target, path and query, that begins with /tiles/, and puts in place what its style
 /// says. The problem is 400 for what is malformed, 404 for a tile outside of the matrix or a style
 /// in the path that there is not, and 414 for a target that is too long.
-OrProblem<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles);
+Result<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles);
 
 /// Parses names separated by commas; each is taken once, bottom first.
-OrProblem<std::vector<std::string>> parse_layer_list(std::string_view list);
+Result<std::vector<std::string>> parse_layer_list(std::string_view list);
 
 /// The name of a picture, in parts. Looks at the text it was parsed from.
 struct PictureName {
@@ -52,9 +52,9 @@ struct PictureName {
   int scale = 1;
   TileFormat format = TileFormat::png;
 };
-OrProblem<PictureName> parse_picture_name(std::string_view name);
+Result<PictureName> parse_picture_name(std::string_view name);
 
 /// Parses the z, x, y of a tile written as "Z/X/Y".
-OrProblem<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);
+Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);
 
 }  // namespace trapeze

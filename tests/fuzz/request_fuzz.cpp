@@ -44,9 +44,9 @@ struct Input {
 
 /// A style of the configuration with something for one layer, as `style=night`.
 const StyleBook& styles() {
-  static const StyleBook book({{"night", std::get<StyleQuery>(parse_style_document(
+  static const StyleBook book({{"night", *parse_style_document(
                                              R"({"fill": "navy", "land.stroke": "#fff8",
-            "color-by": "rank", "breaks": [2, 5], "ramp": "Blues"})"))}});
+            "color-by": "rank", "breaks": [2, 5], "ramp": "Blues"})")}});
   return book;
 }
 
@@ -107,25 +107,25 @@ std::string canonical_target(const TileJsonRequest& request) {
 
 void check_plan(const TileRequest& request, const TileRequest& again) {
   const auto plan = plan_tile(request, layers());
-  if (const auto* problem = std::get_if<Problem>(&plan)) return check_problem(*problem);
+  if (!plan) return check_problem(plan.problem());
   const auto plan_again = plan_tile(again, layers());
-  require(std::holds_alternative<TilePlan>(plan_again), "the canonical target has no plan");
-  const std::string key = std::get<TilePlan>(plan).key();
-  require(key == std::get<TilePlan>(plan_again).key(), "the canonical target is another tile");
+  require(static_cast<bool>(plan_again), "the canonical target has no plan");
+  const std::string key = plan->key();
+  require(key == plan_again->key(), "the canonical target is another tile");
   require(matches_entity_tag(entity_tag_of(key), entity_tag_of(key)), "a tag is not itself");
 }
 
 void check_tiles(const std::string& target) {
   const auto parsed = parse_tiles_target(target, styles());
-  if (const auto* problem = std::get_if<Problem>(&parsed)) return check_problem(*problem);
-  const auto& request = std::get<TilesRequest>(parsed);
+  if (!parsed) return check_problem(parsed.problem());
+  const auto& request = *parsed;
   const std::string canonical =
       std::visit([](const auto& tiles) { return canonical_target(tiles); }, request);
   // Written in full it may be longer than any target can be.
   if (canonical.size() > kMaxTargetLength) return;
   const auto parsed_again = parse_tiles_target(canonical, styles());
-  require(std::holds_alternative<TilesRequest>(parsed_again), "a canonical target is refused");
-  const auto& again = std::get<TilesRequest>(parsed_again);
+  require(static_cast<bool>(parsed_again), "a canonical target is refused");
+  const auto& again = *parsed_again;
   require(std::visit([](const auto& tiles) { return canonical_target(tiles); }, again) == canonical,
           "a canonical target has another canonical target");
   if (const auto* tile = std::get_if<TileRequest>(&request)) {

@@ -61,8 +61,8 @@ class FuzzedSite {
     options.metrics = [] { return std::string("up 1\n"); };
     options.max_scale = 2;
     options.styles.emplace(
-        "night", std::get<StyleQuery>(parse_style_document(
-                     R"({"background": "black", "fill": "navy", "water.pattern": "hatch"})")));
+        "night", *parse_style_document(
+                     R"({"background": "black", "fill": "navy", "water.pattern": "hatch"})"));
     return options;
   }
 

@@ -49,9 +49,9 @@ class Comparison {
         fmt::format("/tiles/{}/{}/{}/{}.png?{}", built_->layers()[0].config.name, tile.z, tile.x,
                     tile.y, query);
     const auto parsed = parse_tiles_target(target, StyleBook());
-    const auto& request = std::get<TileRequest>(std::get<TilesRequest>(parsed));
-    const TilePlan built = std::get<TilePlan>(plan_tile(request, built_));
-    const TilePlan prepared = std::get<TilePlan>(plan_tile(request, prepared_));
+    const auto& request = std::get<TileRequest>(*parsed);
+    const TilePlan built = *plan_tile(request, built_);
+    const TilePlan prepared = *plan_tile(request, prepared_);
     EXPECT_EQ(prepared.key(), built.key()) << "the entity tag is a hash of it: " << target;
     EXPECT_EQ(*paint(prepared).bytes, *paint(built).bytes) << target;
   }

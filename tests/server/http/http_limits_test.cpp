@@ -276,6 +276,7 @@ TEST(HostileRequestsTest, TenThousandHarmNobody) {
     client.end_sending();
     for (const int status : statuses_in(client.receive_all())) {
       ++counts[status];
+      if (status == 100) continue;  // it may send its body
       EXPECT_TRUE(status >= 200 && status < 500)
           << status << ": seed " << seed << ", request " << i << ": " << requests[i].substr(0, 500);
     }

@@ -29,7 +29,7 @@ std::string fixture(const std::string& name) {
 }
 
 StyleQuery style_of(const std::string& query) {
-  return std::get<StyleQuery>(StyleQuery::parse(decode_query(query).value(), {}));
+  return *StyleQuery::parse(decode_query(query).value(), {});
 }
 
 std::shared_ptr<const Dataset> sample_dataset() {

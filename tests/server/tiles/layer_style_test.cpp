@@ -42,23 +42,23 @@ ServedLayer towns() {
 
 class LayerStyleTest : public ::testing::Test {
  protected:
-  OrProblem<LayerStyle> resolve(std::string_view query) {
+  Result<LayerStyle> resolve(std::string_view query) {
     const std::vector<std::string> layers = {"towns", "lakes"};
     const auto parsed = StyleQuery::parse(decode_query(query).value(), layers);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    return layer_style(std::get<StyleQuery>(parsed), served_, 0);
+    if (!parsed) return parsed.problem();
+    return layer_style(*parsed, served_, 0);
   }
   LayerStyle style(std::string_view query) {
     auto resolved = resolve(query);
-    if (auto* problem = std::get_if<Problem>(&resolved)) {
-      ADD_FAILURE() << query << ": " << problem->detail;
+    if (!resolved) {
+      ADD_FAILURE() << query << ": " << resolved.problem().detail;
       return {};
     }
-    return std::move(std::get<LayerStyle>(resolved));
+    return *std::move(resolved);
   }
   Problem problem(std::string_view query) {
     auto resolved = resolve(query);
-    if (auto* problem = std::get_if<Problem>(&resolved)) return std::move(*problem);
+    if (!resolved) return std::move(resolved).problem();
     ADD_FAILURE() << query << " was taken";
     return {0, ""};
   }
@@ -189,7 +189,7 @@ TEST_F(LayerStyleTest, AKeyTakesMicroseconds) {
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < kRuns; ++i) {
     const auto parsed = StyleQuery::parse(pairs, layers);
-    bytes += std::get<StyleQuery>(parsed).canonical_text().size();
+    bytes += parsed->canonical_text().size();
   }
   const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(bytes % kRuns, 0u);

@@ -30,8 +30,8 @@ class TilePlanTest : public ::testing::Test {
  protected:
   TilePlan plan(const std::string& target) const {
     const auto parsed = parse_tiles_target("/tiles/" + target, StyleBook());
-    auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
-    return std::get<TilePlan>(planned);
+    auto planned = plan_tile(std::get<TileRequest>(*parsed), dataset_);
+    return *planned;
   }
   std::string tag(const std::string& target) const { return entity_tag_of(plan(target).key()); }
   /// The level of the default tolerance in tiles of 256 pixels.
@@ -65,8 +65,8 @@ TEST_F(TilePlanTest, LeavesOutLayersThatCannotBeSeen) {
 
 TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
   const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png", StyleBook());
-  const auto planned = plan_tile(std::get<TileRequest>(std::get<TilesRequest>(parsed)), dataset_);
-  const auto& problem = std::get<Problem>(planned);
+  const auto planned = plan_tile(std::get<TileRequest>(*parsed), dataset_);
+  const auto& problem = planned.problem();
   EXPECT_EQ(problem.status, 404);
   EXPECT_EQ(problem.value, "nosuch");
 }

@@ -11,17 +11,16 @@ using ::testing::ElementsAre;
 
 TileRequest tile_of(const std::string& target) {
   auto parsed = parse_tiles_target(target, StyleBook());
-  if (const auto* problem = std::get_if<Problem>(&parsed)) {
-    ADD_FAILURE() << target << ": " << problem->detail;
+  if (!parsed) {
+    ADD_FAILURE() << target << ": " << parsed.problem().detail;
     return {};
   }
-  return std::get<TileRequest>(std::get<TilesRequest>(parsed));
+  return std::get<TileRequest>(*parsed);
 }
 
 int status_of(const std::string& target) {
   const auto parsed = parse_tiles_target(target, StyleBook());
-  const auto* problem = std::get_if<Problem>(&parsed);
-  return problem == nullptr ? 200 : problem->status;
+  return parsed ? 200 : parsed.problem().status;
 }
 
 TEST(TileRequestTest, ReadsLayersTileAndScale) {
@@ -39,7 +38,7 @@ TEST(TileRequestTest, NamesEachLayerOnceInTheOrderOfFirstMention) {
 
 TEST(TileRequestTest, ReadsTheDescriptionOfTiles) {
   const auto parsed = parse_tiles_target("/tiles/a,b.json?b.fill=red", StyleBook());
-  const auto& request = std::get<TileJsonRequest>(std::get<TilesRequest>(parsed));
+  const auto& request = std::get<TileJsonRequest>(*parsed);
   EXPECT_THAT(request.layers, ElementsAre("a", "b"));
   EXPECT_EQ(request.style.canonical_text(), "b.fill=ff0000ff");
 }
