@@ -1,5 +1,8 @@
 #include "server/base/problem.h"
 
+#include <boost/beast/http/status.hpp>
+#include <string_view>
+
 #include "server/base/json_text.h"
 
 namespace trapeze {
@@ -14,45 +17,12 @@ std::string cut(const std::string& text) {
 
 }  // namespace
 
-std::string_view reason_phrase(int status) {
-  switch (status) {
-    case 200:
-      return "OK";
-    case 204:
-      return "No Content";
-    case 304:
-      return "Not Modified";
-    case 400:
-      return "Bad Request";
-    case 404:
-      return "Not Found";
-    case 405:
-      return "Method Not Allowed";
-    case 408:
-      return "Request Timeout";
-    case 413:
-      return "Payload Too Large";
-    case 414:
-      return "URI Too Long";
-    case 429:
-      return "Too Many Requests";
-    case 431:
-      return "Request Header Fields Too Large";
-    case 500:
-      return "Internal Server Error";
-    case 503:
-      return "Service Unavailable";
-    case 504:
-      return "Gateway Timeout";
-    default:
-      return "Unknown";
-  }
-}
-
 std::string problem_json(const Problem& problem) {
   Json body;
   body["type"] = "about:blank";
-  body["title"] = reason_phrase(problem.status);
+  const auto reason = boost::beast::http::obsolete_reason(
+      boost::beast::http::int_to_status(static_cast<unsigned>(problem.status)));
+  body["title"] = std::string_view(reason.data(), reason.size());
   body["status"] = problem.status;
   body["detail"] = problem.detail;
   if (!problem.parameter.empty()) {

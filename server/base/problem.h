@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace trapeze {
@@ -26,9 +25,6 @@ struct Problem {
   std::string value;      // what it was set to, as received
   std::string takes;      // what it takes
 };
-
-/// "Not Found" for 404. Never empty.
-std::string_view reason_phrase(int status);
 
 /// The JSON text. Bytes of the request are echoed escaped, cut to 64 bytes, and with invalid UTF-8
 /// replaced.

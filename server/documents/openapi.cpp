@@ -267,7 +267,8 @@ Json post_style_json() {
                {"summary", "Keep a style; the id is the same for equal styles"},
                {"requestBody", std::move(body)}};
   post["responses"] = {{"201", response("The id of the style", "application/json")},
-                       {"400", problem}};
+                       {"400", problem},
+                       {"403", problem}};
   return post;
 }
 

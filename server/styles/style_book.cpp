@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "server/base/content_hash.h"
+#include "server/base/digest.h"
 
 namespace trapeze {
 namespace {
@@ -43,7 +43,7 @@ bool sets(const std::vector<QueryPair>& query, std::string_view name) {
 }  // namespace
 
 StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
-    : named_(shared(std::move(named))), budget_(budget) {}
+    : named_(shared(std::move(named))), posted_(budget) {}
 
 Result<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
@@ -81,36 +81,24 @@ Result<std::string> StyleBook::post(StyleQuery style) {
                                     "one has {}.",
                                     kMaxStyleLength, text.size())};
   }
-  ContentHash hash;
-  hash.add(text);
-  std::string id = fmt::format("{:016x}", hash.value());
-  const std::lock_guard lock(mutex_);
-  if (const auto found = by_id_.find(id); found != by_id_.end()) {
-    if (found->second->style->canonical_text() != text) {
-      return Problem{409, "Another style has the same id. Change anything in this one."};
-    }
-    posted_.splice(posted_.begin(), posted_, found->second);
-    return id;
-  }
   const std::size_t bytes = kOverhead + 4 * text.size();
-  while (!posted_.empty() && bytes_ + bytes > budget_) {
-    bytes_ -= posted_.back().bytes;
-    by_id_.erase(posted_.back().id);
-    posted_.pop_back();
+  const std::lock_guard lock(mutex_);
+  if (bytes > posted_.budget()) {
+    return Problem{403,
+                   "This server keeps no styles that are posted, or none as long as this one."};
   }
-  posted_.push_front({id, std::make_shared<const StyleQuery>(std::move(style)), bytes});
-  by_id_.emplace(id, posted_.begin());
-  bytes_ += bytes;
+  std::string id = digest_of(text);
+  if (posted_.find(id) == nullptr) {
+    posted_.insert(id, std::make_shared<const StyleQuery>(std::move(style)), bytes);
+  }
   return id;
 }
 
 std::shared_ptr<const StyleQuery> StyleBook::find(std::string_view name) const {
   if (const auto named = named_.find(name); named != named_.end()) return named->second;
   const std::lock_guard lock(mutex_);
-  const auto found = by_id_.find(std::string(name));
-  if (found == by_id_.end()) return nullptr;
-  posted_.splice(posted_.begin(), posted_, found->second);
-  return found->second->style;
+  const auto* style = posted_.find(std::string(name));
+  return style == nullptr ? nullptr : *style;
 }
 
 std::vector<std::string> StyleBook::names() const {
@@ -121,7 +109,7 @@ std::vector<std::string> StyleBook::names() const {
 
 std::size_t StyleBook::memory() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
+  return posted_.bytes();
 }
 
 }  // namespace trapeze

@@ -4,17 +4,16 @@
 #pragma once
 
 #include <cstddef>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "server/base/lru_map.h"
 #include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/styles/style_parameters.h"
@@ -33,7 +32,7 @@ class StyleBook {
   Result<std::vector<QueryPair>> expand(std::vector<QueryPair> query) const;
 
   /// Keeps the style under an id made from what it says: equal styles have equal ids, on every
-  /// server. The problem is a style that is too long.
+  /// server. The problem is a style that is too long, or larger than the budget.
   Result<std::string> post(StyleQuery style);
 
   /// Null if there is none of that name or id.
@@ -50,21 +49,11 @@ class StyleBook {
   static constexpr std::size_t kMaxStyleLength = 2048;
 
  private:
-  struct Posted {
-    std::string id;
-    std::shared_ptr<const StyleQuery> style;
-    std::size_t bytes;
-  };
-  using PostedList = std::list<Posted>;
-
   Problem unknown(const std::string& name) const;
 
   const std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> named_;
-  const std::size_t budget_;
-  mutable std::mutex mutex_;   // guards all below
-  mutable PostedList posted_;  // the last used first
-  std::unordered_map<std::string, PostedList::iterator> by_id_;
-  std::size_t bytes_ = 0;
+  mutable std::mutex mutex_;                                               // guards posted_
+  mutable LruMap<std::string, std::shared_ptr<const StyleQuery>> posted_;  // by id
 };
 
 }  // namespace trapeze

@@ -80,22 +80,11 @@ std::vector<LoopEdge> measure(const Layer& layer, Level level, std::uint32_t row
 const std::vector<LoopEdge>& LoopLengthCache::find(const Layer& layer, Level level,
                                                    std::uint32_t row) {
   const Key key{layer.mesh().id, row, level};
-  if (const auto found = by_key_.find(key); found != by_key_.end()) {
-    entries_.splice(entries_.begin(), entries_, found->second);
-    return entries_.front().edges;
-  }
-  entries_.push_front({key, measure(layer, level, row)});
-  by_key_.emplace(key, entries_.begin());
-  const auto bytes_of = [](const Entry& entry) {
-    return sizeof(Entry) + entry.edges.size() * sizeof(LoopEdge);
-  };
-  bytes_ += bytes_of(entries_.front());
-  while (bytes_ > budget_ && entries_.size() > 1) {
-    bytes_ -= bytes_of(entries_.back());
-    by_key_.erase(entries_.back().key);
-    entries_.pop_back();
-  }
-  return entries_.front().edges;
+  if (const auto* edges = outlines_.find(key)) return *edges;
+  constexpr std::size_t kOverhead = 128;  // of an entry, about
+  std::vector<LoopEdge> edges = measure(layer, level, row);
+  const std::size_t bytes = kOverhead + edges.size() * sizeof(LoopEdge);
+  return outlines_.insert(key, std::move(edges), bytes);
 }
 
 }  // namespace trapeze

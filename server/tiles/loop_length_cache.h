@@ -5,19 +5,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <list>
-#include <unordered_map>
 #include <vector>
 
 #include "core/layer/layer.h"
 #include "core/mesh/loop_lengths.h"
+#include "server/base/lru_map.h"
 
 namespace trapeze {
 
 class LoopLengthCache {
  public:
   /// `budget` in bytes; the feature asked for last is always kept.
-  explicit LoopLengthCache(std::size_t budget) : budget_(budget) {}
+  explicit LoopLengthCache(std::size_t budget) : outlines_(budget) {}
 
   /// The edges of feature `row` as it is at the level, in ascending order. Valid until the next
   /// call.
@@ -37,15 +36,8 @@ class LoopLengthCache {
              20;
     }
   };
-  struct Entry {
-    Key key;
-    std::vector<LoopEdge> edges;
-  };
 
-  std::size_t budget_;
-  std::size_t bytes_ = 0;
-  std::list<Entry> entries_;  // the last used first
-  std::unordered_map<Key, std::list<Entry>::iterator, KeyHash> by_key_;
+  LruMap<Key, std::vector<LoopEdge>, KeyHash> outlines_;
 };
 
 }  // namespace trapeze

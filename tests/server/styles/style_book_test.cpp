@@ -72,6 +72,14 @@ TEST(StyleBookTest, PostedStylesKeepToTheirBudget) {
   EXPECT_NE(book.find(last), nullptr);
 }
 
+TEST(StyleBookTest, WithoutABudgetNothingIsKept) {
+  StyleBook book({}, 0);
+  const auto answer = book.post(testing::style_of("fill=red"));
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.problem().status, 403);
+  EXPECT_EQ(book.memory(), 0u);
+}
+
 TEST(StyleBookTest, ALongStyleIsRefused) {
   std::string query = "ids=";
   for (int i = 0; i < 256; ++i) query += std::to_string(1'000'000'000 + i) + ",";
