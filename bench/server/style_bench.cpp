@@ -80,7 +80,7 @@ std::string target_of(const TileId& tile, const std::string& query) {
 
 TilePlan plan_of(const std::string& target) {
   static const StyleBook styles;
-  auto parsed = parse_tiles_target(target, styles);
+  auto parsed = parse_tiles_target(split_target(target).value(), styles);
   return *plan_tile(std::get<TileRequest>(*parsed), dataset());
 }
 

@@ -10,13 +10,13 @@
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/openapi.h"
+#include "server/documents/routes.h"
 #include "server/documents/tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
 
 constexpr std::string_view kJsonType = "application/json";
-constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
 constexpr std::string_view kPngType = "image/png";
 constexpr std::string_view kTilesetsRelation =
     "http://www.opengis.net/def/rel/ogc/1.0/tilesets-map";
@@ -275,13 +275,6 @@ Json matrix_set_json(const DocumentRequest& request) {
   return json;
 }
 
-/// Whether the path below /ogc is the pattern, in which "*" stands for any one segment.
-bool is_path(std::span<const std::string> path, std::initializer_list<std::string_view> pattern) {
-  return std::ranges::equal(path, pattern, [](std::string_view segment, std::string_view wanted) {
-    return wanted == "*" || segment == wanted;
-  });
-}
-
 std::span<const std::string> path_below_ogc(const DocumentRequest& request) {
   auto path = std::span(request.path).subspan(1);
   if (!path.empty() && path.back().empty()) path = path.first(path.size() - 1);  // "/ogc/"
@@ -302,30 +295,55 @@ std::optional<Problem> check_format(const DocumentRequest& request, std::string_
                  std::string(format)};
 }
 
-Result<Json> find_json(const DocumentRequest& request) {
-  const auto path = path_below_ogc(request);
-  if (is_path(path, {})) return landing_page(request);
-  if (is_path(path, {"conformance"})) return Json{{"conformsTo", kConformance}};
-  if (is_path(path, {"collections"})) return collections_json(request);
-  if (is_path(path, {"collections", "*"})) {
-    const auto position = request.dataset.find(path[1]);
-    if (!position) return unknown_layer(path[1], request.dataset);
-    return collection_json(request.dataset.layers()[*position], request);
-  }
-  if (is_path(path, {"tileMatrixSets"})) return matrix_sets_json(request);
-  if (is_path(path, {"tileMatrixSets", "*"})) {
-    if (path[1] != kTileMatrixSet) return unknown_matrix_set(path[1]);
-    return matrix_set_json(request);
-  }
-  const bool is_list =
-      is_path(path, {"map", "tiles"}) || is_path(path, {"collections", "*", "map", "tiles"});
-  const bool is_tileset = is_path(path, {"map", "tiles", "*"}) ||
-                          is_path(path, {"collections", "*", "map", "tiles", "*"});
-  if (!is_list && !is_tileset) return nothing_here();
+const Route* route_of(const DocumentRequest& request) {
+  auto path = std::span<const std::string>(request.path);
+  if (path.back().empty()) path = path.first(path.size() - 1);  // "/ogc/"
+  return find_route(path);
+}
+
+Result<Json> collection_of(const std::string& name, const DocumentRequest& request) {
+  const auto position = request.dataset.find(name);
+  if (!position) return unknown_layer(name, request.dataset);
+  return collection_json(request.dataset.layers()[*position], request);
+}
+
+Result<Json> tilesets_of(std::span<const std::string> path, const DocumentRequest& request) {
   const auto resource = tiled_resource(path, request);
   if (!resource) return resource.problem();
-  return is_list ? tilesets_json(*resource, request)
-                 : tileset_json(*resource, path.back(), request);
+  return tilesets_json(*resource, request);
+}
+
+Result<Json> tileset_of(std::span<const std::string> path, const DocumentRequest& request) {
+  const auto resource = tiled_resource(path, request);
+  if (!resource) return resource.problem();
+  return tileset_json(*resource, path.back(), request);
+}
+
+Result<Json> find_json(const Route& route, const DocumentRequest& request) {
+  const auto path = path_below_ogc(request);
+  switch (route.id) {
+    case RouteId::landing_page:
+      return landing_page(request);
+    case RouteId::conformance:
+      return Json{{"conformsTo", kConformance}};
+    case RouteId::collections:
+      return collections_json(request);
+    case RouteId::collection:
+      return collection_of(path[1], request);
+    case RouteId::collection_tilesets:
+    case RouteId::dataset_tilesets:
+      return tilesets_of(path, request);
+    case RouteId::collection_tileset:
+    case RouteId::dataset_tileset:
+      return tileset_of(path, request);
+    case RouteId::matrix_sets:
+      return matrix_sets_json(request);
+    case RouteId::matrix_set:
+      if (path[1] != kTileMatrixSet) return unknown_matrix_set(path[1]);
+      return matrix_set_json(request);
+    default:
+      return nothing_here();
+  }
 }
 
 Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentRequest& request) {
@@ -347,20 +365,22 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
 
 Result<Document> ogc_document(const DocumentRequest& request) {
   if (auto problem = check_format(request, "json")) return std::move(*problem);
-  if (is_path(path_below_ogc(request), {"api"})) {
+  const Route* route = route_of(request);
+  if (route == nullptr) return nothing_here();
+  if (route->id == RouteId::api) {
     return Document{std::string(kOpenApiType), openapi_json(request.base_url)};
   }
-  const auto json = find_json(request);
+  const auto json = find_json(*route, request);
   if (!json) return json.problem();
   return Document{std::string(kJsonType), to_text(*json)};
 }
 
 std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
-  const auto path = path_below_ogc(request);
-  const bool is_tile = is_path(path, {"map", "tiles", "*", "*", "*", "*"}) ||
-                       is_path(path, {"collections", "*", "map", "tiles", "*", "*", "*", "*"});
+  const Route* route = route_of(request);
+  const bool is_tile = route != nullptr && (route->id == RouteId::collection_tile ||
+                                            route->id == RouteId::dataset_tile);
   if (!is_tile) return std::nullopt;
-  return tile_of(path, request);
+  return tile_of(path_below_ogc(request), request);
 }
 
 }  // namespace trapeze

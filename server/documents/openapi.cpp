@@ -8,6 +8,7 @@
 #include "core/grid/web_mercator.h"
 #include "server/base/build_id.h"
 #include "server/base/json_text.h"
+#include "server/documents/routes.h"
 #include "server/documents/tile_matrix_set.h"
 #include "server/styles/style_parameters.h"
 #include "server/tiles/tile_request.h"
@@ -149,126 +150,79 @@ Json reference(std::string_view parameter) {
   return {{"$ref", fmt::format("#/components/parameters/{}", parameter)}};
 }
 
-Json references(std::initializer_list<std::string_view> names) {
-  Json list = Json::array();
-  for (const std::string_view name : names) list.push_back(reference(name));
-  return list;
-}
-
-Json with_style(Json list) {
-  for (const StyleParameter& parameter : style_parameters()) {
-    list.push_back(reference(parameter.name));
-  }
-  return list;
-}
-
 Json response(std::string_view description, std::string_view type) {
   Json schema = {{"type", "object"}};
   if (type.starts_with("image/")) schema = {{"type", "string"}, {"format", "binary"}};
   return {{"description", description}, {"content", {{type, {{"schema", schema}}}}}};
 }
 
-struct Operation {
-  std::string_view path;
-  std::string_view id;
-  std::string_view summary;
-  std::string_view type;  // of the response
-  Json parameters;
-};
-
-Json operation_json(const Operation& operation) {
-  Json problem = response("What is wrong, in words", "application/problem+json");
-  problem["content"]["application/problem+json"]["schema"] = {
-      {"$ref", "#/components/schemas/problem"}};
-  Json responses;
-  responses["200"] = response(operation.summary, operation.type);
-  if (!operation.parameters.empty()) {
-    responses["400"] = problem;
-    responses["404"] = problem;
+/// The names between braces of a path.
+std::vector<std::string> names_in(std::string_view path) {
+  std::vector<std::string> names;
+  while (true) {
+    const std::size_t begin = path.find('{');
+    if (begin == std::string_view::npos) return names;
+    const std::size_t end = path.find('}', begin);
+    names.emplace_back(path.substr(begin + 1, end - begin - 1));
+    path.remove_prefix(end);
   }
-  responses["429"] = problem;
-  responses["503"] = problem;
-  Json get = {{"operationId", operation.id}, {"summary", operation.summary}};
-  if (!operation.parameters.empty()) get["parameters"] = operation.parameters;
-  get["responses"] = responses;
-  return {{"get", get}};
 }
 
-std::vector<Operation> operations() {
-  constexpr std::string_view kJson = "application/json";
-  constexpr std::string_view kPng = "image/png";
-  return {
-      {"/tiles/{layers}/{z}/{x}/{y}.png", "getTile", "A tile of 256 pixels", kPng,
-       with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
-      {"/tiles/{layers}/{z}/{x}/{y}@2x.png", "getTile2x", "A tile of 512 pixels", kPng,
-       with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
-      {"/tiles/{layers}/{z}/{x}/{y}.webp", "getWebpTile", "A tile of 256 pixels, as WebP",
-       "image/webp", with_style(references({"path-layers", "path-z", "path-x", "path-y"}))},
-      {"/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
-       "A tile in a style of the configuration, or one that was posted", kPng,
-       references({"path-layers", "path-style", "path-z", "path-x", "path-y"})},
-      {"/styles", "getStyles", "The names of styles", kJson, Json::array()},
-      {"/styles/{style}", "getStyle", "A style, by name or id", kJson, references({"path-style"})},
-      {"/tiles/{layers}.json", "getTileJson", "TileJSON 3.0 of layers", kJson,
-       with_style(references({"path-layers"}))},
-      {"/legend/{layers}.png", "getLegendPicture", "What the colours mean, as a picture", kPng,
-       with_style(references({"path-layers"}))},
-      {"/legend/{layers}.json", "getLegend", "What the colours mean", kJson,
-       with_style(references({"path-layers"}))},
-      {"/identify/{layers}/{place}", "identify", "The features under a place",
-       "application/geo+json", with_style(references({"path-layers", "path-place", "z"}))},
-      {"/catalog", "getCatalog", "The layers and the parameters", kJson, Json::array()},
-      {"/wmts.xml", "getWmtsCapabilities", "WMTS 1.0.0 capabilities", "application/xml",
-       Json::array()},
-      {"/ogc", "getLandingPage", "Landing page", kJson, Json::array()},
-      {"/ogc/conformance", "getConformance", "Conformance classes", kJson, Json::array()},
-      {"/ogc/api", "getApi", "This document", "application/vnd.oai.openapi+json;version=3.0",
-       Json::array()},
-      {"/ogc/collections", "getCollections", "The layers", kJson, Json::array()},
-      {"/ogc/collections/{collectionId}", "getCollection", "A layer", kJson,
-       references({"path-collectionId"})},
-      {"/ogc/collections/{collectionId}/map/tiles", "trapeze.collection.map.getTileSetsList",
-       "The tilesets of a layer", kJson, with_style(references({"path-collectionId"}))},
-      {"/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}",
-       "trapeze.collection.map.getTileSet", "A tileset of a layer", kJson,
-       with_style(references({"path-collectionId", "path-tileMatrixSetId"}))},
-      {"/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/"
-       "{tileCol}",
-       "trapeze.collection.map.getTile", "A tile of a layer", kPng,
-       with_style(references({"path-collectionId", "path-tileMatrixSetId", "path-tileMatrix",
-                              "path-tileRow", "path-tileCol"}))},
-      {"/ogc/map/tiles", "trapeze.dataset.map.getTileSetsList", "The tilesets of all layers", kJson,
-       with_style(references({"collections"}))},
-      {"/ogc/map/tiles/{tileMatrixSetId}", "trapeze.dataset.map.getTileSet",
-       "A tileset of all layers", kJson,
-       with_style(references({"path-tileMatrixSetId", "collections"}))},
-      {"/ogc/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/{tileCol}",
-       "trapeze.dataset.map.getTile", "A tile of all layers", kPng,
-       with_style(references({"path-tileMatrixSetId", "path-tileMatrix", "path-tileRow",
-                              "path-tileCol", "collections"}))},
-      {"/ogc/tileMatrixSets", "getTileMatrixSetsList", "The tile matrix sets", kJson,
-       Json::array()},
-      {"/ogc/tileMatrixSets/{tileMatrixSetId}", "getTileMatrixSet", "A tile matrix set", kJson,
-       references({"path-tileMatrixSetId"})},
-  };
+Json parameters_of(const Route& route) {
+  Json list = Json::array();
+  for (const std::string& name : names_in(route.path)) list.push_back(reference("path-" + name));
+  if (!route.query.empty()) list.push_back(reference(route.query));
+  if (!route.has_style) return list;
+  for (const StyleParameter& parameter : style_parameters()) {
+    list.push_back(reference(parameter.name));
+  }
+  return list;
 }
 
-Json post_style_json() {
+/// The body of a POST: a style, as JSON.
+Json style_body_json() {
   Json properties;
   for (const StyleParameter& parameter : style_parameters()) {
     if (parameter.id == ParameterId::style) continue;
     properties[std::string(parameter.name)] = {{"description", parameter.description}};
   }
-  Json problem = response("What is wrong, in words", "application/problem+json");
   Json body = {{"required", true}};
   body["content"]["application/json"]["schema"] = {{"type", "object"},
                                                    {"properties", std::move(properties)}};
-  Json post = {{"operationId", "postStyle"},
-               {"summary", "Keep a style; the id is the same for equal styles"},
-               {"requestBody", std::move(body)}};
-  post["responses"] = {{"201", response("The id of the style", "application/json")},
-                       {"400", problem},
-                       {"403", problem}};
+  return body;
+}
+
+Json problem_response_json() {
+  Json problem = response("What is wrong, in words", "application/problem+json");
+  problem["content"]["application/problem+json"]["schema"] = {
+      {"$ref", "#/components/schemas/problem"}};
+  return problem;
+}
+
+Json get_json(const Route& route) {
+  const Json problem = problem_response_json();
+  const Json parameters = parameters_of(route);
+  Json responses;
+  responses["200"] = response(route.summary, route.content_type);
+  if (!parameters.empty()) {
+    responses["400"] = problem;
+    responses["404"] = problem;
+  }
+  responses["429"] = problem;
+  responses["503"] = problem;
+  Json get = {{"operationId", route.operation}, {"summary", route.summary}};
+  if (!parameters.empty()) get["parameters"] = parameters;
+  get["responses"] = responses;
+  return get;
+}
+
+Json post_json(const Route& route) {
+  Json post = {{"operationId", route.operation},
+               {"summary", route.summary},
+               {"requestBody", style_body_json()}};
+  post["responses"] = {{"201", response("The id of the style", route.content_type)},
+                       {"400", problem_response_json()},
+                       {"403", problem_response_json()}};
   return post;
 }
 
@@ -276,10 +230,15 @@ Json post_style_json() {
 
 std::string openapi_json(const std::string& base_url) {
   Json paths;
-  for (const Operation& operation : operations()) {
-    paths[std::string(operation.path)] = operation_json(operation);
+  for (const Route& route : routes()) {
+    if (route.operation.empty()) continue;
+    Json& methods = paths[std::string(route.path)];
+    if (route.method == "POST") {
+      methods["post"] = post_json(route);
+    } else {
+      methods["get"] = get_json(route);
+    }
   }
-  paths["/styles"]["post"] = post_style_json();
   Json json;
   json["openapi"] = "3.0.3";
   json["info"] = {{"title", "Trapeze"},

@@ -3,6 +3,7 @@
 #include "server/base/build_id.h"
 #include "server/base/json_text.h"
 #include "server/base/url.h"
+#include "server/documents/routes.h"
 
 namespace trapeze {
 namespace {
@@ -18,6 +19,10 @@ HttpResponse plain(int status, std::string_view content_type, std::string body) 
 std::string_view status_of(const ServerFigures& figures) {
   if (figures.data == nullptr) return "loading";
   return figures.is_stopping ? "stopping" : "ready";
+}
+
+HttpResponse nothing_here() {
+  return problem_response({404, "There are /metrics, /ready and /health here."});
 }
 
 Json layer_json(const ServedLayer& served) {
@@ -61,10 +66,18 @@ HttpResponse AdminSite::answer(const HttpRequest& request) const {
   }
   const auto target = split_target(request.target);
   const std::string_view path = target ? target->path : std::string_view();
-  if (path == "/metrics") return plain(200, Metrics::kContentType, sources_.metrics());
-  if (path == "/ready") return answer_ready();
-  if (path == "/health") return plain(200, "application/json", "{\"status\": \"ok\"}\n");
-  return problem_response({404, "There are /metrics, /ready and /health here."});
+  const Area area = area_of(path);
+  if (path.size() != 1 + name_of(area).size()) return nothing_here();
+  switch (area) {
+    case Area::metrics:
+      return plain(200, Metrics::kContentType, sources_.metrics());
+    case Area::ready:
+      return answer_ready();
+    case Area::health:
+      return plain(200, "application/json", "{\"status\": \"ok\"}\n");
+    default:
+      return nothing_here();
+  }
 }
 
 HttpResponse AdminSite::answer_ready() const {

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "server/base/build_id.h"
+#include "server/base/url.h"
+#include "server/documents/routes.h"
 #include "server/service/process_figures.h"
 #include "server/tiles/paint_stages.h"
 
@@ -26,12 +28,8 @@ using prometheus::MetricFamily;
 using prometheus::MetricType;
 using Labels = std::vector<ClientMetric::Label>;
 
-// What is not one of these is "other": the viewer's files, and whatever people try.
-constexpr std::array<std::string_view, 11> kRoutes = {"tiles",  "legend",  "identify", "catalog",
-                                                      "styles", "wmts",    "ogc",      "health",
-                                                      "ready",  "metrics", "other"};
-constexpr std::array<int, 15> kStatuses = {200, 201, 204, 304, 400, 404, 405, 413,
-                                           414, 429, 431, 500, 503, 504, 0};
+constexpr std::array<int, 16> kStatuses = {200, 201, 204, 304, 400, 403, 404, 405,
+                                           413, 414, 429, 431, 500, 503, 504, 0};
 constexpr std::array<std::string_view, 4> kOutcomes = {"drawn", "saturated", "late", "failed"};
 
 // Seconds: from an answer out of the cache to the deadline.
@@ -173,13 +171,6 @@ void add_server(Snapshot& snapshot, const ServerFigures& figures) {
 
 }  // namespace
 
-std::string_view route_of(std::string_view target) {
-  if (!target.starts_with('/')) return kRoutes.back();
-  std::string_view first = target.substr(1, target.find_first_of("/?", 1) - 1);
-  if (first.ends_with(".xml")) first.remove_suffix(4);
-  return kRoutes[place_in(kRoutes, first)];
-}
-
 struct Metrics::Counted {
   prometheus::Registry registry;
   prometheus::Family<prometheus::Counter>& answers =
@@ -220,8 +211,8 @@ struct Metrics::Counted {
           .Register(registry)
           .Add({});
 
-  Lazily<prometheus::Counter, kRoutes.size() * kStatuses.size()> answer_counters;
-  Lazily<prometheus::Histogram, kRoutes.size()> answer_histograms;
+  Lazily<prometheus::Counter, kAreas * kStatuses.size()> answer_counters;
+  Lazily<prometheus::Histogram, kAreas> answer_histograms;
   std::array<prometheus::Counter*, kOutcomes.size()> tile_counters{};
   std::array<prometheus::Histogram*, kPaintStages.size()> stage_histograms{};
   prometheus::Counter& good_loads = loads.Add({{"result", "succeeded"}});
@@ -242,10 +233,12 @@ Metrics::Metrics() : counted_(std::make_unique<Counted>()) {}
 Metrics::~Metrics() = default;
 
 void Metrics::count(const Answered& answered) {
-  const std::size_t route = place_in(kRoutes, route_of(answered.request.target));
+  const auto target = split_target(answered.request.target);
+  const Area area = target ? area_of(target->path) : Area::other;
+  const auto route = static_cast<std::size_t>(area);
   const std::size_t status = place_in(kStatuses, answered.response.status);
   Counted& counted = *counted_;
-  const std::string route_name(kRoutes[route]);
+  const std::string route_name(name_of(area));
   counted.answer_counters
       .get(route * kStatuses.size() + status,
            [&]() -> prometheus::Counter& {

@@ -19,9 +19,6 @@
 
 namespace trapeze {
 
-/// Under which name answers to a target are counted: one of a few, whatever the target holds.
-std::string_view route_of(std::string_view target);
-
 /// The state of the server's parts, to be told beside what was counted.
 struct ServerFigures {
   std::shared_ptr<const Dataset> data;  // null: still loading

@@ -15,6 +15,7 @@
 #include "server/documents/identify.h"
 #include "server/documents/legend.h"
 #include "server/documents/ogc_api.h"
+#include "server/documents/routes.h"
 #include "server/documents/wmts.h"
 #include "server/service/metrics.h"
 #include "server/styles/style_document.h"
@@ -22,35 +23,10 @@
 
 namespace trapeze {
 
-/// Documents, and perhaps tiles, whose path begins with the segment `first`.
-struct DocumentRoute {
-  std::string_view first;
-  Result<Document> (*make)(const DocumentRequest& request);
-  /// Nothing if no tile is asked for. Null if there are none here.
-  std::optional<Result<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
-};
-
 namespace {
 
-constexpr std::string_view kMethods = "GET, HEAD, OPTIONS";
-constexpr std::string_view kStylesPath = "/styles";
-constexpr std::string_view kStylesMethods = "GET, HEAD, OPTIONS, POST";
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
-
-constexpr std::array kDocumentRoutes = {DocumentRoute{"identify", identify_document},
-                                        DocumentRoute{"legend", legend_document},
-                                        DocumentRoute{"ogc", ogc_document, parse_ogc_tile},
-                                        DocumentRoute{"wmts", wmts_document, parse_wmts_tile},
-                                        DocumentRoute{"wmts.xml", wmts_document}};
-
-/// Null if there are no documents under the path, which is still encoded.
-const DocumentRoute* find_document_route(std::string_view path) {
-  path.remove_prefix(path.starts_with('/') ? 1 : 0);
-  const auto found =
-      std::ranges::find(kDocumentRoutes, path.substr(0, path.find('/')), &DocumentRoute::first);
-  return found == kDocumentRoutes.end() ? nullptr : &*found;
-}
 
 Problem still_loading() {
   return {503, "The data is still being loaded."};
@@ -63,13 +39,8 @@ void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
-/// The methods that a path understands.
-std::string_view methods_of(std::string_view path) {
-  return path == kStylesPath ? kStylesMethods : kMethods;
-}
-
 HttpResponse answer_options(std::string_view path) {
-  const std::string methods(methods_of(path));
+  const std::string methods = methods_of(path);
   HttpResponse response;
   response.status = 204;
   response.headers = {{"Allow", methods},
@@ -80,7 +51,7 @@ HttpResponse answer_options(std::string_view path) {
 }
 
 HttpResponse refuse_method(const std::string& method, std::string_view path) {
-  const std::string methods(methods_of(path));
+  const std::string methods = methods_of(path);
   auto response = problem_response(
       {405, fmt::format("Only {} are understood here.", methods), "method", method, methods});
   response.headers.emplace_back("Allow", methods);
@@ -171,37 +142,50 @@ void Site::handle(const HttpRequest& request, Respond respond) const {
     allow_every_origin(response);
     respond(std::move(response));
   };
-  if (request.target.size() > kMaxTargetLength) {
-    return respond_to_all(problem_response(
-        {414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)}));
-  }
   const auto target = split_target(request.target);
   const std::string_view path = target ? target->path : std::string_view();
   if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
-  if (request.method == "POST" && path == kStylesPath) {
-    return respond_to_all(answer_posted_style(request));
-  }
-  if (request.method != "GET" && request.method != "HEAD") {
+  if (!understands(path, request.method)) {
     return respond_to_all(refuse_method(request.method, path));
   }
-  if (target && target->path.starts_with("/tiles/")) {
-    return handle_tiles(request, respond_to_all);
-  }
-  if (const DocumentRoute* document = target ? find_document_route(target->path) : nullptr) {
-    return handle_document(*document, request, respond_to_all);
-  }
-  respond_to_all(route(request));
+  if (!target) return respond_to_all(problem_response(malformed_target()));
+  dispatch(*target, request, respond_to_all);
 }
 
-HttpResponse Site::route(const HttpRequest& request) const {
-  const auto target = split_target(request.target);
-  const std::string_view path = target ? target->path : std::string_view();
-  if (path == "/health") return answer_health();
-  if (path == "/ready") return answer_ready();
-  if (path == "/catalog") return answer_catalog(request);
-  if (path == "/metrics" && options_.metrics) return answer_metrics();
-  if (path == kStylesPath || path.starts_with("/styles/")) return answer_style(path, request);
-  return answer_file(request);
+void Site::dispatch(const Target& target, const HttpRequest& request,
+                    const Respond& respond) const {
+  const Area area = area_of(target.path);
+  const bool is_all = target.path.size() == 1 + name_of(area).size();  // nothing follows its name
+  switch (area) {
+    case Area::tiles:
+      return handle_tiles(target, request, respond);
+    case Area::legend:
+      return handle_document({legend_document}, target, request, respond);
+    case Area::identify:
+      return handle_document({identify_document}, target, request, respond);
+    case Area::ogc:
+      return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
+    case Area::wmts:
+      return handle_document({wmts_document, parse_wmts_tile}, target, request, respond);
+    case Area::styles:
+      return respond(request.method == "POST" ? answer_posted_style(request)
+                                              : answer_style(target.path, request));
+    case Area::catalog:
+      if (is_all) return respond(answer_catalog(request));
+      break;
+    case Area::health:
+      if (is_all) return respond(answer_health());
+      break;
+    case Area::ready:
+      if (is_all) return respond(answer_ready());
+      break;
+    case Area::metrics:
+      if (is_all && options_.metrics) return respond(answer_metrics());
+      break;
+    case Area::other:
+      break;
+  }
+  respond(answer_file(target, request));
 }
 
 HttpResponse Site::answer_health() const {
@@ -251,10 +235,9 @@ HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
 
 // All names, or one style.
 HttpResponse Site::answer_style(std::string_view path, const HttpRequest& request) const {
-  if (path == kStylesPath) {
-    return json_document(request, to_text({{"styles", styles_->names()}}));
-  }
-  const auto style = styles_->find(path.substr(kStylesPath.size() + 1));
+  const std::string_view name = path.substr(name_of(Area::styles).size() + 1);
+  if (name.empty()) return json_document(request, to_text({{"styles", styles_->names()}}));
+  const auto style = styles_->find(name.substr(1));
   if (style == nullptr) return problem_response({404, "There is no style of that name."});
   return json_document(request, style_document(*style));
 }
@@ -271,7 +254,7 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   const std::string& root = *base;
   HttpResponse response;
   response.status = 201;
-  response.headers = {{"Location", fmt::format("{}{}/{}", root, kStylesPath, name)},
+  response.headers = {{"Location", fmt::format("{}/styles/{}", root, name)},
                       {"Content-Type", "application/json"},
                       {"Cache-Control", "no-store"}};
   response.body = std::make_shared<const std::string>(to_text(
@@ -281,10 +264,9 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   return response;
 }
 
-HttpResponse Site::answer_file(const HttpRequest& request) const {
-  const auto target = split_target(request.target);
-  const auto path = target ? percent_decode(target->path, Plus::literal) : std::nullopt;
-  if (!path) return problem_response({400, "The target is not well formed."});
+HttpResponse Site::answer_file(const Target& target, const HttpRequest& request) const {
+  const auto path = percent_decode(target.path, Plus::literal);
+  if (!path) return problem_response(malformed_target());
   const StaticFile* file = files_.find(*path);
   if (file == nullptr) {
     return problem_response({404, *path == "/"
@@ -295,11 +277,10 @@ HttpResponse Site::answer_file(const HttpRequest& request) const {
   return document(request, file->content_type, file->entity_tag, file->bytes);
 }
 
-void Site::handle_tiles(const HttpRequest& request, const Respond& respond) const {
-  const auto parsed = parse_tiles_target(request.target, *styles_);
-  if (!parsed) {
-    return respond(problem_response(parsed.problem()));
-  }
+void Site::handle_tiles(const Target& target, const HttpRequest& request,
+                        const Respond& respond) const {
+  const auto parsed = parse_tiles_target(target, *styles_);
+  if (!parsed) return respond(problem_response(parsed.problem()));
   const auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
     return respond(answer_tile_json(*tile_json, request));
@@ -307,28 +288,25 @@ void Site::handle_tiles(const HttpRequest& request, const Respond& respond) cons
   handle_tile(std::get<TileRequest>(tiles), request, respond);
 }
 
-void Site::handle_document(const DocumentRoute& route, const HttpRequest& request,
-                           const Respond& respond) const {
-  const auto target = split_target(request.target);
-  auto path = target ? decode_path(target->path) : std::nullopt;
-  auto query = target ? decode_query(target->query) : std::nullopt;
+void Site::handle_document(const Documents& documents, const Target& target,
+                           const HttpRequest& request, const Respond& respond) const {
+  auto path = decode_path(target.path);
+  auto query = decode_query(target.query);
   if (!path || !query) return respond(problem_response(malformed_target()));
   const auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
   auto expanded = styles_->expand(std::move(*query));
-  if (!expanded) {
-    return respond(problem_response(expanded.problem()));
-  }
+  if (!expanded) return respond(problem_response(expanded.problem()));
   const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
                               *std::move(base), std::move(*path), *std::move(expanded)};
-  if (const auto tile = route.find_tile == nullptr ? std::nullopt : route.find_tile(asked)) {
+  if (const auto tile = documents.find_tile ? documents.find_tile(asked) : std::nullopt) {
     const Result<TileRequest>& found = *tile;
     return found ? handle_tile(*found, request, respond)
                  : respond(problem_response(found.problem()));
   }
-  auto made = route.make(asked);
+  auto made = documents.make(asked);
   if (!made) return respond(problem_response(made.problem()));
   respond(fresh_document(request, *std::move(made)));
 }

@@ -14,7 +14,9 @@
 
 #include "render/text/fonts.h"
 #include "server/base/result.h"
+#include "server/base/url.h"
 #include "server/data/dataset.h"
+#include "server/documents/document.h"
 #include "server/http/http_message.h"
 #include "server/http/rate_limit.h"
 #include "server/http/static_files.h"
@@ -48,8 +50,6 @@ struct SiteOptions {
   std::size_t posted_styles = StyleBook::kDefaultBudget;
 };
 
-struct DocumentRoute;
-
 class Site {
  public:
   /// `data`, `tiles` and `cache` outlive the site, and `cache` also `tiles`.
@@ -60,17 +60,22 @@ class Site {
   void handle(const HttpRequest& request, Respond respond) const;
 
  private:
-  HttpResponse route(const HttpRequest& request) const;
+  /// What makes documents, and perhaps finds that a tile is asked for.
+  struct Documents {
+    Result<Document> (*make)(const DocumentRequest& request);
+    std::optional<Result<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
+  };
+
+  void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
   HttpResponse answer_health() const;
   HttpResponse answer_ready() const;
   HttpResponse answer_catalog(const HttpRequest& request) const;
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
-  HttpResponse answer_file(const HttpRequest& request) const;
+  HttpResponse answer_file(const Target& target, const HttpRequest& request) const;
   HttpResponse answer_style(std::string_view path, const HttpRequest& request) const;
   HttpResponse answer_posted_style(const HttpRequest& request) const;
-  void handle_tiles(const HttpRequest& request, const Respond& respond) const;
-  /// A document, or a tile that is named below it.
-  void handle_document(const DocumentRoute& route, const HttpRequest& request,
+  void handle_tiles(const Target& target, const HttpRequest& request, const Respond& respond) const;
+  void handle_document(const Documents& documents, const Target& target, const HttpRequest& request,
                        const Respond& respond) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;

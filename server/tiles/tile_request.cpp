@@ -143,13 +143,9 @@ Problem malformed_target() {
           "are not allowed."};
 }
 
-Result<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles) {
-  if (target.size() > kMaxTargetLength) {
-    return Problem{414, fmt::format("A target is at most {} bytes long.", kMaxTargetLength)};
-  }
-  const auto split = split_target(target);
-  auto path = split ? decode_path(split->path) : std::nullopt;
-  auto query = split ? decode_query(split->query) : std::nullopt;
+Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& styles) {
+  auto path = decode_path(target.path);
+  auto query = decode_query(target.query);
   if (!path || !query) {
     return malformed_target();
   }

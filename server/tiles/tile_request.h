@@ -9,6 +9,7 @@
 #include "core/grid/web_mercator.h"
 #include "server/base/limits.h"
 #include "server/base/result.h"
+#include "server/base/url.h"
 #include "server/styles/style_book.h"
 #include "server/styles/style_parameters.h"
 
@@ -38,10 +39,10 @@ using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
 
 Problem malformed_target();
 
-/// Parses a target, path and query, that begins with /tiles/, and puts in place what its style
-/// says. The problem is 400 for what is malformed, 404 for a tile outside of the matrix or a style
-/// in the path that there is not, and 414 for a target that is too long.
-Result<TilesRequest> parse_tiles_target(std::string_view target, const StyleBook& styles);
+/// Parses a target whose path begins with /tiles, and puts in place what its style says. The
+/// problem is 400 for what is malformed, 404 for a tile outside of the matrix or a style in the
+/// path that there is not.
+Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& styles);
 
 /// Parses names separated by commas; each is taken once, bottom first.
 Result<std::vector<std::string>> parse_layer_list(std::string_view list);

@@ -116,14 +116,16 @@ void check_plan(const TileRequest& request, const TileRequest& again) {
 }
 
 void check_tiles(const std::string& target) {
-  const auto parsed = parse_tiles_target(target, styles());
+  const auto split = split_target(target);
+  if (!split) return;
+  const auto parsed = parse_tiles_target(*split, styles());
   if (!parsed) return check_problem(parsed.problem());
   const auto& request = *parsed;
   const std::string canonical =
       std::visit([](const auto& tiles) { return canonical_target(tiles); }, request);
   // Written in full it may be longer than any target can be.
   if (canonical.size() > kMaxTargetLength) return;
-  const auto parsed_again = parse_tiles_target(canonical, styles());
+  const auto parsed_again = parse_tiles_target(*split_target(canonical), styles());
   require(static_cast<bool>(parsed_again), "a canonical target is refused");
   const auto& again = *parsed_again;
   require(std::visit([](const auto& tiles) { return canonical_target(tiles); }, again) == canonical,

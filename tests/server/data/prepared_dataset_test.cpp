@@ -48,7 +48,7 @@ class Comparison {
     const std::string target =
         fmt::format("/tiles/{}/{}/{}/{}.png?{}", built_->layers()[0].config.name, tile.z, tile.x,
                     tile.y, query);
-    const auto parsed = parse_tiles_target(target, StyleBook());
+    const auto parsed = parse_tiles_target(split_target(target).value(), StyleBook());
     const auto& request = std::get<TileRequest>(*parsed);
     const TilePlan built = *plan_tile(request, built_);
     const TilePlan prepared = *plan_tile(request, prepared_);

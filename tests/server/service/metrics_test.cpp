@@ -49,26 +49,6 @@ std::map<std::string, double> samples_of(const std::string& text) {
   return samples;
 }
 
-TEST(RouteTest, IsOneOfAFewWhateverTheTarget) {
-  const std::pair<const char*, const char*> routes[] = {{"/tiles/a/0/0/0.png", "tiles"},
-                                                        {"/tiles/a.json?fill=red", "tiles"},
-                                                        {"/legend/a.png", "legend"},
-                                                        {"/wmts.xml", "wmts"},
-                                                        {"/wmts?service=WMTS", "wmts"},
-                                                        {"/ogc", "ogc"},
-                                                        {"/metrics", "metrics"},
-                                                        {"/", "other"},
-                                                        {"/index.html", "other"},
-                                                        {"", "other"},
-                                                        {"tiles", "other"},
-                                                        {"*", "other"},
-                                                        {"/tilesx/a", "other"},
-                                                        {"//tiles/a", "other"},
-                                                        {"/%74iles/a", "other"},
-                                                        {"http://host/tiles/a", "other"}};
-  for (const auto& [target, route] : routes) EXPECT_EQ(route_of(target), route) << target;
-}
-
 TEST(MetricsTest, CountsAnswersByRouteAndCode) {
   Metrics metrics;
   for (int i = 0; i < 3; ++i) count(metrics, "/tiles/a/0/0/0.png", 200);

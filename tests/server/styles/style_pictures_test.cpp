@@ -351,7 +351,8 @@ TEST_F(StylePicturesTest, NoQueryEverFails) {
   int planned = 0;
   for (int i = 0; i < 100'000; ++i) {
     const std::string query = random_query(random);
-    const auto parsed = parse_tiles_target("/tiles/plots/1/0/0.png?" + query, styles);
+    const auto parsed =
+        parse_tiles_target(split_target("/tiles/plots/1/0/0.png?" + query).value(), styles);
     if (!parsed) {
       ASSERT_EQ(parsed.problem().status, 400) << query;
       continue;

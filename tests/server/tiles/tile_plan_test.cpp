@@ -29,7 +29,7 @@ auto fills(std::size_t layer, Rgba fill) {
 class TilePlanTest : public ::testing::Test {
  protected:
   TilePlan plan(const std::string& target) const {
-    const auto parsed = parse_tiles_target("/tiles/" + target, StyleBook());
+    const auto parsed = parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook());
     auto planned = plan_tile(std::get<TileRequest>(*parsed), dataset_);
     return *planned;
   }
@@ -64,7 +64,8 @@ TEST_F(TilePlanTest, LeavesOutLayersThatCannotBeSeen) {
 }
 
 TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
-  const auto parsed = parse_tiles_target("/tiles/rings,nosuch/0/0/0.png", StyleBook());
+  const auto parsed =
+      parse_tiles_target(split_target("/tiles/rings,nosuch/0/0/0.png").value(), StyleBook());
   const auto planned = plan_tile(std::get<TileRequest>(*parsed), dataset_);
   const auto& problem = planned.problem();
   EXPECT_EQ(problem.status, 404);

@@ -1,0 +1,155 @@
+#include "server/documents/routes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace trapeze {
+namespace {
+
+constexpr std::string_view kJson = "application/json";
+constexpr std::string_view kPng = "image/png";
+
+constexpr std::array kRoutes = {
+    Route{RouteId::tile, "/tiles/{layers}/{z}/{x}/{y}.png", "getTile", "A tile of 256 pixels", kPng,
+          true},
+    Route{RouteId::tile_at_2x, "/tiles/{layers}/{z}/{x}/{y}@2x.png", "getTile2x",
+          "A tile of 512 pixels", kPng, true},
+    Route{RouteId::webp_tile, "/tiles/{layers}/{z}/{x}/{y}.webp", "getWebpTile",
+          "A tile of 256 pixels, as WebP", "image/webp", true},
+    Route{RouteId::styled_tile, "/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
+          "A tile in a style of the configuration, or one that was posted", kPng},
+    Route{RouteId::tile_json, "/tiles/{layers}.json", "getTileJson", "TileJSON 3.0 of layers",
+          kJson, true},
+    Route{RouteId::styles, "/styles", "getStyles", "The names of styles", kJson},
+    Route{RouteId::style, "/styles/{style}", "getStyle", "A style, by name or id", kJson},
+    Route{RouteId::post_style,
+          "/styles",
+          "postStyle",
+          "Keep a style; the id is the same for equal styles",
+          kJson,
+          false,
+          {},
+          "POST"},
+    Route{RouteId::legend_picture, "/legend/{layers}.png", "getLegendPicture",
+          "What the colours mean, as a picture", kPng, true},
+    Route{RouteId::legend, "/legend/{layers}.json", "getLegend", "What the colours mean", kJson,
+          true},
+    Route{RouteId::identify, "/identify/{layers}/{place}", "identify", "The features under a place",
+          "application/geo+json", true, "z"},
+    Route{RouteId::catalog, "/catalog", "getCatalog", "The layers and the parameters", kJson},
+    Route{RouteId::wmts_capabilities, "/wmts.xml", "getWmtsCapabilities", "WMTS 1.0.0 capabilities",
+          "application/xml"},
+    Route{
+        RouteId::wmts_key_values, "/wmts", {}, "WMTS 1.0.0 by key-value pairs", "application/xml"},
+    Route{RouteId::health, "/health", {}, "Whether the process answers", kJson},
+    Route{RouteId::ready, "/ready", {}, "Whether layers are served", kJson},
+    Route{RouteId::metrics, "/metrics", {}, "Figures for Prometheus", "text/plain"},
+    Route{RouteId::landing_page, "/ogc", "getLandingPage", "Landing page", kJson},
+    Route{RouteId::conformance, "/ogc/conformance", "getConformance", "Conformance classes", kJson},
+    Route{RouteId::api, "/ogc/api", "getApi", "This document", kOpenApiType},
+    Route{RouteId::collections, "/ogc/collections", "getCollections", "The layers", kJson},
+    Route{RouteId::collection, "/ogc/collections/{collectionId}", "getCollection", "A layer",
+          kJson},
+    Route{RouteId::collection_tilesets, "/ogc/collections/{collectionId}/map/tiles",
+          "trapeze.collection.map.getTileSetsList", "The tilesets of a layer", kJson, true},
+    Route{RouteId::collection_tileset,
+          "/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}",
+          "trapeze.collection.map.getTileSet", "A tileset of a layer", kJson, true},
+    Route{RouteId::collection_tile,
+          "/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/"
+          "{tileCol}",
+          "trapeze.collection.map.getTile", "A tile of a layer", kPng, true},
+    Route{RouteId::dataset_tilesets, "/ogc/map/tiles", "trapeze.dataset.map.getTileSetsList",
+          "The tilesets of all layers", kJson, true, "collections"},
+    Route{RouteId::dataset_tileset, "/ogc/map/tiles/{tileMatrixSetId}",
+          "trapeze.dataset.map.getTileSet", "A tileset of all layers", kJson, true, "collections"},
+    Route{RouteId::dataset_tile,
+          "/ogc/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/{tileCol}",
+          "trapeze.dataset.map.getTile", "A tile of all layers", kPng, true, "collections"},
+    Route{RouteId::matrix_sets, "/ogc/tileMatrixSets", "getTileMatrixSetsList",
+          "The tile matrix sets", kJson},
+    Route{RouteId::matrix_set, "/ogc/tileMatrixSets/{tileMatrixSetId}", "getTileMatrixSet",
+          "A tile matrix set", kJson},
+};
+
+constexpr std::array<std::string_view, kAreas> kAreaNames = {
+    "tiles", "legend", "identify", "catalog", "styles", "wmts",
+    "ogc",   "health", "ready",    "metrics", "other"};
+
+/// Takes the first segment off a path, and the slash before it.
+constexpr std::string_view take_segment(std::string_view& path) {
+  path.remove_prefix(path.starts_with('/') ? 1 : 0);
+  const std::string_view segment = path.substr(0, path.find('/'));
+  path.remove_prefix(segment.size());
+  return segment;
+}
+
+constexpr std::string_view first_segment(std::string_view path) {
+  return take_segment(path);
+}
+
+/// "wmts" of "wmts.xml".
+constexpr std::string_view stem_of(std::string_view segment) {
+  return segment.substr(0, segment.find('.'));
+}
+
+constexpr bool all_have_an_area() {
+  return std::ranges::all_of(kRoutes, [](const Route& route) {
+    return std::ranges::find(kAreaNames, stem_of(first_segment(route.path))) != kAreaNames.end();
+  });
+}
+static_assert(all_have_an_area());
+
+bool matches_segment(std::string_view segment, std::string_view pattern) {
+  if (!pattern.starts_with('{')) return segment == pattern;
+  const std::string_view ending = pattern.substr(pattern.find('}') + 1);
+  return segment.size() >= ending.size() && segment.ends_with(ending);
+}
+
+bool matches(std::span<const std::string> segments, std::string_view pattern) {
+  for (const std::string& segment : segments) {
+    if (pattern.empty() || !matches_segment(segment, take_segment(pattern))) return false;
+  }
+  return pattern.empty();
+}
+
+}  // namespace
+
+std::string_view name_of(Area area) {
+  return kAreaNames[static_cast<std::size_t>(area)];
+}
+
+std::span<const Route> routes() {
+  return kRoutes;
+}
+
+Area area_of(std::string_view path) {
+  const std::string_view first = first_segment(path);
+  const auto is_first = [first](const Route& route) { return first_segment(route.path) == first; };
+  if (std::ranges::none_of(kRoutes, is_first)) return Area::other;
+  return Area(std::ranges::find(kAreaNames, stem_of(first)) - kAreaNames.begin());
+}
+
+const Route* find_route(std::span<const std::string> segments) {
+  const auto found = std::ranges::find_if(kRoutes, [segments](const Route& route) {
+    return route.method == "GET" && matches(segments, route.path);
+  });
+  return found == kRoutes.end() ? nullptr : &*found;
+}
+
+std::string methods_of(std::string_view path) {
+  std::string methods = "GET, HEAD, OPTIONS";
+  for (const Route& route : kRoutes) {
+    if (route.path == path && route.method != "GET") methods.append(", ").append(route.method);
+  }
+  return methods;
+}
+
+bool understands(std::string_view path, std::string_view method) {
+  return method == "GET" || method == "HEAD" ||
+         std::ranges::any_of(kRoutes, [path, method](const Route& route) {
+           return route.path == path && route.method == method;
+         });
+}
+
+}  // namespace trapeze

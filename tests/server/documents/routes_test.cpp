@@ -1,0 +1,138 @@
+// The table of routes against what the server answers and what its documents say.
+#include "server/documents/routes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "server/base/url.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(RoutesTest, AreaIsOneOfAFewWhateverTheTarget) {
+  const std::pair<const char*, Area> areas[] = {{"/tiles/a/0/0/0.png", Area::tiles},
+                                                {"/tiles/a.json", Area::tiles},
+                                                {"/legend/a.png", Area::legend},
+                                                {"/wmts.xml", Area::wmts},
+                                                {"/wmts", Area::wmts},
+                                                {"/ogc", Area::ogc},
+                                                {"/metrics", Area::metrics},
+                                                {"/", Area::other},
+                                                {"/index.html", Area::other},
+                                                {"", Area::other},
+                                                {"/tilesx/a", Area::other},
+                                                {"/legend.png", Area::other},
+                                                {"//tiles/a", Area::other},
+                                                {"/%74iles/a", Area::other}};
+  for (const auto& [path, area] : areas) {
+    EXPECT_EQ(name_of(area_of(path)), name_of(area)) << path;
+  }
+}
+
+TEST(RoutesTest, SegmentsFindTheirRoute) {
+  const auto id_of = [](const std::string& path) {
+    const Route* route = find_route(decode_path(path).value());
+    return route == nullptr ? "nothing" : std::string(route->path);
+  };
+  EXPECT_EQ(id_of("/tiles/a,b/1/0/0.png"), "/tiles/{layers}/{z}/{x}/{y}.png");
+  EXPECT_EQ(id_of("/tiles/a,b/s/night/1/0/0.png"), "/tiles/{layers}/s/{style}/{z}/{x}/{y}.png");
+  EXPECT_EQ(id_of("/tiles/a.json"), "/tiles/{layers}.json");
+  EXPECT_EQ(id_of("/styles"), "/styles");
+  EXPECT_EQ(id_of("/ogc/map/tiles"), "/ogc/map/tiles");
+  EXPECT_EQ(id_of("/ogc/map/tiles/a"), "/ogc/map/tiles/{tileMatrixSetId}");
+  EXPECT_EQ(id_of("/ogc/map"), "nothing");
+  EXPECT_EQ(id_of("/ogc/conformance/more"), "nothing");
+}
+
+TEST(RoutesTest, MethodsAreThoseOfThePath) {
+  EXPECT_EQ(methods_of("/styles"), "GET, HEAD, OPTIONS, POST");
+  EXPECT_EQ(methods_of("/styles/night"), "GET, HEAD, OPTIONS");
+  EXPECT_TRUE(understands("/styles", "POST"));
+  EXPECT_FALSE(understands("/styles", "POS"));
+  EXPECT_FALSE(understands("/styles/night", "POST"));
+  EXPECT_FALSE(understands("/anything", "DELETE"));
+}
+
+/// The path with something in place of what stands between braces.
+std::string filled_in(std::string path) {
+  const std::map<std::string, std::string> values = {{"layers", "rings"},
+                                                     {"z", "0"},
+                                                     {"x", "0"},
+                                                     {"y", "0"},
+                                                     {"style", "default"},
+                                                     {"place", "10,10"},
+                                                     {"collectionId", "rings"},
+                                                     {"tileMatrixSetId", "WebMercatorQuad"},
+                                                     {"tileMatrix", "0"},
+                                                     {"tileRow", "0"},
+                                                     {"tileCol", "0"}};
+  for (const auto& [name, value] : values) {
+    const std::string braced = "{" + name + "}";
+    const std::size_t at = path.find(braced);
+    if (at != std::string::npos) path.replace(at, braced.size(), value);
+  }
+  return path;
+}
+
+class AllRoutesTest : public ::testing::Test {
+ protected:
+  static SiteOptions options() {
+    SiteOptions options;
+    options.metrics = [] { return std::string("# nothing\n"); };
+    options.styles.emplace("night", testing::style_of("fill=navy"));
+    return options;
+  }
+  testing::SampleSite site_{true, {}, options()};
+};
+
+TEST_F(AllRoutesTest, AreAnsweredWithWhatTheyPromise) {
+  for (const Route& route : routes()) {
+    if (route.method != "GET") continue;
+    std::string target = filled_in(std::string(route.path));
+    if (route.id == RouteId::style) target = "/styles/night";
+    if (route.id == RouteId::wmts_key_values) target += "?service=WMTS&request=GetCapabilities";
+    const HttpResponse response = site_.get(target);
+    EXPECT_EQ(response.status, 200) << target << ": " << *response.body;
+    EXPECT_THAT(std::string(response.header("Content-Type")),
+                HasSubstr(std::string(route.content_type)))
+        << target;
+  }
+}
+
+TEST_F(AllRoutesTest, AreToldByOpenApi) {
+  const auto api = nlohmann::json::parse(*site_.get("/ogc/api").body);
+  std::size_t told = 0;
+  for (const Route& route : routes()) {
+    if (route.operation.empty()) continue;
+    const auto& methods = api["paths"].at(std::string(route.path));
+    EXPECT_EQ(methods.at(route.method == "POST" ? "post" : "get")["operationId"], route.operation);
+    ++told;
+  }
+  std::size_t operations = 0;
+  for (const auto& [path, methods] : api["paths"].items()) operations += methods.size();
+  EXPECT_EQ(operations, told);
+}
+
+TEST(RoutesTest, EveryAreaIsInTheReadme) {
+  std::ifstream file(TRAPEZE_README);
+  std::ostringstream text;
+  text << file.rdbuf();
+  for (const Route& route : routes()) {
+    const std::string area = "/" + std::string(name_of(area_of(route.path)));
+    EXPECT_NE(text.str().find("`" + area), std::string::npos) << route.path;
+  }
+}
+
+}  // namespace
+}  // namespace trapeze
