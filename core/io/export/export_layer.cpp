@@ -1,44 +1,31 @@
 #include "core/io/export/export_layer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <exception>
-#include <memory>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
-#include "core/borders/gap_closing.h"
 #include "core/borders/polygons.h"
 #include "core/io/export/polygon_file.h"
 #include "core/io/export/polygon_geometry.h"
+#include "core/io/load/feature_pipeline.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/open_source.h"
 #include "core/io/source/source_name.h"
-#include "core/io/source/source_ring_reader.h"
-#include "core/sweep/clean_rings.h"
 #include "core/sweep/graph_builder.h"
 
 namespace trapeze {
 namespace {
 
-// As much as is read before it is adapted on all cores and written: enough that waiting for the
-// last of each round costs little, little enough to hold.
-constexpr std::size_t kRoundBytes = std::size_t{1} << 25;
-constexpr std::size_t kRoundFeatures = 16384;
-constexpr unsigned kMaxThreads = 256;
+// As much as is read and adapted before it is written: enough that waiting for the last of each
+// round costs little, little enough to hold.
+constexpr FeaturePipeline::RoundLimit kRound{std::size_t{1} << 25, 16384};
 
-/// A polygon feature of the source and what becomes of it.
-struct Job {
-  OGRFeatureUniquePtr feature;  // without its geometry
-  std::size_t layer_index = 0;
-  std::unique_ptr<OGRGeometry> geometry;
-  Rings rings;  // of one that waits for its neighbours; clean
-
+/// What becomes of a polygon feature.
+struct Adapted {
+  FeatureKey key;
   enum class Outcome { written, too_small, empty, skipped };
   Outcome outcome = Outcome::empty;
   std::string reason;  // for skipping it
@@ -51,58 +38,53 @@ struct Job {
   bool crosses = false;
 };
 
-/// Does jobs; one a thread.
-class Exporter {
+/// Adapts features to the tolerance.
+class Exporter : public FeatureWorker {
  public:
-  Exporter(const FeatureSource& source, const ExportOptions& options)
-      : reader_(source), options_(options) {}
+  explicit Exporter(const ExportOptions& options) : options_(options) {}
 
-  void run(Job& job) {
-    FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
-    job.geometry.reset();
-    if (!feature.failure.empty()) return skip(job, feature.failure);
-    if (options_.generalization.coverage != CoverageMode::off) {
-      clean_rings(feature.rings);
-      job.rings = feature.rings;
-    } else {
-      run_apart(job, feature.rings);
-    }
-  }
-
-  /// Those that have waited for each other.
-  void run_together(std::span<Job* const> jobs) {
-    if (jobs.size() == 1) return run_apart(*jobs.front(), jobs.front()->rings);
-    std::vector<const Rings*> rings;
-    for (const Job* job : jobs) rings.push_back(&job->rings);
-    const Assembly assembly =
-        assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
-                 coverage_builder_, graph_);
-    if (!assembly.together.empty()) adapt_together(jobs, assembly);
-    for (const std::uint32_t i : assembly.apart) run_apart(*jobs[i], jobs[i]->rings);
-  }
-
- private:
-  static void skip(Job& job, const std::string& reason) {
-    job.outcome = Job::Outcome::skipped;
-    job.reason = reason;
-  }
-
-  void run_apart(Job& job, Rings& rings) {
+  void build_apart(const FeatureKey& feature, Rings& rings) override {
+    Adapted& adapted = begin(feature);
     const BuildOutcome built = builder_.build(rings, graph_);
-    if (!built.failure.empty()) return skip(job, built.failure);
+    if (!built.failure.empty()) return skip(adapted, built.failure);
     if (!built.built) return;
-    job.all_vertices = graph_.corners().size();
+    adapted.all_vertices = graph_.corners().size();
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
     const Polygons polygons = polygons_of(adaptable.graph());
-    finish(job, polygons);
-    if (job.polygons == 0) return;
-    job.result = geometry_of(polygons, options_.crs);
-    job.held = count_held(adaptable);
+    finish(adapted, polygons);
+    if (adapted.polygons == 0) return;
+    adapted.result = geometry_of(polygons, options_.crs);
+    adapted.held = count_held(adaptable);
+  }
+
+  void build_together(std::span<WaitingFeature* const> features) override {
+    std::vector<const Rings*> rings;
+    for (const WaitingFeature* feature : features) rings.push_back(&feature->rings);
+    const Assembly assembly =
+        assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
+                 coverage_builder_, graph_);
+    if (!assembly.together.empty()) adapt_together(features, assembly);
+    for (const std::uint32_t i : assembly.apart) build_apart(features[i]->key, features[i]->rings);
+  }
+
+  /// What became of features since the last call, in any order.
+  std::vector<Adapted> take_adapted() { return std::exchange(adapted_, {}); }
+
+ private:
+  Adapted& begin(const FeatureKey& feature) {
+    Adapted& adapted = adapted_.emplace_back();
+    adapted.key = feature;
+    return adapted;
+  }
+
+  static void skip(Adapted& adapted, const std::string& reason) {
+    adapted.outcome = Adapted::Outcome::skipped;
+    adapted.reason = reason;
   }
 
   /// What the features of one graph have in common is counted with the first one that is written.
-  void adapt_together(std::span<Job* const> jobs, const Assembly& assembly) {
+  void adapt_together(std::span<WaitingFeature* const> features, const Assembly& assembly) {
     const std::vector<Rings> outlines = rings_of_faces(graph_);
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
@@ -110,24 +92,24 @@ class Exporter {
     std::size_t held = count_held(adaptable);
     std::vector<PolygonGeometry> geometries = geometries_of_neighbours(polygons, options_.crs);
     for (const std::uint32_t i : assembly.together) {
-      Job& job = *jobs[i];
-      job.all_vertices = outlines[i].points.size();
-      finish(job, polygons[i]);
-      if (job.polygons == 0) continue;
-      job.result = std::move(geometries[i]);
-      job.held = std::exchange(held, 0);
+      Adapted& adapted = begin(features[i]->key);
+      adapted.all_vertices = outlines[i].points.size();
+      finish(adapted, polygons[i]);
+      if (adapted.polygons == 0) continue;
+      adapted.result = std::move(geometries[i]);
+      adapted.held = std::exchange(held, 0);
     }
   }
 
-  void finish(Job& job, const Polygons& polygons) const {
-    if (!polygons.failure.empty()) return skip(job, polygons.failure);
-    job.outcome = Job::Outcome::too_small;
+  static void finish(Adapted& adapted, const Polygons& polygons) {
+    if (!polygons.failure.empty()) return skip(adapted, polygons.failure);
+    adapted.outcome = Adapted::Outcome::too_small;
     if (polygons.empty()) return;
-    job.outcome = Job::Outcome::written;
-    job.crosses = polygons.is_noded;
-    job.polygons = polygons.size();
-    job.rings_written = polygons.rings.size();
-    job.vertices = polygons.rings.points.size();
+    adapted.outcome = Adapted::Outcome::written;
+    adapted.crosses = polygons.is_noded;
+    adapted.polygons = polygons.size();
+    adapted.rings_written = polygons.rings.size();
+    adapted.vertices = polygons.rings.points.size();
   }
 
   std::size_t count_held(const AdaptableGraph& adaptable) const {
@@ -140,183 +122,131 @@ class Exporter {
     return held;
   }
 
-  SourceRingReader reader_;
   const ExportOptions& options_;
   GraphBuilder builder_;
   CoverageBuilder coverage_builder_;
   TrapezoidalGraph graph_;
+  std::vector<Adapted> adapted_;
 };
 
-/// Does rounds of jobs on several threads; each job's result depends on the job alone.
-class ExporterPool {
- public:
-  ExporterPool(const FeatureSource& source, const ExportOptions& options) {
-    const unsigned wanted =
-        options.threads != 0 ? options.threads : std::thread::hardware_concurrency();
-    for (unsigned i = 0; i < std::clamp(wanted, 1u, kMaxThreads); ++i) {
-      exporters_.emplace_back(source, options);
-    }
-  }
-
-  /// Rethrows what stopped a job.
-  void run(std::vector<Job>& jobs) {
-    work_on(jobs.size(), [&](Exporter& exporter, std::size_t i) { exporter.run(jobs[i]); });
-  }
-
-  /// The same of groups of jobs that have been run, and waited for each other.
-  void run_together(const std::vector<std::vector<Job*>>& groups) {
-    work_on(groups.size(),
-            [&](Exporter& exporter, std::size_t i) { exporter.run_together(groups[i]); });
-  }
-
- private:
-  template <typename Work>
-  void work_on(std::size_t count, const Work& work) {
-    std::atomic<std::size_t> next{0};
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto work_all = [&](Exporter& exporter) {
-      try {
-        for (std::size_t i = next++; i < count; i = next++) work(exporter, i);
-      } catch (...) {
-        next = count;
-        const std::lock_guard lock(mutex);
-        failure = std::current_exception();
-      }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < exporters_.size() && i < count; ++i) {
-      threads.emplace_back(work_all, std::ref(exporters_[i]));
-    }
-    work_all(exporters_.front());
-    for (std::thread& thread : threads) thread.join();
-    if (failure != nullptr) std::rethrow_exception(failure);
-  }
-
-  std::vector<Exporter> exporters_;
-};
-
-/// Reads, has the jobs done, and writes, one round after another.
+/// Has features adapted, and writes them, one round after another.
 class Export {
  public:
   Export(FeatureSource& source, PolygonFile& file, const ExportOptions& options)
-      : source_(source), file_(file), options_(options), pool_(source, options) {}
+      : source_(source),
+        file_(file),
+        options_(options),
+        pipeline_(source, options.generalization, make_workers(), options.progress) {}
 
   ExportReport run() {
-    report_.driver = file_.driver();
-    report_.features = report_.other_geometry = source_.passed_over();
-    SourceFeature next;
-    while (source_.next(next)) {
-      take(next);
-      // Any feature may be a neighbour of any other one.
-      const bool is_full = bytes_ >= kRoundBytes || jobs_.size() >= kRoundFeatures;
-      if (is_full && !is_coverage()) finish_round();
+    const FeaturePipeline::Take take = [this](SourceFeature& next) { return keep(next); };
+    // Any feature may be a neighbour of any other one.
+    const bool is_coverage = options_.generalization.coverage != CoverageMode::off;
+    const auto round = is_coverage ? FeaturePipeline::RoundLimit{} : kRound;
+    bool is_more = true;
+    while (is_more) {
+      is_more = pipeline_.run(take, round);
+      write_round();
     }
-    finish_round();
     file_.finish();
+    fill_report();
     if (options_.progress) options_.progress(1);
     return std::move(report_);
   }
 
  private:
-  void take(SourceFeature& next) {
-    ++report_.features;
-    if (next.layer == nullptr) {
-      ++report_.other_geometry;
-      return;
-    }
-    std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
-    if (geometry != nullptr && has_polygons(*geometry)) {
-      bytes_ += geometry->WkbSize();
-      Job& job = jobs_.emplace_back();
-      job.feature = std::move(next.feature);
-      job.layer_index = next.layer_index;
-      job.geometry = std::move(geometry);
-    } else if (geometry == nullptr && !next.failure.empty()) {
-      ++report_.skipped;
-      report_.notes.push_back({next.feature->GetFID(), next.failure});
-    } else {
-      ++report_.other_geometry;
-    }
+  /// A polygon feature of the source.
+  struct Kept {
+    OGRFeatureUniquePtr feature;  // without its geometry
+    std::size_t layer_index = 0;
+  };
+
+  std::vector<FeatureWorker*> make_workers() {
+    for (unsigned i = 0; i < thread_count(options_.threads); ++i) exporters_.emplace_back(options_);
+    std::vector<FeatureWorker*> workers;
+    for (Exporter& exporter : exporters_) workers.push_back(&exporter);
+    return workers;
   }
 
-  void finish_round() {
-    pool_.run(jobs_);
-    if (is_coverage()) pool_.run_together(neighbours());
-    for (Job& job : jobs_) count(job);
-    jobs_.clear();
-    bytes_ = 0;
-    if (options_.progress) options_.progress(source_.progress());
+  std::uint32_t keep(SourceFeature& next) {
+    kept_.push_back({std::move(next.feature), next.layer_index});
+    return first_row_ + static_cast<std::uint32_t>(kept_.size() - 1);
   }
 
-  bool is_coverage() const { return options_.generalization.coverage != CoverageMode::off; }
-
-  /// The jobs that have waited, those that share borders together.
-  std::vector<std::vector<Job*>> neighbours() {
-    std::vector<Job*> waiting;
-    std::vector<Rings*> to_close;
-    std::vector<const Rings*> rings;
-    for (Job& job : jobs_) {
-      if (job.rings.empty()) continue;
-      waiting.push_back(&job);
-      to_close.push_back(&job.rings);
-      rings.push_back(&job.rings);
+  /// In the order of the source.
+  void write_round() {
+    std::vector<Adapted> round;
+    for (Exporter& exporter : exporters_) {
+      for (Adapted& adapted : exporter.take_adapted()) round.push_back(std::move(adapted));
     }
-    if (options_.generalization.close_gaps > 0) {
-      close_gaps(to_close, options_.generalization.close_gaps);
-    }
-    std::vector<std::vector<Job*>> groups;
-    for (const auto& group : group_features(rings, options_.generalization.coverage)) {
-      auto& jobs = groups.emplace_back();
-      for (const std::uint32_t i : group) jobs.push_back(std::exchange(waiting[i], nullptr));
-    }
-    for (Job* job : waiting) {
-      if (job != nullptr) groups.push_back({job});
-    }
-    return groups;
+    std::ranges::sort(round, {}, [](const Adapted& adapted) { return adapted.key.row; });
+    for (Adapted& adapted : round) count(adapted);
+    first_row_ += static_cast<std::uint32_t>(kept_.size());
+    kept_.clear();
   }
 
-  void count(Job& job) {
-    report_.all_vertices += job.all_vertices;
-    switch (job.outcome) {
-      case Job::Outcome::too_small:
+  void count(Adapted& adapted) {
+    report_.all_vertices += adapted.all_vertices;
+    switch (adapted.outcome) {
+      case Adapted::Outcome::too_small:
         ++report_.too_small;
         return;
-      case Job::Outcome::empty:
+      case Adapted::Outcome::empty:
         ++report_.empty;
         return;
-      case Job::Outcome::skipped:
+      case Adapted::Outcome::skipped:
         ++report_.skipped;
-        report_.notes.push_back({job.feature->GetFID(), job.reason});
+        note(adapted.key, adapted.reason);
         return;
-      case Job::Outcome::written:
-        write(job);
+      case Adapted::Outcome::written:
+        write(adapted);
         return;
     }
   }
 
-  void write(Job& job) {
+  void write(Adapted& adapted) {
     ++report_.written;
-    report_.polygons += job.polygons;
-    report_.rings += job.rings_written;
-    report_.vertices += job.vertices;
-    report_.held += job.held;
-    report_.crossed += job.crosses ? 1 : 0;
-    report_.subdivided += job.result.subdivided;
-    report_.unchecked += job.result.unchecked;
-    if (job.result.is_invalid) {
+    report_.polygons += adapted.polygons;
+    report_.rings += adapted.rings_written;
+    report_.vertices += adapted.vertices;
+    report_.held += adapted.held;
+    report_.crossed += adapted.crosses ? 1 : 0;
+    report_.subdivided += adapted.result.subdivided;
+    report_.unchecked += adapted.result.unchecked;
+    if (adapted.result.is_invalid) {
       ++report_.invalid;
-      report_.notes.push_back({job.feature->GetFID(), "is not valid in degrees"});
+      note(adapted.key, "is not valid in degrees");
     }
-    file_.write(*job.feature, job.layer_index, std::move(job.result.geometry));
+    const Kept& kept = kept_[adapted.key.row - first_row_];
+    file_.write(*kept.feature, kept.layer_index, std::move(adapted.result.geometry));
+  }
+
+  void note(const FeatureKey& feature, const std::string& words) {
+    notes_.push_back({feature.order, {feature.id, words}});
+  }
+
+  void fill_report() {
+    report_.driver = file_.driver();
+    report_.features = source_.passed_over() + pipeline_.features();
+    report_.other_geometry = source_.passed_over();
+    for (const FeatureTally* tally : pipeline_.tallies()) {
+      report_.other_geometry += tally->other_geometry;
+      report_.empty += tally->empty;
+      report_.skipped += tally->skipped;
+      notes_.insert(notes_.end(), tally->skips.begin(), tally->skips.end());
+    }
+    sort_by_order(notes_);
+    for (OrderedNote& note : notes_) report_.notes.push_back(std::move(note.note));
   }
 
   FeatureSource& source_;
   PolygonFile& file_;
   const ExportOptions& options_;
-  ExporterPool pool_;
-  std::vector<Job> jobs_;
-  std::size_t bytes_ = 0;
+  std::vector<Exporter> exporters_;
+  FeaturePipeline pipeline_;
+  std::vector<Kept> kept_;       // of the round at hand
+  std::uint32_t first_row_ = 0;  // of these
+  std::vector<OrderedNote> notes_;
   ExportReport report_;
 };
 

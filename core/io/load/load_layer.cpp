@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
-#include <mutex>
-#include <optional>
-#include <thread>
 #include <utility>
 
-#include "core/io/load/bounded_queue.h"
 #include "core/io/load/feature_builder.h"
+#include "core/io/load/feature_pipeline.h"
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
@@ -17,80 +13,17 @@
 namespace trapeze {
 namespace {
 
-using Batch = std::vector<FeatureJob>;
+using Clock = std::chrono::steady_clock;
 
-// Large enough that handing over costs nothing, small enough that the end comes evenly; a polygon
-// of more than that is a batch of its own.
-constexpr std::size_t kBatchBytes = std::size_t{1} << 20;
-constexpr std::size_t kBatchFeatures = 2048;
-constexpr std::size_t kWaitingBatchesPerBuilder = 4;
-constexpr unsigned kMaxThreads = 256;
-
-// Builds batches, on threads of its own or, if there is to be only one thread, at once.
-class BuilderPool {
- public:
-  BuilderPool(unsigned threads, const FeatureSource& source, const LayerOptions& generalization)
-      : queue_(kWaitingBatchesPerBuilder * threads) {
-    for (unsigned i = 0; i < threads; ++i) builders_.emplace_back(source, generalization);
-    if (threads == 1) return;
-    for (FeatureBuilder& builder : builders_) {
-      threads_.emplace_back([this, &builder] { work(builder); });
-    }
-  }
-
-  ~BuilderPool() {
-    queue_.abandon();
-    for (std::thread& thread : threads_) thread.join();
-  }
-
-  BuilderPool(const BuilderPool&) = delete;
-  BuilderPool& operator=(const BuilderPool&) = delete;
-
-  // False if building has failed: there is no use in reading on.
-  bool add(Batch batch) {
-    if (!threads_.empty()) return queue_.push(std::move(batch));
-    for (const FeatureJob& job : batch) builders_.front().build(job);
-    return true;
-  }
-
-  // Waits until all is built; rethrows what stopped a builder.
-  std::vector<FeatureBuilder>& finish() {
-    queue_.close();
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-    if (failure_ != nullptr) std::rethrow_exception(failure_);
-    return builders_;
-  }
-
- private:
-  void work(FeatureBuilder& builder) {
-    try {
-      while (const std::optional<Batch> batch = queue_.pop()) {
-        for (const FeatureJob& job : *batch) builder.build(job);
-      }
-    } catch (...) {
-      const std::lock_guard lock(failure_mutex_);
-      if (failure_ == nullptr) failure_ = std::current_exception();
-      queue_.abandon();
-    }
-  }
-
-  BoundedQueue<Batch> queue_;
-  std::vector<FeatureBuilder> builders_;
-  std::vector<std::thread> threads_;
-  std::mutex failure_mutex_;
-  std::exception_ptr failure_;
-};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
 }
 
-// Reads the source on the calling thread and hands its polygons to the pool.
-class Loader {
+/// The table of a layer while the features come in.
+class TableReader {
  public:
-  Loader(FeatureSource& source, const LoadOptions& options, BuilderPool& pool)
-      : source_(source), options_(options), pool_(pool), attributes_(options.selection.attributes) {
+  TableReader(const FeatureSource& source, const SourceSelection& selection)
+      : attributes_(selection.attributes) {
     for (const SourceLayer& layer : source.layers()) {
       attributes_.add_layer(*layer.layer->GetLayerDefn());
     }
@@ -100,64 +33,19 @@ class Loader {
     table_ = FeatureTable(attributes_.fields());
   }
 
-  void read_all() {
-    SourceFeature next;
-    while (source_.next(next)) {
-      take(next, features_++);
-      if (!is_full()) continue;
-      if (!hand_over()) return;
-      if (options_.progress) options_.progress(source_.progress());
-    }
-    hand_over();
+  std::uint32_t append(SourceFeature& next) {
+    return table_.append(next.feature->GetFID(), attributes_.read(*next.feature, next.layer_index));
   }
-
-  std::size_t features() const { return features_; }
-  std::size_t other_geometry() const { return other_geometry_; }
-  const BuildTally& tally() const { return tally_; }
   FeatureTable take_table() { return std::move(table_); }
 
  private:
-  void take(SourceFeature& next, std::size_t order) {
-    if (next.layer == nullptr) {
-      ++other_geometry_;
-      return;
-    }
-    std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
-    if (geometry == nullptr && !next.failure.empty()) {
-      tally_.skip(order, next.feature->GetFID(), next.failure);
-    } else if (geometry == nullptr || !has_polygons(*geometry)) {
-      ++other_geometry_;
-    } else {
-      const std::int64_t id = next.feature->GetFID();
-      if (!next.failure.empty()) tally_.remark(order, id, "read, but: " + next.failure);
-      const std::uint32_t row =
-          table_.append(id, attributes_.read(*next.feature, next.layer_index));
-      batch_bytes_ += geometry->WkbSize();
-      batch_.push_back({order, row, id, next.layer_index, std::move(geometry)});
-    }
-  }
-
-  bool is_full() const { return batch_bytes_ >= kBatchBytes || batch_.size() >= kBatchFeatures; }
-
-  bool hand_over() {
-    batch_bytes_ = 0;
-    return pool_.add(std::exchange(batch_, {}));
-  }
-
-  FeatureSource& source_;
-  const LoadOptions& options_;
-  BuilderPool& pool_;
   AttributeReader attributes_;
   FeatureTable table_;
-  Batch batch_;
-  std::size_t batch_bytes_ = 0;
-  std::size_t features_ = 0;
-  std::size_t other_geometry_ = 0;
-  BuildTally tally_;  // of features that never reached a builder
 };
 
-void add_sums(const BuildTally& tally, LoadReport& report) {
+void add_sums(const FeatureTally& tally, LoadReport& report) {
   report.loaded += tally.loaded;
+  report.other_geometry += tally.other_geometry;
   report.empty += tally.empty;
   report.skipped += tally.skipped;
   report.polygons += tally.polygons;
@@ -169,21 +57,16 @@ void add_sums(const BuildTally& tally, LoadReport& report) {
   for (const auto count : kCoverageCounts) report.coverage.*count += tally.coverage.*count;
 }
 
-void sort_by_order(std::vector<OrderedNote>& notes) {
-  std::stable_sort(notes.begin(), notes.end(),
-                   [](const OrderedNote& a, const OrderedNote& b) { return a.order < b.order; });
-}
-
 // Every tally kept its first remarks, so the first ones of all are among them.
-std::vector<FeatureNote> join_notes(const std::vector<const BuildTally*>& tallies) {
+std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tallies) {
   std::vector<OrderedNote> remarks;
   std::vector<OrderedNote> notes;
-  for (const BuildTally* tally : tallies) {
+  for (const FeatureTally* tally : tallies) {
     remarks.insert(remarks.end(), tally->remarks.begin(), tally->remarks.end());
     notes.insert(notes.end(), tally->skips.begin(), tally->skips.end());
   }
   sort_by_order(remarks);
-  remarks.resize(std::min(remarks.size(), BuildTally::kMaxRemarks));
+  remarks.resize(std::min(remarks.size(), FeatureTally::kMaxRemarks));
   notes.insert(notes.end(), remarks.begin(), remarks.end());
   sort_by_order(notes);
   std::vector<FeatureNote> result;
@@ -191,14 +74,14 @@ std::vector<FeatureNote> join_notes(const std::vector<const BuildTally*>& tallie
   return result;
 }
 
-void fill_report(const Loader& loader, const std::vector<FeatureBuilder>& builders,
+void fill_report(const FeaturePipeline& pipeline, const std::vector<FeatureBuilder>& builders,
                  const FeatureSource& source, LoadReport& report) {
   report.driver = source.driver();
-  report.features = loader.features() + source.passed_over();
-  report.other_geometry = loader.other_geometry() + source.passed_over();
-  std::vector<const BuildTally*> tallies = {&loader.tally()};
+  report.features = pipeline.features() + source.passed_over();
+  report.other_geometry = source.passed_over();
+  std::vector<const FeatureTally*> tallies = pipeline.tallies();
   for (const FeatureBuilder& builder : builders) tallies.push_back(&builder.tally());
-  for (const BuildTally* tally : tallies) add_sums(*tally, report);
+  for (const FeatureTally* tally : tallies) add_sums(*tally, report);
   report.notes = join_notes(tallies);
 }
 
@@ -208,34 +91,29 @@ std::unique_ptr<Layer> join_layer(std::vector<FeatureBuilder>& builders, Feature
   return LayerBuilder::join(parts, std::move(table));
 }
 
-unsigned thread_count(const LoadOptions& options) {
-  const unsigned wanted =
-      options.threads != 0 ? options.threads : std::thread::hardware_concurrency();
-  return std::clamp(wanted, 1u, kMaxThreads);
-}
-
-LoadedLayer load(FeatureSource& source, const LoadOptions& options,
-                 std::chrono::steady_clock::time_point start) {
+LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {
   LoadedLayer loaded;
-  BuilderPool pool(thread_count(options), source, options.generalization);
-  Loader loader(source, options, pool);
-  loader.read_all();
-  loaded.report.read_seconds = seconds_since(start);
-  std::vector<FeatureBuilder>& builders = pool.finish();
-  if (options.generalization.coverage != CoverageMode::off) {
-    build_waiting(builders, options.generalization);
+  TableReader table(source, options.selection);
+  std::vector<FeatureBuilder> builders;
+  for (unsigned i = 0; i < thread_count(options.threads); ++i) {
+    builders.emplace_back(options.generalization);
   }
-  fill_report(loader, builders, source, loaded.report);
-  loaded.layer = join_layer(builders, loader.take_table());
+  std::vector<FeatureWorker*> workers;
+  for (FeatureBuilder& builder : builders) workers.push_back(&builder);
+  FeaturePipeline pipeline(source, options.generalization, workers, options.progress);
+  pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
+  fill_report(pipeline, builders, source, loaded.report);
+  loaded.layer = join_layer(builders, table.take_table());
   if (options.progress) options.progress(1);
-  loaded.report.total_seconds = seconds_since(start);
+  loaded.report.read_seconds = seconds_between(start, pipeline.read_until());
+  loaded.report.total_seconds = seconds_between(start, Clock::now());
   return loaded;
 }
 
 }  // namespace
 
 LoadedLayer load_layer(const std::string& path, const LoadOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   FeatureSource source(path, options.selection);
   try {
     LoadedLayer loaded = load(source, options, start);

@@ -1,0 +1,248 @@
+#include "core/io/load/feature_pipeline.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "core/borders/gap_closing.h"
+#include "core/grid/for_each_in_parallel.h"
+#include "core/io/load/bounded_queue.h"
+#include "core/sweep/clean_rings.h"
+
+namespace trapeze {
+namespace {
+
+// Large enough that handing over costs nothing, small enough that the end comes evenly; a polygon
+// of more than that is a batch of its own.
+constexpr std::size_t kBatchBytes = std::size_t{1} << 20;
+constexpr std::size_t kBatchFeatures = 2048;
+constexpr std::size_t kWaitingBatchesPerLane = 4;
+constexpr unsigned kMaxThreads = 256;
+
+using Task = std::vector<WaitingFeature*>;
+
+/// The groups of features, and all others each by itself.
+std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode coverage) {
+  std::vector<const Rings*> rings;
+  for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
+  std::vector<Task> tasks;
+  std::vector<bool> is_grouped(waiting.size(), false);
+  for (const auto& group : group_features(rings, coverage)) {
+    Task& task = tasks.emplace_back();
+    for (const std::uint32_t i : group) {
+      task.push_back(&waiting[i]);
+      is_grouped[i] = true;
+    }
+  }
+  // Those that take long come first, so that no thread is left alone with one.
+  std::stable_sort(tasks.begin(), tasks.end(),
+                   [](const Task& a, const Task& b) { return a.size() > b.size(); });
+  for (std::size_t i = 0; i < waiting.size(); ++i) {
+    if (!is_grouped[i]) tasks.push_back({&waiting[i]});
+  }
+  return tasks;
+}
+
+}  // namespace
+
+unsigned thread_count(unsigned wanted) {
+  return std::clamp(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u, kMaxThreads);
+}
+
+/// One of the threads that bring features to the grid, and its worker.
+class FeaturePipeline::Lane {
+ public:
+  Lane(const FeatureSource& source, const LayerOptions& options, FeatureWorker& worker)
+      : reader_(source), are_to_wait_(options.coverage != CoverageMode::off), worker_(worker) {}
+
+  void take(const Job& job) {
+    FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
+    tally.polygons += feature.polygons;
+    tally.rings += feature.source_rings;
+    tally.source_vertices += feature.vertices;
+    if (!feature.failure.empty()) return tally.skip(job.key, feature.failure);
+    if (are_to_wait_) tally.collapsed_rings += clean_rings(feature.rings);
+    if (feature.rings.empty()) {
+      ++tally.empty;
+    } else if (are_to_wait_) {
+      waiting_.push_back({job.key, feature.rings});
+    } else {
+      worker_.build_apart(job.key, feature.rings);
+    }
+  }
+
+  void take(const Task& task) {
+    if (task.size() == 1) {
+      worker_.build_apart(task.front()->key, task.front()->rings);
+    } else {
+      worker_.build_together(task);
+    }
+    for (WaitingFeature* feature : task) feature->rings = Rings();
+  }
+
+  std::vector<WaitingFeature> take_waiting() { return std::exchange(waiting_, {}); }
+
+  FeatureTally tally;
+
+ private:
+  SourceRingReader reader_;
+  const bool are_to_wait_;
+  FeatureWorker& worker_;
+  std::vector<WaitingFeature> waiting_;
+};
+
+/// The lanes at work on batches, on threads of their own or, if there is one lane only, at once.
+class FeaturePipeline::Pool {
+ public:
+  explicit Pool(const std::vector<std::unique_ptr<Lane>>& lanes)
+      : lanes_(lanes), queue_(kWaitingBatchesPerLane * lanes.size()) {
+    if (lanes.size() == 1) return;
+    for (const auto& lane : lanes) {
+      threads_.emplace_back([this, &lane] { work(*lane); });
+    }
+  }
+
+  ~Pool() {
+    queue_.abandon();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  /// False if a lane has failed: there is no use in reading on.
+  bool add(Batch batch) {
+    if (!threads_.empty()) return queue_.push(std::move(batch));
+    for (const Job& job : batch) lanes_.front()->take(job);
+    return true;
+  }
+
+  /// Waits until all is done; rethrows what stopped a lane.
+  void finish() {
+    queue_.close();
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+    if (failure_ != nullptr) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void work(Lane& lane) {
+    try {
+      while (const std::optional<Batch> batch = queue_.pop()) {
+        for (const Job& job : *batch) lane.take(job);
+      }
+    } catch (...) {
+      const std::lock_guard lock(failure_mutex_);
+      if (failure_ == nullptr) failure_ = std::current_exception();
+      queue_.abandon();
+    }
+  }
+
+  const std::vector<std::unique_ptr<Lane>>& lanes_;
+  BoundedQueue<Batch> queue_;
+  std::vector<std::thread> threads_;
+  std::mutex failure_mutex_;
+  std::exception_ptr failure_;
+};
+
+FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
+                                 std::vector<FeatureWorker*> workers,
+                                 std::function<void(double)> progress)
+    : source_(source), options_(options), progress_(std::move(progress)) {
+  for (FeatureWorker* worker : workers) {
+    lanes_.push_back(std::make_unique<Lane>(source, options, *worker));
+  }
+}
+
+FeaturePipeline::~FeaturePipeline() = default;
+
+bool FeaturePipeline::run(const Take& take, const RoundLimit& limit) {
+  bool is_more = false;
+  {
+    Pool pool(lanes_);
+    is_more = read(take, limit, pool);
+    read_until_ = std::chrono::steady_clock::now();
+    pool.finish();
+  }
+  if (options_.coverage != CoverageMode::off) build_waiting();
+  return is_more;
+}
+
+bool FeaturePipeline::read(const Take& take, const RoundLimit& limit, Pool& pool) {
+  std::size_t bytes = 0;
+  const std::size_t first = features_;
+  const auto hand_over = [&] {
+    bytes += std::exchange(batch_bytes_, 0);
+    return pool.add(std::exchange(batch_, {}));
+  };
+  SourceFeature next;
+  bool is_more = true;
+  while (features_ - first < limit.features && bytes + batch_bytes_ < limit.bytes &&
+         (is_more = source_.next(next))) {
+    accept(next, take);
+    if (batch_bytes_ < kBatchBytes && batch_.size() < kBatchFeatures) continue;
+    if (!hand_over()) return is_more;
+    if (progress_) progress_(source_.progress());
+  }
+  hand_over();
+  return is_more;
+}
+
+void FeaturePipeline::accept(SourceFeature& next, const Take& take) {
+  const std::size_t order = features_++;
+  if (next.layer == nullptr) {
+    ++tally_.other_geometry;
+    return;
+  }
+  const std::int64_t id = next.feature->GetFID();
+  std::unique_ptr<OGRGeometry> geometry(next.feature->StealGeometry(next.layer->geometry_field));
+  if (geometry == nullptr && !next.failure.empty()) {
+    tally_.skip({order, 0, id}, next.failure);
+  } else if (geometry == nullptr || !has_polygons(*geometry)) {
+    ++tally_.other_geometry;
+  } else {
+    if (!next.failure.empty()) tally_.remark({order, 0, id}, "read, but: " + next.failure);
+    batch_bytes_ += geometry->WkbSize();
+    batch_.push_back({{order, take(next), id}, next.layer_index, std::move(geometry)});
+  }
+}
+
+/// In the order of the source.
+std::vector<WaitingFeature> FeaturePipeline::take_waiting() {
+  std::vector<WaitingFeature> waiting;
+  for (const auto& lane : lanes_) {
+    for (WaitingFeature& feature : lane->take_waiting()) waiting.push_back(std::move(feature));
+  }
+  std::sort(waiting.begin(), waiting.end(),
+            [](const auto& a, const auto& b) { return a.key.row < b.key.row; });
+  return waiting;
+}
+
+/// Builds all features that wait, with those with which they share borders. What comes of it does
+/// not depend on the number of lanes.
+void FeaturePipeline::build_waiting() {
+  std::vector<WaitingFeature> waiting = take_waiting();
+  if (options_.close_gaps > 0) {
+    std::vector<Rings*> rings;
+    for (WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
+    const GapClosing done = close_gaps(rings, options_.close_gaps);
+    tally_.coverage.snapped += done.moved + done.led;
+  }
+  const std::vector<Task> tasks = tasks_of(waiting, options_.coverage);
+  std::atomic<std::size_t> next = 0;
+  for_each_in_parallel(lanes_.size(), lanes_.size(), [&](std::size_t lane) {
+    for (std::size_t i = next++; i < tasks.size(); i = next++) lanes_[lane]->take(tasks[i]);
+  });
+}
+
+std::vector<const FeatureTally*> FeaturePipeline::tallies() const {
+  std::vector<const FeatureTally*> tallies = {&tally_};
+  for (const auto& lane : lanes_) tallies.push_back(&lane->tally);
+  return tallies;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,106 @@
+// The way of features from a source to whoever makes something of them: they are read on one
+// thread, brought to the grid on all cores, gaps between them closed, those that share borders
+// grouped, and every group built on one of all cores.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <ogr_geometry.h>
+
+#include "core/io/load/feature_tally.h"
+#include "core/io/source/feature_source.h"
+#include "core/io/source/source_ring_reader.h"
+#include "core/layer/layer_options.h"
+
+namespace trapeze {
+
+/// A feature that waits for the others, with which it may share borders.
+struct WaitingFeature {
+  FeatureKey key;
+  Rings rings;  // clean, not empty
+};
+
+/// Makes something of features. Each is used by one thread at a time.
+class FeatureWorker {
+ public:
+  virtual ~FeatureWorker() = default;
+
+  /// Takes a feature by itself. `rings` may be used as scratch memory, and are empty if gaps have
+  /// been closed that were wider than the feature.
+  virtual void build_apart(const FeatureKey& feature, Rings& rings) = 0;
+  /// Takes two or more that share borders, in ascending order of rows.
+  virtual void build_together(std::span<WaitingFeature* const> features) = 0;
+};
+
+/// 0: one a core.
+unsigned thread_count(unsigned wanted);
+
+class FeaturePipeline {
+ public:
+  /// Takes over the attributes of a polygon feature, whose geometry has been taken away, and says
+  /// which row it has; called on the thread that called run().
+  using Take = std::function<std::uint32_t(SourceFeature&)>;
+
+  /// How much one round takes in.
+  struct RoundLimit {
+    std::size_t bytes = std::numeric_limits<std::size_t>::max();
+    std::size_t features = std::numeric_limits<std::size_t>::max();
+  };
+
+  /// There is a thread for each worker. `source` and the workers must outlive the pipeline.
+  /// `progress` is as in LoadOptions, and may be empty.
+  FeaturePipeline(FeatureSource& source, const LayerOptions& options,
+                  std::vector<FeatureWorker*> workers, std::function<void(double)> progress);
+  ~FeaturePipeline();
+
+  /// Reads features until the limit is reached or the source has no more, and has all of them
+  /// built; false if there is nothing more to read. Only features of one round meet each other:
+  /// where they may share borders, there is to be one round. Which worker gets what is left to
+  /// chance. Throws what reading, a worker, `take` or `progress` throws, among it SourceError if
+  /// the whole source cannot be understood.
+  bool run(const Take& take, const RoundLimit& limit);
+
+  /// Features of the source that have been read.
+  std::size_t features() const { return features_; }
+  /// When the last feature was read.
+  std::chrono::steady_clock::time_point read_until() const { return read_until_; }
+  /// What was found before a worker got to see it.
+  std::vector<const FeatureTally*> tallies() const;
+
+ private:
+  class Lane;
+  class Pool;
+  /// A polygon feature on its way from the reading thread to a lane.
+  struct Job {
+    FeatureKey key;
+    std::size_t layer_index = 0;
+    std::unique_ptr<OGRGeometry> geometry;
+  };
+  using Batch = std::vector<Job>;
+
+  bool read(const Take& take, const RoundLimit& limit, Pool& pool);
+  void accept(SourceFeature& next, const Take& take);
+  std::vector<WaitingFeature> take_waiting();
+  void build_waiting();
+
+  FeatureSource& source_;
+  const LayerOptions options_;
+  const std::function<void(double)> progress_;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+  FeatureTally tally_;  // of features that never reached a lane
+  std::size_t features_ = 0;
+  std::chrono::steady_clock::time_point read_until_;
+
+  // What is to be handed over next.
+  Batch batch_;
+  std::size_t batch_bytes_ = 0;
+};
+
+}  // namespace trapeze

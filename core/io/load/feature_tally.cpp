@@ -1,0 +1,24 @@
+#include "core/io/load/feature_tally.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace trapeze {
+
+void FeatureTally::skip(const FeatureKey& feature, std::string reason) {
+  ++skipped;
+  skips.push_back({feature.order, {feature.id, std::move(reason)}});
+}
+
+void FeatureTally::remark(const FeatureKey& feature, std::string words) {
+  if (remarks.size() < kMaxRemarks) {
+    remarks.push_back({feature.order, {feature.id, std::move(words)}});
+  }
+}
+
+void sort_by_order(std::vector<OrderedNote>& notes) {
+  std::stable_sort(notes.begin(), notes.end(),
+                   [](const OrderedNote& a, const OrderedNote& b) { return a.order < b.order; });
+}
+
+}  // namespace trapeze
