@@ -109,7 +109,7 @@ void check_plan(const TileRequest& request, const TileRequest& again) {
   const auto plan = plan_tile(request, layers());
   if (!plan) return check_problem(plan.problem());
   const auto plan_again = plan_tile(again, layers());
-  require(static_cast<bool>(plan_again), "the canonical target has no plan");
+  require(bool{plan_again}, "the canonical target has no plan");
   const std::string key = plan->key();
   require(key == plan_again->key(), "the canonical target is another tile");
   require(matches_entity_tag(entity_tag_of(key), entity_tag_of(key)), "a tag is not itself");
@@ -126,7 +126,7 @@ void check_tiles(const std::string& target) {
   // Written in full it may be longer than any target can be.
   if (canonical.size() > kMaxTargetLength) return;
   const auto parsed_again = parse_tiles_target(*split_target(canonical), styles());
-  require(static_cast<bool>(parsed_again), "a canonical target is refused");
+  require(bool{parsed_again}, "a canonical target is refused");
   const auto& again = *parsed_again;
   require(std::visit([](const auto& tiles) { return canonical_target(tiles); }, again) == canonical,
           "a canonical target has another canonical target");

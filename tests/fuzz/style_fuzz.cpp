@@ -41,7 +41,7 @@ void check_order(const StyleQuery& style) {
 
 void check_document(const StyleQuery& style) {
   const auto again = parse_style_document(style_document(style));
-  require(static_cast<bool>(again), "the document of a style is refused");
+  require(bool{again}, "the document of a style is refused");
   require(again->canonical_text() == style.canonical_text(),
           "the document of a style is another style");
 }
@@ -51,7 +51,7 @@ void check_query(const StyleQuery& style) {
   // Control characters cannot stand in a URL, and so not in what is posted either.
   require(pairs.has_value(), "the query of a style cannot be decoded");
   const auto again = StyleQuery::parse(*pairs, layers_of(style));
-  require(static_cast<bool>(again), "the query of a style is refused");
+  require(bool{again}, "the query of a style is refused");
   require(again->canonical_text() == style.canonical_text(),
           "the query of a style is another style");
 }
@@ -64,7 +64,7 @@ void check_id(const StyleQuery& style) {
     return;
   }
   const auto expanded = book.expand({{"style", *id}});
-  require(static_cast<bool>(expanded), "a posted style is unknown");
+  require(bool{expanded}, "a posted style is unknown");
   require(*expanded == style.pairs(), "a posted style differs");
 }
 
@@ -76,7 +76,7 @@ StyleQuery settings_of(const StyleQuery& style, const std::string& layer) {
     pairs.emplace_back(style_parameter(setting.parameter).name, format_value(setting.value));
   }
   const auto settings = StyleQuery::parse(pairs, {});
-  require(static_cast<bool>(settings), "settings of a layer are none for all");
+  require(bool{settings}, "settings of a layer are none for all");
   return *settings;
 }
 
