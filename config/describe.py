@@ -116,10 +116,9 @@ def sentences(text):
     return filled(text[:1].upper() + text[1:] + "."[: not text.endswith(".")])
 
 
-def page(name, section, lines):
+def page(name, section, version, lines):
     stamp = int(os.environ.get("SOURCE_DATE_EPOCH", datetime.datetime.now().timestamp()))
     date = datetime.datetime.fromtimestamp(stamp, datetime.timezone.utc).date()
-    version = page.version
     head = f'.TH {roff(name.upper())} {section} {date} "{version}"'
     return "\n".join([head, *lines]) + "\n"
 
@@ -355,12 +354,12 @@ def completion(program, schema):
 
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    page.version = said_by(program, "--version").strip()
+    version = said_by(program, "--version").strip()
     described = command_of(program)
     schema = json.loads(said_by(program, "config", "schema"))
     pages = {
-        "trapeze.1": page("trapeze", 1, program_page(described)),
-        "trapeze.toml.5": page("trapeze.toml", 5, settings_page(schema, parameters_of(program))),
+        "trapeze.1": page("trapeze", 1, version, program_page(described)),
+        "trapeze.toml.5": page("trapeze.toml", 5, version, settings_page(schema, parameters_of(program))),
     }
     for name, text in pages.items():
         (folder / name).write_text(text, encoding="utf-8")

@@ -37,9 +37,11 @@ Config configure(const ServeArguments& arguments) {
     throw std::runtime_error(text);
   }
   if (loaded.config.layers.empty()) {
-    throw UsageError(
-        "there is nothing to serve: name files, or a configuration with "
-        "[[layer]] by --config");
+    throw UsageError(arguments.config.empty()
+                         ? "there is nothing to serve: name files, or a configuration with "
+                           "[[layer]] by --config"
+                         : "there is nothing to serve: name files, or a [[layer]] in " +
+                               arguments.config);
   }
   limit_zooms(loaded.config);
   return std::move(loaded.config);

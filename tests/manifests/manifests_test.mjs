@@ -30,7 +30,7 @@ const named = (kind) => manifests.find((manifest) => manifest.kind === kind);
 test('every manifest is as its schema says', async () => {
   const kinds = manifests.map((manifest) => manifest.kind);
   const wanted = ['ConfigMap', 'Deployment', 'Service', 'HorizontalPodAutoscaler', 'PodDisruptionBudget'];
-  for (const kind of [...wanted, 'Job', 'Ingress']) assert.ok(kinds.includes(kind), kind);
+  for (const kind of [...wanted, 'Ingress']) assert.ok(kinds.includes(kind), kind);
   for (const manifest of manifests) await validate(manifest);
 });
 
@@ -63,23 +63,20 @@ test('the parts name each other', () => {
   for (const port of named('Service').spec.ports) assert.ok(ports.includes(port.targetPort));
   const volumes = pod.spec.volumes.map((volume) => volume.name);
   for (const mount of pod.spec.containers[0].volumeMounts) assert.ok(volumes.includes(mount.name));
-  const claims = pod.spec.volumes.flatMap((volume) => volume.persistentVolumeClaim?.claimName ?? []);
-  assert.deepEqual(claims, [named('PersistentVolumeClaim').metadata.name]);
 });
 
-test('the job writes the volume that the replicas read, and is none of them', () => {
-  const pod = named('Job').spec.template;
-  const claims = pod.spec.volumes.map((volume) => volume.persistentVolumeClaim.claimName);
-  assert.deepEqual(claims, [named('PersistentVolumeClaim').metadata.name]);
-  assert.notDeepEqual(pod.metadata.labels, named('Service').spec.selector);
-  const [prepare] = pod.spec.containers;
+test('what a pod prepares is what it serves, on a volume of its own', () => {
+  const pod = named('Deployment').spec.template.spec;
+  const [prepare] = pod.initContainers;
+  const [serve] = pod.containers;
   const folder = prepare.args[prepare.args.indexOf('--output') + 1];
-  assert.deepEqual(prepare.volumeMounts.map((mount) => mount.mountPath), [folder]);
+  const [mount] = prepare.volumeMounts;
+  assert.deepEqual(mount, { name: mount.name, mountPath: folder });
+  assert.ok(serve.volumeMounts.some((each) => each.name === mount.name && each.mountPath === folder && each.readOnly));
+  assert.ok(pod.volumes.find((volume) => volume.name === mount.name).emptyDir);
   const made = prepare.args.flatMap((file) => file.match(/(\w+)\.fgb$/)?.[1] ?? []);
   const served = [...named('ConfigMap').data['trapeze.toml'].matchAll(/^prepared = "(.*)"/gm)];
   assert.deepEqual(served.map((match) => match[1]), made.map((name) => `${folder}/${name}.trapeze`));
-  const [wait] = named('Deployment').spec.template.spec.initContainers;
-  for (const [, file] of served) assert.ok(wait.args[0].includes(file), file);
 });
 
 test('the Ingress leads to the service, under the public address', () => {
@@ -106,18 +103,24 @@ test('one image is built, labelled and started, of the version of the project', 
     readdirSync(folder).filter((name) => name !== 'kustomization.yaml'),
   );
   assert.deepEqual(kustomization.images, [{ name: 'trapeze', newName: 'trapeze', newTag: version }]);
-  const pods = [named('Deployment'), named('Job')].map((each) => each.spec.template.spec);
-  const containers = pods.flatMap((pod) => [...(pod.initContainers ?? []), ...pod.containers]);
-  for (const { image } of containers) assert.equal(image, `trapeze:${version}`);
+  const pod = named('Deployment').spec.template.spec;
+  for (const { image } of [...pod.initContainers, ...pod.containers]) assert.equal(image, `trapeze:${version}`);
   assert.equal(yaml.load(read('docker/compose.yaml'))['x-trapeze'].image, `trapeze:${version}`);
   const dockerfile = read('docker/Dockerfile');
   assert.ok(dockerfile.includes(`-t trapeze:${version} `));
   assert.ok(dockerfile.includes(`org.opencontainers.image.version="${version}"`));
 });
 
-test('a replica may take the memory that a reload of the sample does', () => {
-  const [, gigabytes] = named('Deployment').spec.template.spec.containers[0].resources.limits.memory.match(/^(\d+)Gi$/);
-  assert.ok(gigabytes >= 2);
+test('a pod may take the memory that preparing and reading the sample again do', () => {
+  const pod = named('Deployment').spec.template.spec;
+  for (const { name, resources } of [...pod.initContainers, ...pod.containers]) {
+    assert.ok(parseInt(resources.limits.memory.match(/^(\d+)Gi$/)[1]) >= 1, name);
+  }
+});
+
+test('the image sets nothing that goes before a mounted configuration', () => {
+  const dockerfile = readFileSync(path.join(folder, '../Dockerfile'), 'utf8');
+  assert.doesNotMatch(dockerfile, /^\s*(ENV\s+)?TRAPEZE_\w+=/m);
 });
 
 test('the configuration in them is right, and ends in time', () => {
