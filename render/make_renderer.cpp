@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-using Renderers = std::vector<std::unique_ptr<CoverageRenderer>>;
+using Renderers = std::vector<std::unique_ptr<MaskRenderer>>;
 
 Renderers make_software_renderers(int count) {
   Renderers renderers;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze {
 
@@ -29,7 +29,7 @@ struct RendererFailure {
 };
 
 struct MadeRenderers {
-  std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
   std::vector<RendererFailure> failures;  // what was tried before
 };
 
@@ -42,7 +42,7 @@ struct MadeRenderers {
 MadeRenderers make_renderers(const RendererOptions& options, int count);
 
 struct MadeRenderer {
-  std::unique_ptr<CoverageRenderer> renderer;
+  std::unique_ptr<MaskRenderer> renderer;
   std::vector<RendererFailure> failures;
 };
 

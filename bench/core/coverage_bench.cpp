@@ -140,10 +140,10 @@ std::size_t memory_of_graphs(std::vector<Rings> features, CoverageMode mode) {
 
 /// Milliseconds of processor time that a tile takes, selected and drawn, by mode.
 std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileId>& tiles,
-                                       int rounds, CoverageRenderer& renderer) {
+                                       int rounds, MaskRenderer& renderer) {
   std::array<double, kModes.size()> sums{};
   std::vector<TrapezoidRange> ranges;
-  Coverage coverage;
+  Mask mask;
   for (const TileId& tile : tiles) {
     const View view = View::of_tile(tile);
     const Level level = level_of_zoom(tile.z);
@@ -153,7 +153,7 @@ std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileI
         const Layer& layer = *pair.layers[mode];
         const Seconds seconds = timed([&] {
           layer.select({view.box(), level, level, SmallPolygons::dust}, ranges);
-          renderer.draw(layer.mesh(), ranges, view, coverage);
+          renderer.draw(layer.mesh(), ranges, view, mask);
         });
         if (round > 0) shortest[mode].take_shorter(seconds);  // the first one uploads
       }
@@ -187,7 +187,7 @@ void report_tiles(const Options& options, const std::string& layer, const std::s
   const std::vector<TripLayer> source{{layer, path, ""}};
   const Places places = read_places(source);
   for (const RendererKind kind : {RendererKind::software, RendererKind::egl}) {
-    std::unique_ptr<CoverageRenderer> renderer;
+    std::unique_ptr<MaskRenderer> renderer;
     try {
       renderer = make_renderer({kind, {}}).renderer;
     } catch (const std::exception& error) {

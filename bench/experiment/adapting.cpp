@@ -6,7 +6,7 @@
 
 #include "bench/experiment/cpu_clock.h"
 #include "core/sweep/graph_builder.h"
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {
@@ -127,7 +127,7 @@ void Adapting::start_run() {
   for (AdaptingLayer& layer : layers_) layer.start_run();
 }
 
-ViewCost Adapting::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
+ViewCost Adapting::draw(const ScaledView& view, std::vector<Mask>& masks) {
   const Box box = view.view.box();
   ViewCost cost;
   const double cpu_begin = cpu_clock_ms();
@@ -146,7 +146,7 @@ ViewCost Adapting::draw(const ScaledView& view, std::vector<Coverage>& coverages
     device_->send(trapezoids_);
   }
   cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
-  cost.add(device_->draw(ends_, view.view, coverages));
+  cost.add(device_->draw(ends_, view.view, masks));
   cost.cpu_ms = cpu_clock_ms() - cpu_begin;
   cost.trapezoids = trapezoids_.size();
   cost.bytes = trapezoids_.size() * sizeof(VertexNumbers);

@@ -66,7 +66,7 @@ class Adapting final : public Contestant {
 
   void start_run() override;
   std::uint64_t sent_before() const override { return vertices_.size() * sizeof(Point); }
-  ViewCost draw(const ScaledView& view, std::vector<Coverage>& coverages) override;
+  ViewCost draw(const ScaledView& view, std::vector<Mask>& masks) override;
 
  private:
   std::vector<Point> vertices_;

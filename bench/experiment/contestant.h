@@ -30,7 +30,7 @@ struct ViewCost {
   double tessellate_ms = 0;  // 0 where it is one with simplifying
   double send_ms = 0;
   double draw_ms = 0;  // until the device has added up what is covered
-  double read_ms = 0;  // until the coverages are in memory: much the same for all
+  double read_ms = 0;  // until the masks are in memory: much the same for all
   // Processor time of all threads of the program, those of a software device among them.
   double cpu_before_draw_ms = 0;
   double cpu_ms = 0;
@@ -61,8 +61,8 @@ class Contestant {
   /// themselves.
   virtual std::size_t shared_memory() const { return 0; }
 
-  /// Draws all layers, each into its own coverage; `coverages` is resized to the layers.
-  virtual ViewCost draw(const ScaledView& view, std::vector<Coverage>& coverages) = 0;
+  /// Draws all layers, each into its own mask; `masks` is resized to the layers.
+  virtual ViewCost draw(const ScaledView& view, std::vector<Mask>& masks) = 0;
 };
 
 enum class Method : std::uint8_t {

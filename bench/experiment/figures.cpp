@@ -38,10 +38,10 @@ void write(const Picture& picture, const std::filesystem::path& path) {
   if (!file.flush()) throw std::runtime_error(path.string() + " cannot be written");
 }
 
-Picture filled(const std::vector<Coverage>& coverages, std::span<const Rgba> fills) {
+Picture filled(const std::vector<Mask>& masks, std::span<const Rgba> fills) {
   std::vector<PaintedClass> layers;
-  for (std::size_t i = 0; i < coverages.size(); ++i) {
-    layers.push_back({&coverages[i], fills[i % fills.size()]});
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    layers.push_back({&masks[i], fills[i % fills.size()]});
   }
   Picture picture;
   Composer().compose(plain_layers(layers), kWidth, kHeight, kPaper, picture);
@@ -71,7 +71,7 @@ std::vector<std::string> draw_figures(const Map& map, const std::vector<ScaledVi
   }
   std::vector<std::string> names;
   std::vector<Ranges> ranges(layers.size());
-  std::vector<Coverage> coverages;
+  std::vector<Mask> masks;
   int number = 0;
   for (const double share : kFigureScales) {
     const ScaledView scaled = views_of_scale(trip, share * map.source.smallest_scale).front();
@@ -87,9 +87,9 @@ std::vector<std::string> draw_figures(const Map& map, const std::vector<ScaledVi
     };
     ++number;
     select(SmallPolygons::dust);
-    screen.draw(meshes, ranges, view, coverages);
-    write_as(filled(coverages, kFills), "");
-    Picture picture = filled(coverages, kPaleFills);
+    screen.draw(meshes, ranges, view, masks);
+    write_as(filled(masks, kFills), "");
+    Picture picture = filled(masks, kPaleFills);
     spread_palette(picture);
     select(SmallPolygons::drop);
     for (std::size_t i = 0; i < layers.size(); ++i) {

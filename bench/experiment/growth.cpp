@@ -12,7 +12,7 @@
 #include "core/grid/tolerance.h"
 #include "core/layer/layer_builder.h"
 #include "core/sweep/graph_builder.h"
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {
@@ -89,12 +89,12 @@ void measure_layer(const Rings& rings, Screen& screen, GrowthPoint& point) {
   const View view = view_of_all();
   const Level level = nearest_level(view.cells_per_pixel / 4);
   std::vector<Ranges> ranges(1);
-  std::vector<Coverage> coverages;
+  std::vector<Mask> masks;
   const std::vector<MeshView> meshes{layer->mesh()};
   for (int i = 0; i < 2 * kRepetitions + 1; ++i) {
     time(draw, [&] {
       layer->select({view.box(), level, level, SmallPolygons::dust}, ranges[0]);
-      screen.draw(meshes, ranges, view, coverages);
+      screen.draw(meshes, ranges, view, masks);
     });
   }
   point.view_ms = median(draw);

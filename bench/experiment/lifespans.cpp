@@ -1,7 +1,7 @@
 #include "bench/experiment/lifespans.h"
 
 #include "bench/experiment/cpu_clock.h"
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze::experiment {
 
@@ -24,7 +24,7 @@ std::uint64_t Lifespans::sent_before() const {
   return bytes;
 }
 
-ViewCost Lifespans::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
+ViewCost Lifespans::draw(const ScaledView& view, std::vector<Mask>& masks) {
   const Layer::Selection selection = selection_of(view);
   ViewCost cost;
   const double cpu_begin = cpu_clock_ms();
@@ -34,7 +34,7 @@ ViewCost Lifespans::draw(const ScaledView& view, std::vector<Coverage>& coverage
     for (std::size_t i = 0; i < layers_.size(); ++i) layers_[i]->select(selection, ranges_[i]);
   }
   cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
-  cost.add(screen_.draw(meshes_, ranges_, view.view, coverages));
+  cost.add(screen_.draw(meshes_, ranges_, view.view, masks));
   cost.cpu_ms = cpu_clock_ms() - cpu_begin;
   for (const Ranges& ranges : ranges_) {
     for (const TrapezoidRange& range : ranges) cost.trapezoids += range.count;

@@ -17,7 +17,7 @@ class Lifespans final : public Contestant {
   ~Lifespans() override;
 
   std::uint64_t sent_before() const override;
-  ViewCost draw(const ScaledView& view, std::vector<Coverage>& coverages) override;
+  ViewCost draw(const ScaledView& view, std::vector<Mask>& masks) override;
 
  private:
   Layer::Selection selection_of(const ScaledView& view) const;

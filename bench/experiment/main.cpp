@@ -124,7 +124,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-using Pictures = std::vector<std::vector<Coverage>>;
+using Pictures = std::vector<std::vector<Mask>>;
 
 constexpr Method kPictured[] = {Method::douglas_peucker, Method::adapting, Method::lifespans,
                                 Method::lifespans_and_dust};

@@ -33,9 +33,8 @@ class NumberedTrapezoids {
   void send(std::span<const VertexNumbers> numbers);
 
   /// As DeviceTrapezoids.
-  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
-                 std::vector<Coverage>& coverages) {
-    return trapezoids_.draw(ends, view, coverages);
+  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view, std::vector<Mask>& masks) {
+    return trapezoids_.draw(ends, view, masks);
   }
 
  private:

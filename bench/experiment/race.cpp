@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze::experiment {
 namespace {
@@ -52,10 +52,10 @@ void Race::prepare(Method method, Topology topology) {
 }
 
 void Race::run(std::span<const ScaledView> trip, const RaceOptions& options) {
-  std::vector<Coverage> coverages;
+  std::vector<Mask> masks;
   for (Runner& runner : runners_) {
     runner.costs.resize(trip.size());
-    runner.contestant->draw(trip.front(), coverages);  // makes room, which no run should pay for
+    runner.contestant->draw(trip.front(), masks);  // makes room, which no run should pay for
   }
   double spent = 0;
   double last_round = 0;
@@ -74,10 +74,10 @@ void Race::run(std::span<const ScaledView> trip, const RaceOptions& options) {
 
 double Race::run_once(Runner& runner, std::span<const ScaledView> trip) {
   const auto begin = std::chrono::steady_clock::now();
-  std::vector<Coverage> coverages;
+  std::vector<Mask> masks;
   runner.contestant->start_run();
   for (std::size_t i = 0; i < trip.size(); ++i) {
-    runner.costs[i].push_back(runner.contestant->draw(trip[i], coverages));
+    runner.costs[i].push_back(runner.contestant->draw(trip[i], masks));
   }
   ++runner.result.runs;
   const double seconds =
@@ -102,9 +102,8 @@ bool Race::has(Method method) const {
                      [method](const Runner& runner) { return runner.result.method == method; });
 }
 
-std::vector<std::vector<Coverage>> Race::pictures(Method method,
-                                                  std::span<const ScaledView> views) {
-  std::vector<std::vector<Coverage>> pictures;
+std::vector<std::vector<Mask>> Race::pictures(Method method, std::span<const ScaledView> views) {
+  std::vector<std::vector<Mask>> pictures;
   for (Runner& runner : runners_) {
     if (runner.result.method != method) continue;
     for (const ScaledView& view : views) {
@@ -115,9 +114,8 @@ std::vector<std::vector<Coverage>> Race::pictures(Method method,
   return pictures;
 }
 
-PictureError compare(std::span<const ScaledView> views,
-                     std::span<const std::vector<Coverage>> pictures,
-                     std::span<const std::vector<Coverage>> full_detail) {
+PictureError compare(std::span<const ScaledView> views, std::span<const std::vector<Mask>> pictures,
+                     std::span<const std::vector<Mask>> full_detail) {
   PictureError error;
   error.scale = views.front().scale;
   std::uint64_t difference = 0;
@@ -154,10 +152,10 @@ ViewCost cost_of_empty_view(std::size_t layers, Screen& screen) {
   View view;
   view.width = kScreenWidth;
   view.height = kScreenHeight;
-  std::vector<Coverage> coverages;
+  std::vector<Mask> masks;
   std::vector<ViewCost> costs(kEmptyViews);
   for (ViewCost& cost : costs) {
-    cost.add(nothing.draw(std::vector<std::uint32_t>(layers), view, coverages));
+    cost.add(nothing.draw(std::vector<std::uint32_t>(layers), view, masks));
   }
   return median_by_total(std::move(costs));
 }

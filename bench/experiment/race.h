@@ -55,7 +55,7 @@ class Race {
   bool has(Method method) const;
 
   /// Draws the views with that method, which was prepared.
-  std::vector<std::vector<Coverage>> pictures(Method method, std::span<const ScaledView> views);
+  std::vector<std::vector<Mask>> pictures(Method method, std::span<const ScaledView> views);
 
  private:
   struct Runner {
@@ -74,9 +74,8 @@ class Race {
 };
 
 /// By view and layer; `views` are those of both, all of one scale.
-PictureError compare(std::span<const ScaledView> views,
-                     std::span<const std::vector<Coverage>> pictures,
-                     std::span<const std::vector<Coverage>> full_detail);
+PictureError compare(std::span<const ScaledView> views, std::span<const std::vector<Mask>> pictures,
+                     std::span<const std::vector<Mask>> full_detail);
 
 /// What a view of that many layers costs if there is nothing to draw: the median of several.
 ViewCost cost_of_empty_view(std::size_t layers, Screen& screen);

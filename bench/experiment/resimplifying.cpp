@@ -5,7 +5,7 @@
 #include "bench/experiment/blg_tree.h"
 #include "bench/experiment/cpu_clock.h"
 #include "bench/experiment/douglas_peucker.h"
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze::experiment {
 
@@ -59,7 +59,7 @@ std::size_t Resimplifying::shared_memory() const {
 }
 
 // Stage by stage, and not polygon by polygon, so that nobody looks at a clock too often.
-ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Coverage>& coverages) {
+ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Mask>& masks) {
   const Box box = is_whole_map_ ? map_.bounds : view.view.box();
   ViewCost cost;
   const double cpu_begin = cpu_clock_ms();
@@ -84,7 +84,7 @@ ViewCost Resimplifying::draw(const ScaledView& view, std::vector<Coverage>& cove
     device_.send(trapezoids_);
   }
   cost.cpu_before_draw_ms = cpu_clock_ms() - cpu_begin;
-  cost.add(device_.draw(ends_, view.view, coverages));
+  cost.add(device_.draw(ends_, view.view, masks));
   cost.cpu_ms = cpu_clock_ms() - cpu_begin;
   for (const SimplifiedPolygons& simplified : simplified_) {
     cost.vertices += simplified.rings.points.size();

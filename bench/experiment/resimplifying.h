@@ -45,7 +45,7 @@ class Resimplifying final : public Contestant {
   Resimplifying(Method method, Topology topology, const Map& map, Screen& screen);
 
   std::size_t shared_memory() const override;
-  ViewCost draw(const ScaledView& view, std::vector<Coverage>& coverages) override;
+  ViewCost draw(const ScaledView& view, std::vector<Mask>& masks) override;
 
  private:
   void tessellate(const SimplifiedPolygons& simplified, const Box& box);

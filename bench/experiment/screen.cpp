@@ -40,13 +40,13 @@ void Screen::forget(std::uint64_t mesh_id) {
 }
 
 DrawTimes Screen::draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges,
-                       const View& view, std::vector<Coverage>& coverages) {
-  coverages.resize(meshes.size());
+                       const View& view, std::vector<Mask>& masks) {
+  masks.resize(meshes.size());
   parts_.clear();
   tasks_.clear();
   for (std::size_t i = 0; i < meshes.size(); ++i) parts_.push_back({meshes[i], ranges[i]});
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    tasks_.push_back({std::span(parts_).subspan(i, 1), view, &coverages[i]});
+    tasks_.push_back({std::span(parts_).subspan(i, 1), view, &masks[i]});
   }
   return renderer_->draw(tasks_);
 }
@@ -75,14 +75,14 @@ void DeviceTrapezoids::send(const TrapezoidList& trapezoids) {
 }
 
 DrawTimes DeviceTrapezoids::draw(std::span<const std::uint32_t> ends, const View& view,
-                                 std::vector<Coverage>& coverages) {
+                                 std::vector<Mask>& masks) {
   meshes_.assign(ends.size(), MeshView{mesh_id_, {}, {}, {}});
   ranges_.resize(ends.size());
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const std::uint32_t begin = i == 0 ? 0 : ends[i - 1];
     ranges_[i].assign(1, {begin, ends[i] - begin});
   }
-  return screen_.draw(meshes_, ranges_, view, coverages);
+  return screen_.draw(meshes_, ranges_, view, masks);
 }
 
 }  // namespace trapeze::experiment

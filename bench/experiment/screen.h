@@ -9,10 +9,10 @@
 
 #include "bench/experiment/trapezoid_list.h"
 #include "core/mesh/trapezoid_mesh.h"
-#include "render/coverage/coverage.h"
 #include "render/gl/gl_context.h"
 #include "render/gl/gl_mesh_store.h"
 #include "render/gl/gl_renderer.h"
+#include "render/mask/mask.h"
 
 namespace trapeze::experiment {
 
@@ -28,7 +28,7 @@ class Screen {
   /// `device` as in RendererOptions. Throws std::runtime_error if there is no EGL device.
   explicit Screen(const std::string& device = {});
 
-  CoverageRenderer& renderer() { return *renderer_; }
+  MaskRenderer& renderer() { return *renderer_; }
   GlMeshStore& store() { return *store_; }
   GlContext& context() { return renderer_->context(); }
 
@@ -36,15 +36,15 @@ class Screen {
   void send(const MeshView& mesh);
   void forget(std::uint64_t mesh_id);
 
-  /// Draws layers in one pass, each into its own coverage; meshes[i] is that of layer i.
+  /// Draws layers in one pass, each into its own mask; meshes[i] is that of layer i.
   DrawTimes draw(std::span<const MeshView> meshes, std::span<const Ranges> ranges, const View& view,
-                 std::vector<Coverage>& coverages);
+                 std::vector<Mask>& masks);
 
  private:
   std::shared_ptr<GlMeshStore> store_;
   std::unique_ptr<GlRenderer> renderer_;
   std::vector<MeshPart> parts_;
-  std::vector<CoverageTask> tasks_;
+  std::vector<MaskTask> tasks_;
 };
 
 /// Room on the device for the trapezoids of a map that each view writes anew. The room is kept
@@ -66,8 +66,7 @@ class DeviceTrapezoids {
   std::uint32_t chunk_size() const { return screen_.store().chunk_size(); }
 
   /// Draws layers: trapezoids ends[i - 1] .. ends[i] - 1 are those of layer i.
-  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view,
-                 std::vector<Coverage>& coverages);
+  DrawTimes draw(std::span<const std::uint32_t> ends, const View& view, std::vector<Mask>& masks);
 
  private:
   Screen& screen_;

@@ -229,12 +229,12 @@ To repeat the experiment on any extract of OpenStreetMap, or any other files of 
 | DP, whole map | DP that leaves nothing out because it lies beyond the view; for maps of up to a million vertices. One run, for reference |
 | The paper's method | one trapezoidal graph a polygon, adapted in place, forward and undo; vertices sent once, a view sends vertex numbers (24 bytes a trapezoid), which the device looks up |
 | Trapeze | all versions of all trapezoids with their lifespans sent once; a view selects ranges of those alive. Polygons too small for the tolerance are left out, as the others do it |
-| Trapeze, with dust | the same as it is served by default: what is too small is kept as coverage |
+| Trapeze, with dust | the same as it is served by default: what is too small is kept as covered area |
 | No simplification | full detail, sent once, the visible ranges drawn. One run, for reference |
 
 All start from the same polygons: snapped to the grid, noded, taken apart into single polygons. All
 use the same weights (Douglas-Peucker), the same tolerance, and draw through the same \`GlRenderer\`:
-exact coverage of every pixel, one coverage a layer, all layers in one pass. Each contestant computes
+exact covered area of every pixel, one mask a layer, all layers in one pass. Each contestant computes
 on one thread; the device draws on as many as it likes, the same for all.
 
 The baselines are written to win. They leave out polygons beyond the view; keep all memory between

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "render/picture/png.h"
 
 namespace trapeze {

@@ -1,4 +1,4 @@
-// What the stages of a picture cost: coverage by each renderer, colour, PNG.
+// What the stages of a picture cost: the mask by each renderer, colour, PNG.
 //
 //   render_bench                          all stages
 //   render_bench --benchmark_filter=draw  the renderers only
@@ -15,8 +15,8 @@
 #include <random>
 #include <vector>
 
-#include "render/coverage/coverage.h"
 #include "render/make_renderer.h"
+#include "render/mask/mask.h"
 #include "render/picture/compose.h"
 #include "render/picture/png.h"
 
@@ -57,9 +57,9 @@ class BenchMesh {
     for (std::size_t i = 0; i + 1 < tops.size(); ++i) {
       const std::uint32_t left = mesh.add_edge({tops[i], 0}, {bottoms[i], kSide});
       const std::uint32_t right = mesh.add_edge({tops[i + 1], 0}, {bottoms[i + 1], kSide});
-      const std::vector<int> levels = mesh.pick_sorted(strips);
-      for (std::size_t j = 0; j + 1 < levels.size(); j += 2) {
-        mesh.add(left, right, levels[j], levels[j + 1]);
+      const std::vector<int> rows = mesh.pick_sorted(strips);
+      for (std::size_t j = 0; j + 1 < rows.size(); j += 2) {
+        mesh.add(left, right, rows[j], rows[j + 1]);
       }
     }
     return mesh;
@@ -112,7 +112,7 @@ class BenchMesh {
 
 using MakeMesh = BenchMesh (*)(int);
 
-std::unique_ptr<CoverageRenderer> renderer_of(RendererKind kind, benchmark::State& state) {
+std::unique_ptr<MaskRenderer> renderer_of(RendererKind kind, benchmark::State& state) {
   try {
     auto made = make_renderer({kind, {}});
     state.SetLabel(made.renderer->description());
@@ -129,11 +129,11 @@ void draw(benchmark::State& state, RendererKind kind, MakeMesh make) {
   const BenchMesh mesh = make(static_cast<int>(state.range(0)));
   const std::vector<TrapezoidRange> ranges =
       mesh.in_ranges(static_cast<std::uint32_t>(state.range(1)));
-  Coverage coverage;
-  renderer->draw(mesh.view(), ranges, kView, coverage);  // uploads
+  Mask mask;
+  renderer->draw(mesh.view(), ranges, kView, mask);  // uploads
   for (auto _ : state) {
-    renderer->draw(mesh.view(), ranges, kView, coverage);
-    benchmark::DoNotOptimize(coverage.row_begin(0));
+    renderer->draw(mesh.view(), ranges, kView, mask);
+    benchmark::DoNotOptimize(mask.row_begin(0));
   }
   state.counters["trapezoids"] = mesh.all().count;
 }
@@ -161,18 +161,17 @@ BENCHMARK_CAPTURE(draw, osmesa_scatter, RendererKind::osmesa, BenchMesh::scatter
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-Coverage sample_coverage(int count) {
+Mask sample_mask(int count) {
   const BenchMesh mesh = BenchMesh::strips(count);
   const TrapezoidRange all = mesh.all();
-  Coverage coverage;
-  make_renderer({RendererKind::software, {}})
-      .renderer->draw(mesh.view(), {&all, 1}, kView, coverage);
-  return coverage;
+  Mask mask;
+  make_renderer({RendererKind::software, {}}).renderer->draw(mesh.view(), {&all, 1}, kView, mask);
+  return mask;
 }
 
 void compose_layers(benchmark::State& state) {
-  const Coverage lower = sample_coverage(100);
-  const Coverage upper = sample_coverage(700);
+  const Mask lower = sample_mask(100);
+  const Mask upper = sample_mask(700);
   const std::vector<PaintedClass> all{{&lower, {200, 30, 30, 255}}, {&upper, {30, 30, 200, 128}}};
   const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(0))));
   Composer composer;
@@ -185,10 +184,9 @@ void compose_layers(benchmark::State& state) {
 BENCHMARK(compose_layers)->ArgName("layers")->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void encode(benchmark::State& state) {
-  const Coverage coverage = sample_coverage(static_cast<int>(state.range(0)));
-  const Coverage other = sample_coverage(33);
-  const std::vector<PaintedClass> all{{&coverage, {200, 30, 30, 255}},
-                                      {&other, {30, 30, 200, 128}}};
+  const Mask mask = sample_mask(static_cast<int>(state.range(0)));
+  const Mask other = sample_mask(33);
+  const std::vector<PaintedClass> all{{&mask, {200, 30, 30, 255}}, {&other, {30, 30, 200, 128}}};
   const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(1))));
   Picture picture;
   Composer().compose(layers, 256, 256, kTransparent, picture);

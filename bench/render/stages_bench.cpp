@@ -22,8 +22,8 @@
 #include "core/grid/tolerance.h"
 #include "core/io/load/load_layer.h"
 #include "core/layer/layer.h"
-#include "render/coverage/coverage.h"
 #include "render/make_renderer.h"
+#include "render/mask/mask.h"
 #include "render/picture/compose.h"
 #include "render/picture/png.h"
 
@@ -60,7 +60,7 @@ struct StagedTile {
   View view;
   Layer::Selection selection;
   std::vector<TrapezoidRange> ranges;
-  Coverage coverage;
+  Mask mask;
   Picture picture;
 };
 
@@ -83,14 +83,14 @@ std::vector<StagedTile> selected_tiles(const Subject& subject, int zoom) {
   return tiles;
 }
 
-void draw_all(const Subject& subject, CoverageRenderer& renderer, std::vector<StagedTile>& tiles) {
+void draw_all(const Subject& subject, MaskRenderer& renderer, std::vector<StagedTile>& tiles) {
   for (StagedTile& tile : tiles) {
-    renderer.draw(subject.layer->mesh(), tile.ranges, tile.view, tile.coverage);
+    renderer.draw(subject.layer->mesh(), tile.ranges, tile.view, tile.mask);
   }
 }
 
 void compose_one(Composer& composer, StagedTile& tile) {
-  const PaintedClass filled{&tile.coverage, kFill};
+  const PaintedClass filled{&tile.mask, kFill};
   PaintedLayer layer;
   layer.classes = {&filled, 1};
   composer.compose({&layer, 1}, tile.view.width, tile.view.height, kTransparent, tile.picture);
@@ -123,7 +123,7 @@ void select(benchmark::State& state, const std::string& layer) {
 void draw(benchmark::State& state, const std::string& layer, RendererKind kind) {
   const Subject& subject = subject_of(layer);
   auto tiles = selected_tiles(subject, static_cast<int>(state.range(0)));
-  std::unique_ptr<CoverageRenderer> renderer;
+  std::unique_ptr<MaskRenderer> renderer;
   try {
     renderer = make_renderer({kind, {}}).renderer;
   } catch (const std::exception& error) {
@@ -131,8 +131,8 @@ void draw(benchmark::State& state, const std::string& layer, RendererKind kind) 
   }
   draw_all(subject, *renderer, tiles);  // uploads
   go_round(state, tiles, [&](StagedTile& tile) {
-    renderer->draw(subject.layer->mesh(), tile.ranges, tile.view, tile.coverage);
-    benchmark::DoNotOptimize(tile.coverage.row_begin(0));
+    renderer->draw(subject.layer->mesh(), tile.ranges, tile.view, tile.mask);
+    benchmark::DoNotOptimize(tile.mask.row_begin(0));
   });
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint8_t kNotDrawn = 0xff;
 struct ClassMote {
   Box box;
   std::uint8_t feature_class = 0;
-  bool is_hole = false;  // takes coverage away
+  bool is_hole = false;  // takes area away
 };
 
 /// Keeps memory from use to use; one a thread.

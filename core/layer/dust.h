@@ -1,5 +1,5 @@
-// Dust: the area of loops too small to draw, kept as coverage, so that a town seen from far is a
-// grey tint and not a hole.
+// Dust: the area of loops too small to draw, kept as covered area, so that a town seen from far is
+// a grey tint and not a hole.
 //
 // A grain that a loop left behind is laid out as square motes. From one octave of tolerance to the
 // next, motes that fall into one pixel (four times the tolerance: the default tolerance is a

@@ -47,7 +47,7 @@ const GrainIndex& Layer::grains() const {
 }
 
 bool Layer::fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const {
-  // Dust comes last, and may take coverage away.
+  // Dust comes last, and may take area away.
   const bool has_dust =
       !ranges.empty() && ranges.back().first + ranges.back().count > contents_->feature_of.size();
   return !has_dust && cover_box(contents_->view, ranges, selection.box);

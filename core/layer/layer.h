@@ -22,7 +22,7 @@ struct LayerContents;  // the stored arrays
 
 /// What becomes of polygons, and of holes, that are too small for a tolerance.
 enum class SmallPolygons : std::uint8_t {
-  dust,  // their area is kept as coverage where they were
+  dust,  // their area is kept as covered area where they were
   keep,  // the caller draws them large enough to be seen, see Layer::small_polygons
   drop,  // they are left out
 };

@@ -1,6 +1,6 @@
 // The trapezoids of meshes in the memory of a GL device, uploaded once for a whole share group.
 //
-// A trapezoid is stored with its own copy of the ten integers that make it up (levels of top and
+// A trapezoid is stored with its own copy of the ten integers that make it up (the y of its top and
 // bottom, both ends of both sides): 40 bytes, read in one place, where three indexed arrays would
 // take about 30 and four dependent reads. Meshes are cut into chunks of equal numbers of
 // trapezoids, uploaded when they are first drawn; so no index outgrows 32 bits and no buffer the

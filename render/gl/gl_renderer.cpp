@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "render/coverage/stopwatch.h"
 #include "render/gl/gl_program.h"
 #include "render/gl/gl_shader.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze {
 namespace {
@@ -59,7 +59,7 @@ GlRenderer::GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMes
     : context_(std::move(context)),
       store_(std::move(store)),
       gl_(context_->gl()),
-      gains_by_company_(!context_->info().is_software()) {
+      gains_by_batching_(!context_->info().is_software()) {
   const CurrentContext current(*context_);
   GLint block_size = 0;
   gl_.GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block_size);
@@ -114,9 +114,9 @@ void GlRenderer::delete_objects() noexcept {
   gl_.DeleteProgram(program_.name);
 }
 
-DrawTimes GlRenderer::draw(std::span<const CoverageTask> tasks) {
+DrawTimes GlRenderer::draw(std::span<const MaskTask> tasks) {
   DrawTimes times;
-  for (const CoverageTask& task : tasks) task.view.check();
+  for (const MaskTask& task : tasks) task.view.check();
   const CurrentContext current(*context_);
   store_->delete_forgotten(gl_);
   // Of a draw that failed.
@@ -126,15 +126,15 @@ DrawTimes GlRenderer::draw(std::span<const CoverageTask> tasks) {
   indices_.clear();
   sums_.clear();
   used_ = 0;
-  for (const CoverageTask& task : tasks) {
+  for (const MaskTask& task : tasks) {
     draw_task(task, times);
-    if (!gains_by_company_) finish_pass(times);
+    if (!gains_by_batching_) finish_pass(times);
   }
   finish_pass(times);
   return times;
 }
 
-void GlRenderer::draw_task(const CoverageTask& task, DrawTimes& times) {
+void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
   task.out->resize(task.view.width, task.view.height);
   const int most_rows = static_cast<int>(room_) / task.view.width;
   for (int row = 0; row < task.view.height; row += most_rows) {
@@ -278,16 +278,16 @@ void GlRenderer::resolve(const Band& band) {
   const std::span<std::int32_t> differences = differences_.subspan(band.place, band.pixels());
   for (int row = 0; row < band.rows; ++row) {
     const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
-    std::uint8_t* levels = band.task->out->row_begin(band.first_row + row);
+    std::uint8_t* values = band.task->out->row_begin(band.first_row + row);
     if (sums_.empty()) {
-      take_levels(of_row, gl_shader::kUnitsPerPixel, levels);
+      resolve_row(of_row, gl_shader::kUnitsPerPixel, values);
       continue;
     }
     const auto sums = std::span(sums_).subspan(static_cast<std::size_t>(row) * width, width);
     take_units(of_row, sums);
     row_.resize(width);
     to_pixels(sums, row_);
-    take_levels(row_, levels);
+    resolve_row(row_, values);
   }
   sums_.clear();
 }

@@ -1,4 +1,4 @@
-// Draws coverage with OpenGL: exact area, not multisampling. See gl_shader.h for how.
+// Draws masks with OpenGL: exact area, not multisampling. See gl_shader.h for how.
 //
 // A compute shader adds areas up as integers in a buffer, which is read back and summed up to 8
 // bits here. Rasterizing strips and points with additive blending gives the same pictures, but
@@ -15,14 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "render/coverage/coverage.h"
 #include "render/gl/gl_context.h"
 #include "render/gl/gl_mesh_store.h"
+#include "render/mask/mask.h"
 
 namespace trapeze {
 
 /// The context is current only inside of draw, so the renderer may move between threads.
-class GlRenderer final : public CoverageRenderer {
+class GlRenderer final : public MaskRenderer {
  public:
   /// `store` is that of the context's share group. Throws std::runtime_error if the device cannot
   /// do what is needed.
@@ -31,11 +31,11 @@ class GlRenderer final : public CoverageRenderer {
   GlRenderer(const GlRenderer&) = delete;
   GlRenderer& operator=(const GlRenderer&) = delete;
 
-  using CoverageRenderer::draw;
-  DrawTimes draw(std::span<const CoverageTask> tasks) override;
-  bool gains_by_company() const override { return gains_by_company_; }
+  using MaskRenderer::draw;
+  DrawTimes draw(std::span<const MaskTask> tasks) override;
+  bool gains_by_batching() const override { return gains_by_batching_; }
   /// Has tasks drawn together, or one at a time, instead of as it suits the device.
-  void set_company(bool gains) { gains_by_company_ = gains; }
+  void set_batching(bool gains) { gains_by_batching_ = gains; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
   std::string description() const override { return context_->info().text(); }
@@ -56,7 +56,7 @@ class GlRenderer final : public CoverageRenderer {
 
   // Some rows of a picture; all of them if the buffer has room.
   struct Band {
-    const CoverageTask* task = nullptr;
+    const MaskTask* task = nullptr;
     int first_row = 0;
     int rows = 0;
     std::size_t place = 0;  // of its first pixel in the buffer
@@ -78,7 +78,7 @@ class GlRenderer final : public CoverageRenderer {
 
   Program make_program();
   void delete_objects() noexcept;
-  void draw_task(const CoverageTask& task, DrawTimes& times);
+  void draw_task(const MaskTask& task, DrawTimes& times);
   void draw_band(Band band, DrawTimes& times);
   void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count,
               DrawTimes& times);
@@ -94,7 +94,7 @@ class GlRenderer final : public CoverageRenderer {
   std::unique_ptr<GlContext> context_;
   std::shared_ptr<GlMeshStore> store_;
   const GlFunctions& gl_;
-  bool gains_by_company_;
+  bool gains_by_batching_;
   Program program_;
   std::size_t room_ = 0;  // pixels in a pass
   GLuint index_buffer_ = 0;

@@ -11,8 +11,8 @@
 namespace trapeze {
 namespace {
 
-std::vector<std::unique_ptr<CoverageRenderer>> renderers_of(std::unique_ptr<GlContext> first,
-                                                            int count) {
+std::vector<std::unique_ptr<MaskRenderer>> renderers_of(std::unique_ptr<GlContext> first,
+                                                        int count) {
   std::vector<std::unique_ptr<GlContext>> contexts;
   for (int i = 1; i < count; ++i) contexts.push_back(first->create_shared());
   contexts.push_back(std::move(first));
@@ -22,7 +22,7 @@ std::vector<std::unique_ptr<CoverageRenderer>> renderers_of(std::unique_ptr<GlCo
     const CurrentContext current(*contexts.back());
     store = std::make_shared<GlMeshStore>(contexts.back()->gl());
   }
-  std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
   renderers.reserve(contexts.size());
   for (auto& context : contexts) {
     renderers.push_back(std::make_unique<GlRenderer>(std::move(context), store));

@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "render/coverage/coverage.h"
 #include "render/gl/context_request.h"
+#include "render/mask/mask.h"
 
 namespace trapeze {
 
 struct GlRenderers {
-  std::vector<std::unique_ptr<CoverageRenderer>> renderers;  // none if no context works here
-  std::vector<ContextFailure> failures;                      // what was tried before
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;  // none if no context works here
+  std::vector<ContextFailure> failures;                  // what was tried before
 };
 
 /// Makes `count` renderers with one store of meshes, one for each thread that draws. Never throws

@@ -3,9 +3,9 @@
 namespace trapeze::gl_shader {
 namespace {
 
-// Levels are heights in pixels counted from the top of the band of rows that is drawn. Coordinates
-// named "local" are pixels counted from the corner of a whole pixel beside the side, so that single
-// precision is relative to that and not to the picture.
+// A span is the y of a top and of a bottom, in pixels from the top of the band of rows that is
+// drawn. "Local" coordinates are in pixels from the corner of a pixel beside the side, so that
+// errors of single precision are relative to that distance and not to the size of the picture.
 constexpr const char* kTrapezoid = R"(
 layout(binding = 0) uniform isamplerBuffer trapezoids;
 layout(std430, binding = INDICES) readonly buffer Indices { uint indices[]; };
@@ -26,19 +26,20 @@ struct Side {
   int column;   // where local coordinates begin
 };
 
-// A line that comes from beyond the picture is seen from where it enters; one that never does is
-// replaced by a vertical line beyond the border, which covers the same pixels.
-Side side_at(int ends, dvec2 levels, double row) {
+// A line that begins beyond the border of the picture is followed from where it enters the picture.
+// One that never enters is replaced by a vertical line beyond the border, which leaves the same area
+// to its east.
+Side side_at(int ends, dvec2 span, double row) {
   dvec2 upper = dvec2(texelFetch(trapezoids, ends).xy);
   dvec2 along = dvec2(texelFetch(trapezoids, ends + 1).xy) - upper;
   double slope = along.x / along.y;
   dvec2 start = (upper - origin) * pixels_per_cell - dvec2(0.0LF, first_row);
-  double x_top = start.x + (levels.x - start.y) * slope;
+  double x_top = start.x + (span.x - start.y) * slope;
   double x = clamp(x_top, -1.0LF, double(size.x) + 1.0LF);
-  double y = levels.x;
+  double y = span.x;
   if (x != x_top) {
     double down = (x - x_top) / slope;
-    if (down >= 0.0LF && down <= levels.y - levels.x) {
+    if (down >= 0.0LF && down <= span.y - span.x) {
       y += down;
     } else {
       slope = 0.0LF;
@@ -100,16 +101,16 @@ void main() {
   int sign = is_right ? -1 : 1;
   int texel = int(index) * 5;
   ivec2 top_and_bottom = texelFetch(trapezoids, texel).xy;
-  dvec2 levels = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell - first_row;
-  levels = dvec2(max(levels.x, 0.0LF), min(levels.y, double(size.y)));
-  if (levels.x >= levels.y) return;
+  dvec2 span = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell - first_row;
+  span = dvec2(max(span.x, 0.0LF), min(span.y, double(size.y)));
+  if (span.x >= span.y) return;
 
-  double row = floor(levels.x);
-  Side side = side_at(texel + (is_right ? 3 : 1), levels, row);
+  double row = floor(span.x);
+  Side side = side_at(texel + (is_right ? 3 : 1), span, row);
   float rounding = rounding_of(top_and_bottom, texelFetch(trapezoids, texel + 1).xy);
   int cells = place + int(row) * size.x;
-  float y = float(levels.x - row);
-  float bottom = float(levels.y - row);
+  float y = float(span.x - row);
+  float bottom = float(span.y - row);
   float x = x_at(side, y);
   while (y < bottom) {
     float next_y = min(floor(y) + 1.0, bottom);

@@ -1,16 +1,16 @@
 // The compute shader of GlRenderer: from trapezoids to differences of covered area.
 //
-// What is added up is not coverage but its difference from each pixel to the one west of it, which
-// is summed up along the rows afterwards. So only the pixels that a side runs through are touched,
-// and their eastern neighbours, however large the area between two sides.
+// What is added up is not the covered area of a pixel but its difference from that of the pixel to
+// the west; resolve_row() sums the differences along each row afterwards. So only the pixels that a
+// side passes through are written, and their eastern neighbours, however far apart two sides are.
 //
-// An invocation takes one side of a trapezoid from row to row. It makes the integers of the side
-// relative to the picture and cuts them to it in double precision, integrates the area east of it
-// in closed form, and adds that to integers, in units of 1 / kUnitsPerPixel: sums of integers are
-// the same in whatever order they come about. What is left of a unit is rounded up or down by a
-// share that differs from trapezoid to trapezoid, so that thousands of them in one pixel are not
-// all rounded one way; it is the same for both sides, so that east of a trapezoid nothing is left
-// over.
+// One invocation walks along one side of a trapezoid, row by row. In double precision, it moves the
+// integer coordinates of the side to the origin of the picture and clips the side to the picture;
+// then it integrates the area east of the side in closed form and adds that to integers, in units
+// of 1 / kUnitsPerPixel: a sum of integers does not depend on the order of its terms. Fractions of
+// a unit are rounded at a threshold that differs from trapezoid to trapezoid (a dither), so that
+// the errors of thousands of trapezoids in one pixel do not all have the same sign. Both sides of a
+// trapezoid have the same threshold, so that their sum is exactly 0 east of it.
 #pragma once
 
 #include <string>
@@ -20,16 +20,18 @@ namespace trapeze::gl_shader {
 /// Units of a wholly covered pixel.
 constexpr int kUnitsPerPixel = 1 << 17;
 
-/// Trapezoids of which no sum of differences leaves 32 bits.
+/// So many trapezoids can be added up before a sum of differences could overflow 32 bits.
 constexpr unsigned kMostTrapezoids = (1u << 14) - 1;
 
-/// Invocations of a group; a trapezoid takes two.
+/// Invocations in a work group; each trapezoid takes two.
 constexpr unsigned kGroup = 64;
 
-/// Where the shader finds its storage buffers: indices of trapezoids, and the differences.
+/// Binding points of the shader's storage buffers: the indices of the trapezoids, and the
+/// differences.
 constexpr unsigned kIndicesBinding = 0;
 constexpr unsigned kDifferencesBinding = 1;
 
+/// The source text of the shader, in GLSL.
 std::string source();
 
 }  // namespace trapeze::gl_shader

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kLevels = 256;
+constexpr std::size_t kValues = 256;
 
 // Premultiplied, 0..1.
 struct Paint {
@@ -25,8 +25,8 @@ struct Paint {
   float classes = 0;
 };
 
-Paint to_paint(Rgba colour, float coverage) {
-  const float a = static_cast<float>(colour.a) / 255.0f * coverage;
+Paint to_paint(Rgba colour, float share) {
+  const float a = static_cast<float>(colour.a) / 255.0f * share;
   const float scale = a / 255.0f;
   return {static_cast<float>(colour.r) * scale, static_cast<float>(colour.g) * scale,
           static_cast<float>(colour.b) * scale, a};
@@ -46,9 +46,9 @@ Paint over(const Paint& above, const Paint& below) {
   return mixed(above, 1, below, 1.0f - above.a);
 }
 
-Paint beside(const Paint& one, float coverage, const Paint& other) {
+Paint beside(const Paint& one, float share, const Paint& other) {
   Paint sum = mixed(one, 1, other, 1);
-  sum.covered += coverage;
+  sum.covered += share;
   sum.classes += 1;
   return sum;
 }
@@ -58,11 +58,11 @@ Paint within(const Paint& above, const Paint& below) {
   return mixed(above, below.covered, below, 1.0f - above.a);
 }
 
-// Where classes overlap, each has its share. And where they join, each level was rounded; the pixel
+// Where classes overlap, each has its share. And where they join, each value was rounded; the pixel
 // is wholly covered all the same.
 Paint settled(const Paint& sum) {
-  constexpr float kHalfLevel = 0.501f / 255;  // and what the sum lost in rounding
-  const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfLevel * sum.classes;
+  constexpr float kHalfValue = 0.501f / 255;  // and what the sum lost in rounding
+  const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfValue * sum.classes;
   if (!is_whole && sum.covered <= 1) return sum;
   const float share = 1 / sum.covered;
   Paint paint = mixed(sum, share, {}, 0);
@@ -81,17 +81,17 @@ Rgba to_rgba(const Paint& paint) {
   return {to_byte(paint.r * scale), to_byte(paint.g * scale), to_byte(paint.b * scale), a};
 }
 
-// The paint of one class at every level of coverage.
-std::array<Paint, kLevels> paints_of(Rgba colour, float opacity = 1) {
-  std::array<Paint, kLevels> paints;
-  for (std::size_t level = 0; level < kLevels; ++level) {
-    paints[level] = to_paint(colour, static_cast<float>(level) / 255.0f * opacity);
+// The paint of one class at every value of its mask.
+std::array<Paint, kValues> paints_of(Rgba colour, float opacity = 1) {
+  std::array<Paint, kValues> paints;
+  for (std::size_t value = 0; value < kValues; ++value) {
+    paints[value] = to_paint(colour, static_cast<float>(value) / 255.0f * opacity);
   }
   return paints;
 }
 
-float share_of(std::uint8_t level) {
-  return static_cast<float>(level) / 255.0f;
+float share_of(std::uint8_t value) {
+  return static_cast<float>(value) / 255.0f;
 }
 
 std::uint32_t to_bits(Rgba colour) {
@@ -104,9 +104,9 @@ std::uint32_t to_bits(Rgba colour) {
 constexpr std::size_t kBlock = 8;
 constexpr std::uint64_t kEachByte = 0x0101010101010101;
 
-std::uint64_t block_at(const std::uint8_t* levels) {
+std::uint64_t block_at(const std::uint8_t* values) {
   std::uint64_t block = 0;
-  std::memcpy(&block, levels, sizeof block);
+  std::memcpy(&block, values, sizeof block);
   return block;
 }
 
@@ -164,7 +164,7 @@ class NumberTable {
 
 }  // namespace
 
-// A picture being painted. Pixels that have met the same paints at the same levels share a mixture,
+// A picture being painted. Pixels that have met the same paints at the same values share a mixture,
 // so that colours are computed once a mixture and not once a pixel; and a block of pixels that are
 // all the same is looked at as one.
 class Composer::Canvas {
@@ -178,48 +178,48 @@ class Composer::Canvas {
     pixels_.resize(blocks_.size() * kBlock);
   }
 
-  /// Changes every pixel, by mix(mixture, level). Nothing is changed where the level is 0.
+  /// Changes every pixel, by mix(mixture, value). Nothing is changed where the value is 0.
   template <typename Mix>
-  void paint(const Coverage* coverage, const Mix& mix) {
-    if (coverage == nullptr) {
+  void paint(const Mask* mask, const Mix& mix) {
+    if (mask == nullptr) {
       for (Paint& mixture : mixtures_) mixture = mix(mixture, std::uint8_t{255});
       return;
     }
     mixed_.clear();
     rows_.clear();
     row_of_.assign(mixtures_.size(), kNoRow);
-    const std::uint8_t* levels = coverage->pixels().data();
+    const std::uint8_t* values = mask->pixels().data();
     const std::size_t whole_blocks = size_ / kBlock;
-    for (std::size_t i = 0; i < whole_blocks; ++i, levels += kBlock) paint_block(i, levels, mix);
+    for (std::size_t i = 0; i < whole_blocks; ++i, values += kBlock) paint_block(i, values, mix);
     if (whole_blocks < blocks_.size()) {
       std::array<std::uint8_t, kBlock> rest{};
-      std::copy_n(levels, size_ - whole_blocks * kBlock, rest.begin());
+      std::copy_n(values, size_ - whole_blocks * kBlock, rest.begin());
       paint_block(whole_blocks, rest.data(), mix);
     }
     last_key_ = 0;  // what it stands for ends with the layer
   }
 
-  /// Changes every pixel, by mix(mixture, level, level of the pattern). Nothing is changed where
-  /// the level is 0.
+  /// Changes every pixel, by mix(mixture, value, value of the pattern). Nothing is changed where
+  /// the value is 0.
   template <typename Mix>
-  void paint(const Coverage* coverage, const Coverage& pattern, const Mix& mix) {
+  void paint(const Mask* mask, const Mask& pattern, const Mix& mix) {
     mixed_.clear();
     last_key_ = 0;
     const std::uint8_t* patterns = pattern.pixels().data();
-    const std::uint8_t* levels = coverage == nullptr ? nullptr : coverage->pixels().data();
+    const std::uint8_t* values = mask == nullptr ? nullptr : mask->pixels().data();
     for (std::size_t i = 0; i < size_; i += kBlock) {
       const std::size_t count = std::min(kBlock, size_ - i);
-      const bool is_empty = levels != nullptr && count == kBlock && block_at(levels + i) == 0;
+      const bool is_empty = values != nullptr && count == kBlock && block_at(values + i) == 0;
       if (is_empty) continue;
       std::uint32_t& block = blocks_[i / kBlock];
       if (block != kMixed) std::fill_n(pixels_.data() + i, kBlock, block);
       block = kMixed;
       for (std::size_t k = i; k < i + count; ++k) {
-        const std::uint8_t level = levels == nullptr ? 255 : levels[k];
-        if (level == 0) continue;
+        const std::uint8_t value = values == nullptr ? 255 : values[k];
+        if (value == 0) continue;
         const std::uint32_t below = pixels_[k];
-        pixels_[k] = number_of(std::uint64_t{below} << 16 | std::uint64_t{level} << 8 | patterns[k],
-                               [&] { return mix(mixtures_[below], level, patterns[k]); });
+        pixels_[k] = number_of(std::uint64_t{below} << 16 | std::uint64_t{value} << 8 | patterns[k],
+                               [&] { return mix(mixtures_[below], value, patterns[k]); });
       }
     }
     last_key_ = 0;
@@ -279,36 +279,36 @@ class Composer::Canvas {
   static constexpr std::size_t kMostRows = 1024;  // a megabyte
 
   template <typename Mix>
-  void paint_block(std::size_t i, const std::uint8_t* levels, const Mix& mix) {
-    const std::uint64_t block = block_at(levels);
+  void paint_block(std::size_t i, const std::uint8_t* values, const Mix& mix) {
+    const std::uint64_t block = block_at(values);
     if (block == 0) return;
     std::uint32_t& mixture = blocks_[i];
     if (mixture != kMixed && block == (block & 0xff) * kEachByte) {
-      mixture = mixture_for(mixture, levels[0], mix);
+      mixture = mixture_for(mixture, values[0], mix);
       return;
     }
     std::uint32_t* pixels = pixels_.data() + i * kBlock;
     if (mixture != kMixed) std::fill_n(pixels, kBlock, mixture);
     mixture = kMixed;
     for (std::size_t k = 0; k < kBlock; ++k) {
-      if (levels[k] != 0) pixels[k] = mixture_for(pixels[k], levels[k], mix);
+      if (values[k] != 0) pixels[k] = mixture_for(pixels[k], values[k], mix);
     }
   }
 
-  // What becomes of a mixture at that level.
+  // What becomes of a mixture at that value.
   template <typename Mix>
-  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t level, const Mix& mix) {
+  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t value, const Mix& mix) {
     std::uint32_t& row = row_of_[below];
     if (row == kNoRow) {
-      if (rows_.size() == kMostRows * kLevels) {
-        return number_of(std::uint64_t{below} << 8 | level,
-                         [&] { return mix(mixtures_[below], level); });
+      if (rows_.size() == kMostRows * kValues) {
+        return number_of(std::uint64_t{below} << 8 | value,
+                         [&] { return mix(mixtures_[below], value); });
       }
       row = static_cast<std::uint32_t>(rows_.size());
-      rows_.resize(rows_.size() + kLevels);
+      rows_.resize(rows_.size() + kValues);
     }
-    std::uint32_t& number = rows_[row + level];
-    if (number == 0) number = add(mix(mixtures_[below], level));
+    std::uint32_t& number = rows_[row + value];
+    if (number == 0) number = add(mix(mixtures_[below], value));
     return number;
   }
 
@@ -350,18 +350,18 @@ class Composer::Canvas {
     picture.pixels.resize(size_);
   }
 
-  // kLevels if the palette is full.
+  // kValues if the palette is full.
   std::uint16_t index_of(Rgba colour, std::vector<Rgba>& palette) {
     std::uint32_t& number = indices_by_colour_[to_bits(colour)];  // counted from 1
     if (number == 0) {
-      if (palette.size() == kLevels) return kLevels;
+      if (palette.size() == kValues) return kValues;
       palette.push_back(colour);
       number = static_cast<std::uint32_t>(palette.size());
     }
     return static_cast<std::uint16_t>(number - 1);
   }
 
-  // Writes what `value_of` says of every pixel's mixture. Ends, false, when that is kLevels.
+  // Writes what `value_of` says of every pixel's mixture. Ends, false, when that is kValues.
   template <typename T, typename ValueOf>
   bool translate(T* out, ValueOf value_of) const {
     for (std::size_t i = 0; i < blocks_.size(); ++i, out += kBlock) {
@@ -370,7 +370,7 @@ class Composer::Canvas {
       for (std::size_t k = 0; k < count; ++k) {
         const auto value = value_of(count == 1 ? blocks_[i] : pixels[k]);
         if constexpr (std::is_integral_v<T>) {
-          if (value == kLevels) return false;
+          if (value == kValues) return false;
         }
         out[k] = static_cast<T>(value);
       }
@@ -385,8 +385,8 @@ class Composer::Canvas {
   std::vector<Paint> mixtures_;        // of number 0: what it begins with
   std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
   std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
-  // For the layer of now: what becomes of a mixture at each level, and where to look for that by
-  // mixture; of mixtures beyond the first so many, by mixture below and level.
+  // For the layer of now: what becomes of a mixture at each value, and where to look for that by
+  // mixture; of mixtures beyond the first so many, by mixture below and value.
   std::vector<std::uint32_t> rows_;
   std::vector<std::uint32_t> row_of_;
   NumberTable mixed_;
@@ -399,32 +399,32 @@ class Composer::Canvas {
 
 namespace {
 
-void require_size(const Coverage* coverage, int width, int height) {
-  if (coverage == nullptr) return;
-  if (coverage->width() != width || coverage->height() != height) {
-    throw std::invalid_argument("a coverage is not as large as the picture");
+void require_size(const Mask* mask, int width, int height) {
+  if (mask == nullptr) return;
+  if (mask->width() != width || mask->height() != height) {
+    throw std::invalid_argument("a mask is not as large as the picture");
   }
 }
 
 void require_size(const PaintedLayer& layer, int width, int height) {
-  for (const PaintedClass& one : layer.classes) require_size(one.coverage, width, height);
-  for (const PaintedClass& one : layer.lines) require_size(one.coverage, width, height);
+  for (const PaintedClass& one : layer.classes) require_size(one.mask, width, height);
+  for (const PaintedClass& one : layer.lines) require_size(one.mask, width, height);
   require_size(layer.pattern, width, height);
 }
 
 /// How a colour is laid over what is there.
 auto laid_over(Rgba colour, double opacity = 1) {
   return [paints = paints_of(colour, static_cast<float>(opacity))](
-             const Paint& below, std::uint8_t level) { return over(paints[level], below); };
+             const Paint& below, std::uint8_t value) { return over(paints[value], below); };
 }
 
 /// How a colour with the layer's pattern in it is laid over what is there.
 auto patterned(Rgba colour, const PaintedLayer& layer) {
   return [fills = paints_of(colour), patterns = paints_of(layer.pattern_colour),
-          opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t level,
-                                                       std::uint8_t pattern_level) {
-    const Paint fill = beside(fills[level], share_of(level), {});
-    return over(mixed(within(patterns[pattern_level], fill), opacity, {}, 0), below);
+          opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t value,
+                                                       std::uint8_t pattern_value) {
+    const Paint fill = beside(fills[value], share_of(value), {});
+    return over(mixed(within(patterns[pattern_value], fill), opacity, {}, 0), below);
   };
 }
 
@@ -462,33 +462,33 @@ void Composer::paint(const PaintedLayer& layer) {
   if (layer.classes.size() > 1 || !is_separable) return paint_together(layer);
   for (const PaintedClass& only : layer.classes) {
     if (layer.pattern != nullptr) {
-      canvas_->paint(only.coverage, *layer.pattern, patterned(only.colour, layer));
+      canvas_->paint(only.mask, *layer.pattern, patterned(only.colour, layer));
     } else if (only.colour.a > 0) {
-      canvas_->paint(only.coverage, laid_over(only.colour, layer.opacity));
+      canvas_->paint(only.mask, laid_over(only.colour, layer.opacity));
     }
   }
   for (const PaintedClass& line : layer.lines) {
-    canvas_->paint(line.coverage, laid_over(line.colour));
+    canvas_->paint(line.mask, laid_over(line.colour));
   }
 }
 
 void Composer::paint_together(const PaintedLayer& layer) {
   layer_->begin(canvas_->width(), canvas_->height(), kTransparent);
   for (const PaintedClass& one : layer.classes) {
-    layer_->paint(one.coverage,
-                  [paints = paints_of(one.colour)](const Paint& below, std::uint8_t level) {
-                    return beside(paints[level], share_of(level), below);
+    layer_->paint(one.mask,
+                  [paints = paints_of(one.colour)](const Paint& below, std::uint8_t value) {
+                    return beside(paints[value], share_of(value), below);
                   });
   }
   layer_->change_all(settled);
   if (layer.pattern != nullptr) {
     layer_->paint(layer.pattern, [paints = paints_of(layer.pattern_colour)](const Paint& below,
-                                                                            std::uint8_t level) {
-      return within(paints[level], below);
+                                                                            std::uint8_t value) {
+      return within(paints[value], below);
     });
   }
   for (const PaintedClass& line : layer.lines) {
-    layer_->paint(line.coverage, laid_over(line.colour));
+    layer_->paint(line.mask, laid_over(line.colour));
   }
   canvas_->paint_over(*layer_, static_cast<float>(layer.opacity));
 }

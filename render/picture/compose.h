@@ -1,4 +1,4 @@
-// From coverages and colours to a picture.
+// From masks and colours to a picture.
 //
 // Composition is "source over" in sRGB values, as browsers do it, in floating point, rounded once.
 // Classes of one layer are summed by area instead, so that neighbours leave no line between them.
@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "render/picture/colour.h"
 
 namespace trapeze {
@@ -29,8 +29,8 @@ struct Picture {
 
 /// Polygons, or lines, of one colour. Looks at memory of the caller.
 struct PaintedClass {
-  const Coverage* coverage = nullptr;  // null: every pixel is wholly covered
-  Rgba colour;                         // its opacity included
+  const Mask* mask = nullptr;  // null: every pixel is wholly covered
+  Rgba colour;                 // its opacity included
 };
 
 /// A layer as it is put together: classes of polygons, whose colours mix by the area that each
@@ -38,7 +38,7 @@ struct PaintedClass {
 /// the opacity says. Looks at memory of the caller.
 struct PaintedLayer {
   std::span<const PaintedClass> classes;
-  const Coverage* pattern = nullptr;  // null: none; counts where the classes cover
+  const Mask* pattern = nullptr;  // null: none; counts where the classes cover
   Rgba pattern_colour = kTransparent;
   std::span<const PaintedClass> lines = {};
   double opacity = 1;
@@ -57,9 +57,9 @@ class Composer {
   Composer(Composer&&) noexcept;
   Composer& operator=(Composer&&) noexcept;
 
-  /// Paints the layers, the first one lowest, over the background. The picture becomes width x
-  /// height, both at least 1; so large are all coverages (std::invalid_argument if not). It is
-  /// indexed if no more than 256 colours result.
+  /// Paints the layers over the background, the first one lowest (painter's order). The picture
+  /// becomes width x height pixels, both at least 1; it is indexed if it has at most 256 colours.
+  /// Throws std::invalid_argument if a mask is not of that size.
   void compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
                Picture& picture);
 

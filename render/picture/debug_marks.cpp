@@ -71,11 +71,11 @@ void draw_line(Position a, Position b, Rgba colour, Picture& picture) {
   }
 }
 
-/// Where an edge meets a level, in pixels.
-Position on_edge(const MeshView& mesh, std::uint32_t edge, std::uint32_t level, const View& view) {
+/// Where an edge reaches the height of a vertex, in pixels.
+Position on_edge(const MeshView& mesh, std::uint32_t edge, std::uint32_t vertex, const View& view) {
   const Point a = mesh.vertices[mesh.edges[edge].upper];
   const Point b = mesh.vertices[mesh.edges[edge].lower];
-  const std::int32_t y = mesh.vertices[level].y;
+  const std::int32_t y = mesh.vertices[vertex].y;
   const double share =
       a.y == b.y ? 0 : (static_cast<double>(y) - a.y) / (static_cast<double>(b.y) - a.y);
   return {(static_cast<double>(a.x - view.origin_x) + share * (static_cast<double>(b.x) - a.x)) /
@@ -126,7 +126,7 @@ class TintSum {
     const Position top = position_of(mesh.vertices[t.top], view);
     const Position bottom = position_of(mesh.vertices[t.bottom], view);
     const double rows = static_cast<double>(height_) * kRowsPerPixel;
-    // Rows whose middles lie between the levels.
+    // Rows whose middles lie between top and bottom.
     const auto first = std::clamp(std::ceil(top.y * kRowsPerPixel - 0.5), 0.0, rows);
     const auto end = std::clamp(std::ceil(bottom.y * kRowsPerPixel - 0.5), 0.0, rows);
     for (int row = static_cast<int>(first); row < static_cast<int>(end); ++row) {
@@ -204,13 +204,13 @@ void for_each_number(const Pairs& pairs, const Visit& visit) {
 /// The vertices, ascending, around which lie three or more features. Different features lie on both
 /// sides of every edge; where only one was met, the other side is outside.
 std::vector<std::uint32_t> junctions_of(const MeshView& mesh, Pairs features_by_edge) {
-  constexpr std::uint32_t kOutside = 0xffffffff;
+  constexpr std::uint32_t kOutsideOfAll = 0xffffffff;
   sort_and_unite(features_by_edge);
   Pairs features_by_vertex;
   for_each_number(features_by_edge, [&](std::uint32_t edge, std::span<const Pairs::value_type> of) {
     for (const std::uint32_t v : {mesh.edges[edge].upper, mesh.edges[edge].lower}) {
       for (const auto& [same, feature] : of) features_by_vertex.emplace_back(v, feature);
-      if (of.size() == 1) features_by_vertex.emplace_back(v, kOutside);
+      if (of.size() == 1) features_by_vertex.emplace_back(v, kOutsideOfAll);
     }
   });
   sort_and_unite(features_by_vertex);

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/mesh/trapezoid_mesh.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "render/picture/compose.h"
 
 namespace trapeze {

@@ -10,7 +10,7 @@ namespace {
 
 /// How much of the stretch of one pixel around a place is covered by bands of `width` that repeat
 /// after `period`, one of them around 0. Taken across the bands, whatever their direction.
-double band_coverage(double place, double period, double width) {
+double band_value(double place, double period, double width) {
   if (width >= period) return 1;
   const double half = width / 2;
   const auto overlap = [half](double distance) {
@@ -27,22 +27,20 @@ class Bands {
     const int count = std::max(1, static_cast<int>(std::ceil(period * kStepsPerPixel)));
     per_pixel_ = count / period;
     for (int i = 0; i < count; ++i) {
-      coverages_.push_back(
-          static_cast<float>(band_coverage((i + 0.5) / per_pixel_, period, width)));
+      values_.push_back(static_cast<float>(band_value((i + 0.5) / per_pixel_, period, width)));
     }
   }
 
   /// 0 <= place < period.
   float at(double place) const {
-    return coverages_[std::min(static_cast<std::size_t>(place * per_pixel_),
-                               coverages_.size() - 1)];
+    return values_[std::min(static_cast<std::size_t>(place * per_pixel_), values_.size() - 1)];
   }
 
  private:
   static constexpr double kStepsPerPixel = 64;
 
   double per_pixel_ = 1;
-  std::vector<float> coverages_;
+  std::vector<float> values_;
 };
 
 /// A coordinate that grows from pixel to pixel by less than the period, within 0 and the period.
@@ -79,17 +77,17 @@ struct Frame {
   double west;  // of the picture, from the corner of the world
   double north;
 
-  /// Calls level_at(u, v), both within the period, for every pixel.
-  template <typename LevelAt>
-  void draw(Coverage& levels, const LevelAt& level_at) const {
+  /// Calls value_at(u, v), both within the period, for every pixel.
+  template <typename ValueAt>
+  void draw(Mask& mask, const ValueAt& value_at) const {
     const double x = west + 0.5;
     for (int row = 0; row < view.height; ++row) {
       const double y = north + row + 0.5;
       Cycle u(x * along_x + y * along_y, along_x, period);
       Cycle v(y * along_x - x * along_y, -along_y, period);
-      std::uint8_t* out = levels.row_begin(row);
+      std::uint8_t* out = mask.row_begin(row);
       for (int column = 0; column < view.width; ++column) {
-        out[column] = static_cast<std::uint8_t>(level_at(u.place(), v.place()) * 255 + 0.5f);
+        out[column] = static_cast<std::uint8_t>(value_at(u.place(), v.place()) * 255 + 0.5f);
         u.advance();
         v.advance();
       }
@@ -97,12 +95,12 @@ struct Frame {
   }
 };
 
-void draw_dots(const Frame& frame, double width, Coverage& levels) {
+void draw_dots(const Frame& frame, double width, Mask& mask) {
   // Dots smaller than a pixel are paler instead.
   const double radius = std::max(width / 2, 0.5);
   const auto share = static_cast<float>(std::min(1.0, width * width));
   const double reach = radius + 0.5;
-  frame.draw(levels, [&](double u, double v) {
+  frame.draw(mask, [&](double u, double v) {
     const double du = std::min(u, frame.period - u);
     const double dv = std::min(v, frame.period - v);
     if (du >= reach || dv >= reach) return 0.0f;
@@ -113,8 +111,8 @@ void draw_dots(const Frame& frame, double width, Coverage& levels) {
 
 }  // namespace
 
-void draw_pattern(const Pattern& pattern, const View& view, int scale, Coverage& levels) {
-  levels.resize(view.width, view.height);
+void draw_pattern(const Pattern& pattern, const View& view, int scale, Mask& mask) {
+  mask.resize(view.width, view.height);
   const double angle = pattern.angle * std::numbers::pi / 180;
   const double width = pattern.width * scale;
   const Frame frame{view,
@@ -127,21 +125,21 @@ void draw_pattern(const Pattern& pattern, const View& view, int scale, Coverage&
   const Bands bands(frame.period, is_checker ? frame.period / 2 : width);
   switch (pattern.kind) {
     case PatternKind::none:
-      return levels.fill(0);
+      return mask.fill(0);
     case PatternKind::checker:
-      return frame.draw(levels, [&](double u, double v) {
+      return frame.draw(mask, [&](double u, double v) {
         const float a = bands.at(u);
         const float b = bands.at(v);
         return a * b + (1 - a) * (1 - b);
       });
     case PatternKind::crosshatch:
-      return frame.draw(levels,
+      return frame.draw(mask,
                         [&](double u, double v) { return std::max(bands.at(u), bands.at(v)); });
     case PatternKind::dots:
-      return draw_dots(frame, width, levels);
+      return draw_dots(frame, width, mask);
     case PatternKind::hatch:
     case PatternKind::stripes:
-      return frame.draw(levels, [&](double, double v) { return bands.at(v); });
+      return frame.draw(mask, [&](double, double v) { return bands.at(v); });
   }
 }
 

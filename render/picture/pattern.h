@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "render/picture/colour.h"
 
 namespace trapeze {
@@ -21,9 +21,9 @@ struct Pattern {
   friend bool operator==(const Pattern&, const Pattern&) = default;
 };
 
-/// Replaces `levels`, which become as large as the view, by how much of every pixel the pattern
+/// Replaces the mask, which becomes as large as the view, by how much of every pixel the pattern
 /// covers. It begins at the north-west corner of the world, so pictures of neighbouring tiles join.
 /// `scale` is the picture's. Nothing is covered by a pattern of kind none.
-void draw_pattern(const Pattern& pattern, const View& view, int scale, Coverage& levels);
+void draw_pattern(const Pattern& pattern, const View& view, int scale, Mask& mask);
 
 }  // namespace trapeze

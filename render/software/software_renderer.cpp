@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 
 namespace trapeze {
 
@@ -43,13 +43,13 @@ int truncate(double value) {
 
 }  // namespace
 
-DrawTimes SoftwareRenderer::draw(std::span<const CoverageTask> tasks) {
+DrawTimes SoftwareRenderer::draw(std::span<const MaskTask> tasks) {
   DrawTimes times;
-  for (const CoverageTask& task : tasks) draw(task, times);
+  for (const MaskTask& task : tasks) draw(task, times);
   return times;
 }
 
-void SoftwareRenderer::draw(const CoverageTask& task, DrawTimes& times) {
+void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   const View& view = task.view;
   view.check();
   prepare(view);
@@ -109,8 +109,8 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
   add_side(right_upper, right_lower, y_top, y_bottom, -1.0f, frame);
 }
 
-// Adds the part of the edge between two heights. The edge is not level there: the trapezoid that
-// it bounds has a height, and the edge spans it.
+// Adds the part of the edge between two heights. The edge is not horizontal there: the trapezoid
+// that it bounds has a height, and the edge spans it.
 void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
                                 const Frame& frame) {
   const double dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
@@ -202,17 +202,17 @@ void SoftwareRenderer::add_row(int row, double x_from, double x_to, double heigh
 }
 
 // Sums rows up and leaves the differences cleared for the next picture.
-void SoftwareRenderer::resolve(Coverage& out) {
+void SoftwareRenderer::resolve(Mask& out) {
   for (int row = 0; row < height_; ++row) {
     Touched& touched = touched_[static_cast<std::size_t>(row)];
-    std::uint8_t* levels = out.row_begin(row);
-    std::memset(levels, 0, static_cast<std::size_t>(width_));
+    std::uint8_t* values = out.row_begin(row);
+    std::memset(values, 0, static_cast<std::size_t>(width_));
     if (touched.first > touched.last) continue;
     // Beyond the column after the last touched one all edges are passed and nothing is covered.
     const int end = std::min(touched.last + 2, width_);
     float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
     if (touched.first < end)
-      take_levels({cells + touched.first, cells + end}, levels + touched.first);
+      resolve_row({cells + touched.first, cells + end}, values + touched.first);
     std::fill(cells + std::max(end, touched.first), cells + touched.last + 2, 0.0f);
     touched = {width_, -1};
   }

@@ -1,25 +1,26 @@
-// The reference renderer: exact-area coverage in plain C++, no GL.
+// The reference renderer: exact covered area in plain C++, without GL.
 //
-// Every trapezoid is the difference of two half-planes cut to its rows, so it is enough to add up,
-// pixel by pixel along its two side edges, how much lies to their right (the left edge counts
-// positive, the right edge negative); a running sum along each row turns that into coverage. The
-// cost is that of the edges' length in pixels, however large the area between them.
+// A trapezoid is the difference of two regions: what lies to the right of its left edge between its
+// top and its bottom, less what lies to the right of its right edge. So it is enough to add up, for
+// each pixel that an edge passes through, the change of the area to the right of the edge (positive
+// for the left edge, negative for the right one); a running sum along each row of pixels then gives
+// the covered area. The cost is proportional to the length of the edges in pixels, not to the area.
 //
-// Geometry is computed in double from integer differences: an edge across the whole world is
-// placed to better than 1/1000 pixel at zoom 24. Sums are single precision.
+// Geometry is computed in double precision from differences of integers: an edge across the whole
+// world is placed to better than 1/1000 pixel at zoom 24. Sums are in single precision.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze {
 
-class SoftwareRenderer final : public CoverageRenderer {
+class SoftwareRenderer final : public MaskRenderer {
  public:
-  using CoverageRenderer::draw;
-  DrawTimes draw(std::span<const CoverageTask> tasks) override;
+  using MaskRenderer::draw;
+  DrawTimes draw(std::span<const MaskTask> tasks) override;
 
   std::string_view name() const override { return "software"; }
   std::string description() const override;
@@ -28,13 +29,13 @@ class SoftwareRenderer final : public CoverageRenderer {
   struct Frame;
   struct Piece;
 
-  // The columns of a row that have been added to; first > last if none.
+  // The range of columns written in a row; first > last if none.
   struct Touched {
     int first;
     int last;
   };
 
-  void draw(const CoverageTask& task, DrawTimes& times);
+  void draw(const MaskTask& task, DrawTimes& times);
   void prepare(const View& view);
   void add(const MeshPart& part, const Frame& frame);
   void add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Frame& frame);
@@ -43,13 +44,13 @@ class SoftwareRenderer final : public CoverageRenderer {
   void add_clipped(const Piece& piece, float sign);
   void add_piece(const Piece& piece, float sign);
   void add_row(int row, double x_from, double x_to, double height, float sign);
-  void resolve(Coverage& out);
+  void resolve(Mask& out);
 
   int width_ = 0;
   int height_ = 0;
   std::size_t stride_ = 0;
-  // Differences along each row, see above; all zero between two draws. Two columns more than the
-  // picture take what falls on and right of its east border.
+  // Differences along each row, see above; all zero between two draws. Each row has two columns
+  // more than the picture, for what falls on or to the right of its east border.
   std::vector<float> differences_;
   std::vector<Touched> touched_;
 };

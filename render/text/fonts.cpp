@@ -124,12 +124,12 @@ void draw_glyph(const PlacedGlyph& glyph, int base, Rgba colour, Picture& pictur
   if (slot->format != FT_GLYPH_FORMAT_OUTLINE) return;
   FT_Outline_Translate(&slot->outline, glyph.x & 63, glyph.y & 63);
   if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL) != 0) return;
-  const FT_Bitmap& levels = slot->bitmap;
+  const FT_Bitmap& bitmap = slot->bitmap;
   const int left = static_cast<int>(glyph.x >> 6) + slot->bitmap_left;
   const int top = base - static_cast<int>(glyph.y >> 6) - slot->bitmap_top;
-  for (int y = 0; y < static_cast<int>(levels.rows); ++y) {
-    const unsigned char* row = levels.buffer + std::ptrdiff_t{y} * levels.pitch;
-    for (int x = 0; x < static_cast<int>(levels.width); ++x) {
+  for (int y = 0; y < static_cast<int>(bitmap.rows); ++y) {
+    const unsigned char* row = bitmap.buffer + std::ptrdiff_t{y} * bitmap.pitch;
+    for (int x = 0; x < static_cast<int>(bitmap.width); ++x) {
       if (row[x] > 0) blend(picture, left + x, top + y, colour, row[x] / 255.0);
     }
   }

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/layer/features_at.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
 #include "server/tiles/layer_style.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "render/coverage/stroke.h"
+#include "render/mask/stroke.h"
 #include "render/picture/compose.h"
 #include "render/picture/debug_marks.h"
 #include "render/picture/pattern.h"
@@ -234,9 +234,9 @@ class Swatch {
 
   int scale_;
   View view_;
-  Coverage fill_;
-  Coverage pattern_;
-  Coverage line_;
+  Mask fill_;
+  Mask pattern_;
+  Mask line_;
   Stroker stroker_;
   Composer composer_;
   Picture picture_;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/grid/web_mercator.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze {
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/grid/web_mercator.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/tile_matrix_set.h"

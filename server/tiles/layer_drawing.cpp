@@ -242,10 +242,10 @@ bool LayerDrawing::is_constant() const {
   return class_count_ == 1 && classes_[0].is_full && line_count_ == 0 && !has_pattern();
 }
 
-void LayerDrawing::add_tasks(const View& view, std::vector<CoverageTask>& tasks) {
+void LayerDrawing::add_tasks(const View& view, std::vector<MaskTask>& tasks) {
   for (std::size_t i = 0; i < class_count_; ++i) {
     ClassDrawing& drawing = classes_[i];
-    if (drawing.is_drawn) tasks.push_back({drawing.parts, view, &drawing.coverage});
+    if (drawing.is_drawn) tasks.push_back({drawing.parts, view, &drawing.mask});
   }
 }
 
@@ -253,14 +253,14 @@ void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools
   if (has_pattern()) draw_pattern(style().pattern, view, scale, pattern_);
   for (std::size_t i = 0; i < line_count_; ++i) {
     Lines& lines = lines_[i];
-    lines.coverage.resize(view.width, view.height);
-    lines.coverage.fill(0);
+    lines.mask.resize(view.width, view.height);
+    lines.mask.fill(0);
     tools.stroker.draw(layer_->mesh().vertices, lines.edges, style().stroke, view, scale,
-                       lines.coverage);
+                       lines.mask);
   }
 }
 
-void LayerDrawing::forget_places(CoverageRenderer& renderer) {
+void LayerDrawing::forget_places(MaskRenderer& renderer) {
   for (std::size_t i = 0; i < class_count_; ++i) {
     if (classes_[i].all_places.count > 0) renderer.forget(classes_[i].parts.back().mesh.id);
   }
@@ -272,10 +272,10 @@ PaintedLayer LayerDrawing::painted() {
   for (const ClassDrawing* drawing : by_number_) {
     if (drawing == nullptr || (!drawing->is_full && !drawing->is_drawn)) continue;
     painted_classes_.push_back(
-        {drawing->is_full ? nullptr : &drawing->coverage, style().paints[drawing->number].fill});
+        {drawing->is_full ? nullptr : &drawing->mask, style().paints[drawing->number].fill});
   }
   for (std::size_t i = 0; i < line_count_; ++i) {
-    painted_lines_.push_back({&lines_[i].coverage, lines_[i].colour});
+    painted_lines_.push_back({&lines_[i].mask, lines_[i].colour});
   }
   return {painted_classes_, has_pattern() ? &pattern_ : nullptr, style().pattern.colour,
           painted_lines_, style().opacity};
@@ -284,17 +284,17 @@ PaintedLayer LayerDrawing::painted() {
 bool LayerDrawing::is_empty() const {
   for (std::size_t i = 0; i < class_count_; ++i) {
     const ClassDrawing& drawing = classes_[i];
-    if (drawing.is_full || (drawing.is_drawn && !drawing.coverage.is_all(0))) return false;
+    if (drawing.is_full || (drawing.is_drawn && !drawing.mask.is_all(0))) return false;
   }
   for (std::size_t i = 0; i < line_count_; ++i) {
-    if (!lines_[i].coverage.is_all(0)) return false;
+    if (!lines_[i].mask.is_all(0)) return false;
   }
   return true;
 }
 
 bool LayerDrawing::is_full() const {
   if (class_count_ != 1 || line_count_ > 0 || has_pattern()) return false;
-  return classes_[0].is_full || (classes_[0].is_drawn && classes_[0].coverage.is_all(255));
+  return classes_[0].is_full || (classes_[0].is_drawn && classes_[0].mask.is_all(255));
 }
 
 }  // namespace trapeze

@@ -11,8 +11,8 @@
 
 #include "core/layer/class_dust.h"
 #include "core/layer/layer.h"
-#include "render/coverage/coverage.h"
-#include "render/coverage/stroke.h"
+#include "render/mask/mask.h"
+#include "render/mask/stroke.h"
 #include "render/picture/compose.h"
 #include "server/styles/feature_classes.h"
 #include "server/tiles/loop_length_cache.h"
@@ -42,12 +42,12 @@ class LayerDrawing {
   /// Whether every pixel has one colour, known without drawing.
   bool is_constant() const;
 
-  /// Appends the coverages that have to be drawn; they look at memory of the drawing.
-  void add_tasks(const View& view, std::vector<CoverageTask>& tasks);
+  /// Appends the masks that have to be drawn; they look at memory of the drawing.
+  void add_tasks(const View& view, std::vector<MaskTask>& tasks);
   /// Draws pattern and outlines, for a picture of that scale.
   void draw_details(const View& view, int scale, DrawingTools& tools);
   /// Lets go of what was made for this picture only.
-  void forget_places(CoverageRenderer& renderer);
+  void forget_places(MaskRenderer& renderer);
 
   /// As it goes into the picture, once all has been drawn; looks at memory of the drawing.
   PaintedLayer painted();
@@ -61,7 +61,7 @@ class LayerDrawing {
   struct ClassDrawing {
     std::uint8_t number = 0;
     bool is_full = false;   // covers the tile wholly and need not be drawn
-    bool is_drawn = false;  // its coverage
+    bool is_drawn = false;  // its mask
     std::vector<TrapezoidRange> ranges;
     // Small polygons; their mesh is made for this picture.
     std::vector<Point> place_vertices;
@@ -69,7 +69,7 @@ class LayerDrawing {
     std::vector<MeshTrapezoid> place_trapezoids;
     TrapezoidRange all_places;
     std::vector<MeshPart> parts;
-    Coverage coverage;
+    Mask mask;
 
     void clear(std::uint8_t class_number);
     void add_place(const Box& place, bool is_hole);
@@ -81,7 +81,7 @@ class LayerDrawing {
     // The same of dashed lines: edge, and row of the feature whose outline it is a part of.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> dashed_sides;
     std::vector<OutlineEdge> edges;
-    Coverage coverage;
+    Mask mask;
   };
 
   const LayerStyle& style() const { return paint_->style; }
@@ -106,7 +106,7 @@ class LayerDrawing {
   std::vector<ClassDrawing*> by_number_;  // null: not met yet
   std::deque<Lines> lines_;
   std::size_t line_count_ = 0;
-  Coverage pattern_;
+  Mask pattern_;
   std::vector<PaintedClass> painted_classes_;
   std::vector<PaintedClass> painted_lines_;
 };

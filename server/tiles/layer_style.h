@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/coverage/stroke.h"
+#include "render/mask/stroke.h"
 #include "render/picture/colour.h"
 #include "render/picture/pattern.h"
 #include "server/base/result.h"

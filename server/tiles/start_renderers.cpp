@@ -9,19 +9,19 @@
 
 namespace trapeze {
 
-std::vector<std::unique_ptr<CoverageRenderer>> start_renderers(const RendererOptions& options,
-                                                               int count) {
+std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions& options,
+                                                           int count) {
   MadeRenderers made = make_renderers(options, count);
   for (const RendererFailure& failure : made.failures) {
     spdlog::info("not drawing by {}: {}", failure.what, failure.reason);
   }
-  const CoverageRenderer& first = *made.renderers.front();
+  const MaskRenderer& first = *made.renderers.front();
   spdlog::info("drawing by {}: {}, {} worker{}", first.name(), first.description(), count,
                count == 1 ? "" : "s");
   return std::move(made.renderers);
 }
 
-void warm_up(std::span<const std::unique_ptr<CoverageRenderer>> renderers) {
+void warm_up(std::span<const std::unique_ptr<MaskRenderer>> renderers) {
   // A trapezoid of few pixels and one of many are drawn in different ways.
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
@@ -31,8 +31,8 @@ void warm_up(std::span<const std::unique_ptr<CoverageRenderer>> renderers) {
   const MeshView mesh{new_mesh_id(), vertices, edges, trapezoids};
   const TrapezoidRange all{0, static_cast<std::uint32_t>(trapezoids.size())};
   for_each_in_parallel(renderers.size(), renderers.size(), [&](std::size_t i) {
-    Coverage coverage;
-    renderers[i]->draw(mesh, {&all, 1}, View{}, coverage);
+    Mask mask;
+    renderers[i]->draw(mesh, {&all, 1}, View{}, mask);
   });
   for (const auto& renderer : renderers) renderer->forget(mesh.id);
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "render/coverage/stopwatch.h"
+#include "render/mask/stopwatch.h"
 #include "render/picture/debug_marks.h"
 #include "render/picture/webp.h"
 #include "render/text/label.h"
@@ -31,7 +31,7 @@ View with_margin(const View& view) {
 
 }  // namespace
 
-TilePainter::TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+TilePainter::TilePainter(std::unique_ptr<MaskRenderer> renderer,
                          std::shared_ptr<FeatureClassCache> classes,
                          std::shared_ptr<const Fonts> fonts)
     : renderer_(std::move(renderer)), classes_(std::move(classes)), fonts_(std::move(fonts)) {}

@@ -1,4 +1,4 @@
-// Draws tiles: selects trapezoids, draws coverages, composes colours, encodes the PNG.
+// Draws tiles: selects trapezoids, draws masks, composes colours, encodes the PNG.
 //
 // Thread-safety: one thread at a time; every worker has its own.
 #pragma once
@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "render/picture/compose.h"
 #include "render/picture/png.h"
 #include "render/text/fonts.h"
@@ -60,7 +60,7 @@ class TilePainter {
   };
 
   /// Painters may share what keeps the classes of features, and the fonts, which are for marks.
-  explicit TilePainter(std::unique_ptr<CoverageRenderer> renderer,
+  explicit TilePainter(std::unique_ptr<MaskRenderer> renderer,
                        std::shared_ptr<FeatureClassCache> classes = new_class_cache(),
                        std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>());
 
@@ -73,7 +73,7 @@ class TilePainter {
   std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
 
   /// Whether painting several tiles at once takes less time than one after the other.
-  bool gains_by_company() const { return renderer_->gains_by_company(); }
+  bool gains_by_batching() const { return renderer_->gains_by_batching(); }
 
  private:
   // The drawings of one tile, and what became of it.
@@ -94,7 +94,7 @@ class TilePainter {
   std::shared_ptr<const std::string> constant(Rgba colour, int side, TileFormat format);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
-  std::unique_ptr<CoverageRenderer> renderer_;
+  std::unique_ptr<MaskRenderer> renderer_;
   std::shared_ptr<FeatureClassCache> classes_;
   std::shared_ptr<const Fonts> fonts_;
   Composer composer_;
@@ -104,7 +104,7 @@ class TilePainter {
   // Kept from tile to tile only for their memory.
   std::deque<LayerDrawing> drawings_;  // tasks point into them
   std::size_t drawing_count_ = 0;
-  std::vector<CoverageTask> tasks_;
+  std::vector<MaskTask> tasks_;
   std::vector<PaintedLayer> painted_;
   DrawingTools tools_;
   Picture picture_;

@@ -2,7 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "server/base/build_id.h"
 #include "server/base/content_hash.h"
 #include "server/data/layer_summary.h"

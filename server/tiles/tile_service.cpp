@@ -9,7 +9,7 @@
 namespace trapeze {
 
 TileService::TileService(const TileServiceOptions& options,
-                         std::vector<std::unique_ptr<CoverageRenderer>> renderers)
+                         std::vector<std::unique_ptr<MaskRenderer>> renderers)
     : options_(options),
       renderer_(*renderers.front()),
       renderer_name_(renderer_.name()),
@@ -62,7 +62,7 @@ void TileService::tell(const TileAnswer& answer) const {
 
 void TileService::work(TilePainter& painter) {
   const std::size_t most =
-      painter.gains_by_company() ? std::max<std::size_t>(options_.batch, 1) : 1;
+      painter.gains_by_batching() ? std::max<std::size_t>(options_.batch, 1) : 1;
   while (true) {
     const Flights flights = take(most);
     if (flights.empty()) return;

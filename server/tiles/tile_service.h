@@ -51,7 +51,7 @@ class TileService {
 
   /// Starts one worker for each renderer, of which there is at least one.
   TileService(const TileServiceOptions& options,
-              std::vector<std::unique_ptr<CoverageRenderer>> renderers);
+              std::vector<std::unique_ptr<MaskRenderer>> renderers);
   /// Ends what is being drawn; what waits is answered as saturated.
   ~TileService();
   TileService(const TileService&) = delete;
@@ -96,7 +96,7 @@ class TileService {
   void tell(const TileAnswer& answer) const;
 
   const TileServiceOptions options_;
-  CoverageRenderer& renderer_;  // the first; its worker lives until the service ends
+  MaskRenderer& renderer_;  // the first; its worker lives until the service ends
   const std::string renderer_name_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;

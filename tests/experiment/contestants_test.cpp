@@ -13,8 +13,7 @@ namespace {
 // Nothing stands in the way of any vertex of the map, so topology makes no difference to it.
 class ContestantsTest : public ::testing::TestWithParam<Method> {
  protected:
-  static void expect_same(const std::vector<Coverage>& drawn,
-                          const std::vector<Coverage>& expected) {
+  static void expect_same(const std::vector<Mask>& drawn, const std::vector<Mask>& expected) {
     ASSERT_EQ(drawn.size(), expected.size());
     for (std::size_t layer = 0; layer < drawn.size(); ++layer) {
       const auto a = drawn[layer].pixels();
@@ -25,16 +24,16 @@ class ContestantsTest : public ::testing::TestWithParam<Method> {
       EXPECT_LE(worst, 2) << "layer " << layer;
     }
   }
-  static bool shows_something(const std::vector<Coverage>& coverages) {
-    for (const Coverage& coverage : coverages) {
-      if (!coverage.is_all(0)) return true;
+  static bool shows_something(const std::vector<Mask>& masks) {
+    for (const Mask& mask : masks) {
+      if (!mask.is_all(0)) return true;
     }
     return false;
   }
-  static bool shows_something_in_the_middle(const Coverage& coverage) {
-    for (int y = coverage.height() / 2; y < coverage.height() / 2 + 3; ++y) {
-      for (int x = coverage.width() / 2 - 3; x < coverage.width() / 2 + 3; ++x) {
-        if (coverage.at(x, y) > 0) return true;
+  static bool shows_something_in_the_middle(const Mask& mask) {
+    for (int y = mask.height() / 2; y < mask.height() / 2 + 3; ++y) {
+      for (int x = mask.width() / 2 - 3; x < mask.width() / 2 + 3; ++x) {
+        if (mask.at(x, y) > 0) return true;
       }
     }
     return false;
@@ -50,8 +49,8 @@ TEST_P(ContestantsTest, DrawTheSame) {
     const auto contestant = make_contestant(GetParam(), topology, map_, screen_);
     const auto expected = make_contestant(Method::lifespans, Topology::fast, map_, screen_);
     contestant->start_run();
-    std::vector<Coverage> drawn;
-    std::vector<Coverage> reference;
+    std::vector<Mask> drawn;
+    std::vector<Mask> reference;
     // The uppermost vertex of a building: buildings are so far apart that the closest view around
     // any other place may have none.
     const Point centre = map_.layers[1].polygons.rings[0][0];
@@ -91,11 +90,11 @@ TEST(DeviceTrapezoidsTest, MoreThanAChunkIsDrawn) {
   view.cells_per_pixel = 4096;
   view.width = 128;
   view.height = 32;
-  std::vector<Coverage> coverages;
-  device.draw(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count)}, view, coverages);
-  for (int x = 0; x < count / 4096; ++x) EXPECT_EQ(coverages[0].at(x, 0), 255) << x;
-  EXPECT_EQ(coverages[0].at(count / 4096 + 1, 0), 0);
-  EXPECT_EQ(coverages[0].at(0, 1), 0);
+  std::vector<Mask> masks;
+  device.draw(std::vector<std::uint32_t>{static_cast<std::uint32_t>(count)}, view, masks);
+  for (int x = 0; x < count / 4096; ++x) EXPECT_EQ(masks[0].at(x, 0), 255) << x;
+  EXPECT_EQ(masks[0].at(count / 4096 + 1, 0), 0);
+  EXPECT_EQ(masks[0].at(0, 1), 0);
 }
 
 TEST(RaceTest, CountsEveryViewOnceForEachContestant) {

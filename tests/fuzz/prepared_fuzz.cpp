@@ -151,14 +151,14 @@ void use(const Layer& layer, std::uint32_t hash) {
   const bool whole_tiles = hash % 16 == 0;
   const bool builds_again = hash / 16 % 8 == 0;
   static SoftwareRenderer renderer;
-  static Coverage coverage;
+  static Mask mask;
   std::vector<TrapezoidRange> ranges;
   std::vector<Box> places;
   for (int zoom = 0; zoom <= 24; zoom += 3) {
     const View view = view_of(zoom, whole_tiles);
     const Layer::Selection selection{view.box(), static_cast<Level>(kLastLevel - 2 * zoom)};
     layer.select(selection, ranges);
-    renderer.draw(layer.mesh(), ranges, view, coverage);
+    renderer.draw(layer.mesh(), ranges, view, mask);
     layer.fill_box(selection, ranges);
     layer.small_polygons(selection, places);
   }

@@ -46,8 +46,8 @@ class FuzzedSite {
   }
 
  private:
-  static std::vector<std::unique_ptr<CoverageRenderer>> renderers() {
-    std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+  static std::vector<std::unique_ptr<MaskRenderer>> renderers() {
+    std::vector<std::unique_ptr<MaskRenderer>> renderers;
     renderers.push_back(std::make_unique<SoftwareRenderer>());
     return renderers;
   }

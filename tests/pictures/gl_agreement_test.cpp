@@ -33,7 +33,7 @@ class GlAgreementTest : public ::testing::TestWithParam<std::string> {
   }
 
   const RealLayer* real_ = nullptr;
-  CoverageRenderer* gl_ = nullptr;
+  MaskRenderer* gl_ = nullptr;
   SoftwareRenderer software_;
   std::vector<TrapezoidRange> ranges_;
 };

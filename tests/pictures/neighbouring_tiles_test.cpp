@@ -15,16 +15,16 @@ namespace {
 constexpr std::array kZooms = {0, 3, 6, 9, 11, 13, 15, 17, 19, 21};
 constexpr int kPlacesPerZoom = 6;
 
-void draw(const RealLayer& real, const View& view, CoverageRenderer& renderer, Coverage& out) {
+void draw(const RealLayer& real, const View& view, MaskRenderer& renderer, Mask& out) {
   std::vector<TrapezoidRange> ranges;
   real.layer->select(default_selection(view), ranges);
   renderer.draw(real.layer->mesh(), ranges, view, out);
 }
 
-/// The four tiles of the next zoom that make up `tile`, as one coverage.
-Coverage put_together(const RealLayer& real, const TileId& tile, CoverageRenderer& renderer) {
-  Coverage all(2 * kTilePixels, 2 * kTilePixels);
-  Coverage quarter;
+/// The four tiles of the next zoom that make up `tile`, as one mask.
+Mask put_together(const RealLayer& real, const TileId& tile, MaskRenderer& renderer) {
+  Mask all(2 * kTilePixels, 2 * kTilePixels);
+  Mask quarter;
   for (std::uint32_t south = 0; south < 2; ++south) {
     for (std::uint32_t east = 0; east < 2; ++east) {
       const TileId child{tile.z + 1, 2 * tile.x + east, 2 * tile.y + south};
@@ -39,12 +39,12 @@ Coverage put_together(const RealLayer& real, const TileId& tile, CoverageRendere
   return all;
 }
 
-void expect_no_seams(const RealLayer& real, CoverageRenderer& renderer) {
+void expect_no_seams(const RealLayer& real, MaskRenderer& renderer) {
   for (const int zoom : kZooms) {
     for (const TileId& tile : tiles_around_vertices(real, zoom, kPlacesPerZoom, 2)) {
-      Coverage whole;
+      Mask whole;
       draw(real, View::of_tile(tile, 2), renderer, whole);
-      const Difference difference = compare_coverages(whole, put_together(real, tile, renderer));
+      const Difference difference = compare_masks(whole, put_together(real, tile, renderer));
       EXPECT_LE(difference.worst, 1) << text_of(tile) << ": " << difference;
     }
   }
@@ -68,7 +68,7 @@ TEST_P(NeighbouringTilesTest, AreOnePictureInSoftware) {
 using GlNeighbouringTilesTest = NeighbouringTilesTest;
 
 TEST_P(GlNeighbouringTilesTest, AreOnePicture) {
-  CoverageRenderer* gl = shared_gl().renderer.get();
+  MaskRenderer* gl = shared_gl().renderer.get();
   if (gl == nullptr) GTEST_SKIP() << "there is no GL here: " << shared_gl().reasons;
   expect_no_seams(*real_, *gl);
   gl->forget(real_->layer->mesh().id);

@@ -9,7 +9,7 @@
 
 #include "core/grid/web_mercator.h"
 #include "core/layer/layer.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 #include "tests/pictures/true_picture.h"
 
 namespace trapeze::testing {

@@ -4,13 +4,13 @@
 #include <memory>
 #include <string>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze::testing {
 
 struct SharedGl {
-  std::unique_ptr<CoverageRenderer> renderer;  // by EGL or by OSMesa; null if neither works here
-  std::string reasons;                         // why not
+  std::unique_ptr<MaskRenderer> renderer;  // by EGL or by OSMesa; null if neither works here
+  std::string reasons;                     // why not
 };
 
 /// Made when first asked for. For one thread.

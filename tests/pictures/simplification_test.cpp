@@ -46,13 +46,13 @@ struct Distance {
   }
 };
 
-int apart(const Coverage& truth, const Coverage& drawn, int column, int row) {
+int apart(const Mask& truth, const Mask& drawn, int column, int row) {
   return std::abs(truth.at(column, row) - drawn.at(column, row));
 }
 
 /// A pixel that is full in one picture and less than half full in the other, or empty and more than
 /// half full, while all eight around it are much the same.
-bool is_hole_or_spike(const Coverage& truth, const Coverage& drawn, int column, int row) {
+bool is_hole_or_spike(const Mask& truth, const Mask& drawn, int column, int row) {
   const int was = truth.at(column, row);
   const int is = drawn.at(column, row);
   if (!(was > 250 && is < 128) && !(was < 5 && is > 128)) return false;
@@ -65,8 +65,7 @@ bool is_hole_or_spike(const Coverage& truth, const Coverage& drawn, int column, 
   return true;
 }
 
-void add_tile(const Coverage& truth, const Coverage& drawn, const TileId& tile,
-              Distance& distance) {
+void add_tile(const Mask& truth, const Mask& drawn, const TileId& tile, Distance& distance) {
   for (int row = 0; row < truth.height(); ++row) {
     for (int column = 0; column < truth.width(); ++column) {
       const int difference = apart(truth, drawn, column, row);
@@ -94,7 +93,7 @@ class SimplificationTest : public ::testing::TestWithParam<std::string> {
   template <class Select>
   Distance measure(int zoom, const char* what, const Select& select) {
     Distance distance;
-    Coverage drawn;
+    Mask drawn;
     std::vector<TrapezoidRange> ranges;
     for (const TileId& tile : tiles_around_vertices(*real_, zoom, kTilesPerZoom, 3)) {
       const View view = View::of_tile(tile);

@@ -82,18 +82,18 @@ class Counts {
     steps_[at(last)] -= kSamplesPerSide;
   }
 
-  Coverage resolve(int height) const {
-    Coverage coverage(width_, height);
+  Mask resolve(int height) const {
+    Mask mask(width_, height);
     for (int row = 0; row < height; ++row) {
       std::int32_t whole = 0;
       for (int column = 0; column < width_; ++column) {
         whole += steps_[index(row, column)];
         const std::int32_t inside = std::min(whole + partial_[index(row, column)], kSamples);
-        coverage.row_begin(row)[column] =
+        mask.row_begin(row)[column] =
             static_cast<std::uint8_t>((inside * 255 + kSamples / 2) / kSamples);
       }
     }
-    return coverage;
+    return mask;
   }
 
  private:
@@ -130,7 +130,7 @@ void TrueOutlines::add(const Rings& rings) {
   features_.push_back({box, ring_ends_.size()});
 }
 
-Coverage TrueOutlines::draw(const View& view) const {
+Mask TrueOutlines::draw(const View& view) const {
   if (std::max(view.width, view.height) * kSamplesPerSide >
       std::numeric_limits<std::uint16_t>::max())
     throw std::invalid_argument("the view has more sample points in a row than can be counted");

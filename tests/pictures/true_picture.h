@@ -9,7 +9,7 @@
 #include "core/grid/grid.h"
 #include "core/grid/rings.h"
 #include "core/layer/layer.h"
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze::testing {
 
@@ -27,7 +27,7 @@ class TrueOutlines {
   /// The share of each pixel's sample points that lie inside, summed over features, at most 1. A
   /// point on the boundary is inside where the polygon is right of it or below. The view is at
   /// most 4095 pixels wide and high.
-  Coverage draw(const View& view) const;
+  Mask draw(const View& view) const;
 
   const std::vector<Point>& points() const { return points_; }
 

@@ -30,17 +30,16 @@ TrueOutlines outlines_of(std::initializer_list<std::vector<Point>> rings) {
   return outlines;
 }
 
-std::vector<int> row_of(const Coverage& coverage, int row) {
+std::vector<int> row_of(const Mask& mask, int row) {
   std::vector<int> levels;
-  for (int column = 0; column < coverage.width(); ++column)
-    levels.push_back(coverage.at(column, row));
+  for (int column = 0; column < mask.width(); ++column) levels.push_back(mask.at(column, row));
   return levels;
 }
 
 TEST(TruePictureTest, ABoxCoversTheSharesOfItsPixels) {
   // From pixel 0.5 to 2.25 across and 1 to 1.5 down.
   const auto outlines = outlines_of({{{40, 80}, {180, 80}, {180, 120}, {40, 120}}});
-  const Coverage picture = outlines.draw(small_view());
+  const Mask picture = outlines.draw(small_view());
   EXPECT_EQ(row_of(picture, 0), std::vector<int>({0, 0, 0, 0}));
   EXPECT_EQ(row_of(picture, 1), std::vector<int>({64, 128, 32, 0}));
   EXPECT_EQ(row_of(picture, 2), std::vector<int>({0, 0, 0, 0}));
@@ -49,7 +48,7 @@ TEST(TruePictureTest, ABoxCoversTheSharesOfItsPixels) {
 TEST(TruePictureTest, InsideIsEvenOddOverTheRingsOfAFeature) {
   const std::vector<Point> all = {{-500, -500}, {900, -500}, {900, 900}, {-500, 900}};
   const std::vector<Point> hole = {{80, 80}, {160, 80}, {160, 160}, {80, 160}};
-  const Coverage picture = outlines_of({all, hole}).draw(small_view());
+  const Mask picture = outlines_of({all, hole}).draw(small_view());
   EXPECT_EQ(row_of(picture, 0), std::vector<int>({255, 255, 255, 255}));
   EXPECT_EQ(row_of(picture, 1), std::vector<int>({255, 0, 255, 255}));
 }
@@ -64,7 +63,7 @@ TEST(TruePictureTest, FeaturesAddUpToAWholePixelAtMost) {
 
 TEST(TruePictureTest, ASlantedEdgeIsSampledWithinASamplesWidth) {
   // Half of the pixel, and of the points on the diagonal all or none.
-  const Coverage picture = outlines_of({{{80, 0}, {160, 80}, {80, 80}}}).draw(small_view());
+  const Mask picture = outlines_of({{{80, 0}, {160, 80}, {80, 80}}}).draw(small_view());
   EXPECT_NEAR(picture.at(1, 0), 128, 16);
   EXPECT_EQ(picture.at(0, 0), 0);
   EXPECT_EQ(picture.at(2, 0), 0);

@@ -16,9 +16,9 @@ std::ostream& operator<<(std::ostream& out, const Difference& difference) {
              << difference.worst_column << ", row " << difference.worst_row;
 }
 
-Difference compare_coverages(const Coverage& expected, const Coverage& actual) {
+Difference compare_masks(const Mask& expected, const Mask& actual) {
   if (expected.width() != actual.width() || expected.height() != actual.height()) {
-    throw std::invalid_argument("the coverages are of different sizes");
+    throw std::invalid_argument("the masks are of different sizes");
   }
   Difference difference;
   difference.pixels = expected.pixels().size();
@@ -35,14 +35,13 @@ Difference compare_coverages(const Coverage& expected, const Coverage& actual) {
   return difference;
 }
 
-Difference compare_renderers(CoverageRenderer& expected, CoverageRenderer& actual,
-                             const MeshView& mesh, std::span<const TrapezoidRange> ranges,
-                             const View& view) {
-  Coverage from_expected;
-  Coverage from_actual;
+Difference compare_renderers(MaskRenderer& expected, MaskRenderer& actual, const MeshView& mesh,
+                             std::span<const TrapezoidRange> ranges, const View& view) {
+  Mask from_expected;
+  Mask from_actual;
   expected.draw(mesh, ranges, view, from_expected);
   actual.draw(mesh, ranges, view, from_actual);
-  return compare_coverages(from_expected, from_actual);
+  return compare_masks(from_expected, from_actual);
 }
 
 }  // namespace trapeze::testing

@@ -5,11 +5,11 @@
 #include <iosfwd>
 #include <span>
 
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 namespace trapeze::testing {
 
-/// Pixels by the difference of their coverages.
+/// Pixels by the difference of their values.
 struct Difference {
   std::size_t pixels = 0;
   std::size_t above_1 = 0;  // pixels that differ by more than 1/255
@@ -23,10 +23,9 @@ struct Difference {
 std::ostream& operator<<(std::ostream& out, const Difference& difference);
 
 /// The two are of one size.
-Difference compare_coverages(const Coverage& expected, const Coverage& actual);
+Difference compare_masks(const Mask& expected, const Mask& actual);
 
-Difference compare_renderers(CoverageRenderer& expected, CoverageRenderer& actual,
-                             const MeshView& mesh, std::span<const TrapezoidRange> ranges,
-                             const View& view);
+Difference compare_renderers(MaskRenderer& expected, MaskRenderer& actual, const MeshView& mesh,
+                             std::span<const TrapezoidRange> ranges, const View& view);
 
 }  // namespace trapeze::testing

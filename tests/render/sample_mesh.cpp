@@ -84,9 +84,9 @@ SampleMesh random_strips(std::mt19937& random, const Box& box, int count) {
     edges.push_back(mesh.add_edge({tops[i], box.min_y}, {bottoms[i], box.max_y}));
   }
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    const auto levels = pick_sorted(random, strips, box.min_y, box.max_y);
-    for (std::size_t j = 0; j + 1 < levels.size(); ++j) {
-      if (pick(random, 0, 1) == 1) mesh.add(edges[i], edges[i + 1], levels[j], levels[j + 1]);
+    const auto heights = pick_sorted(random, strips, box.min_y, box.max_y);
+    for (std::size_t j = 0; j + 1 < heights.size(); ++j) {
+      if (pick(random, 0, 1) == 1) mesh.add(edges[i], edges[i + 1], heights[j], heights[j + 1]);
     }
   }
   return mesh;

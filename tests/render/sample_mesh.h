@@ -16,7 +16,7 @@ class SampleMesh {
 
   std::uint32_t add_vertex(std::int32_t x, std::int32_t y);
   std::uint32_t add_edge(Point upper, Point lower);
-  /// The region between two edges from one level to another.
+  /// The region between two edges from one y to another.
   void add(std::uint32_t left, std::uint32_t right, std::int32_t top, std::int32_t bottom);
   /// A rectangle of cells.
   void add_box(std::int32_t min_x, std::int32_t min_y, std::int32_t max_x, std::int32_t max_y);
@@ -38,7 +38,7 @@ class SampleMesh {
 long double x_at(const MeshView& mesh, std::uint32_t edge, long double y);
 
 /// About `count` disjoint trapezoids that fill about half of the box: between edges from its top to
-/// its bottom that do not cross, cut at random levels. Many are slivers, some have no area.
+/// its bottom that do not cross, cut at random heights. Many are slivers, some have no area.
 SampleMesh random_strips(std::mt19937& random, const Box& box, int count);
 
 /// `count` disjoint trapezoids, each alone in a field of a chessboard that covers the box.

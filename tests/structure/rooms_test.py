@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = [
     "core/grid", "core/mesh", "core/graph", "core/sweep", "core/borders", "core/adapt", "core/layer",
     "core/io/file", "core/io/source", "core/io/load", "core/io/prepared", "core/io/export",
-    "render/coverage", "render/gl", "render/software", "render/picture", "render/text", "render",
+    "render/mask", "render/gl", "render/software", "render/picture", "render/text", "render",
     "server/base", "server/http", "server/styles", "server/config", "server/data", "server/tiles",
     "server/documents", "server/service", "server/cli",
 ]

@@ -22,7 +22,7 @@
 namespace trapeze {
 namespace {
 
-using testing::compare_coverages;
+using testing::compare_masks;
 using testing::compare_renderers;
 using testing::Difference;
 using testing::random_scatter;
@@ -102,7 +102,7 @@ TEST_P(GlRendererTest, DrawsLikeTheReferenceAtEveryZoom) {
   }
 }
 
-TEST_P(GlRendererTest, TakesCoverageAwayLikeTheReferenceWhereEdgesHaveChangedPlaces) {
+TEST_P(GlRendererTest, TakesAreaAwayLikeTheReferenceWhereEdgesHaveChangedPlaces) {
   const View view = View::of_tile({12, 2047, 2047});
   const Box box = view.box();
   const std::int32_t step = (box.max_x - box.min_x) / 32;
@@ -150,7 +150,7 @@ TEST_P(GlRendererTest, PlacesLongEdgesOfAllSlopesLikeTheReference) {
   for (const double reach : {1e2, 1e4, 1e6, 7e7}) {
     for (int i = 0; i < 40; ++i) {
       const double angle = std::uniform_real_distribution<double>(1e-9, M_PI - 1e-9)(random);
-      const double flat = i % 4 == 0 ? 1e-5 : 1;  // every fourth is all but level
+      const double flat = i % 4 == 0 ? 1e-5 : 1;  // every fourth is nearly horizontal
       const double dx = reach * std::cos(angle);
       const double dy = reach * std::sin(angle) * flat + 1;
       const auto at = [&](double share) {
@@ -245,9 +245,9 @@ TEST_P(GlRendererTest, DrawsTheSameBytesInWhateverOrder) {
   std::vector<TrapezoidRange> ranges;
   for (std::uint32_t i = 0; i < mesh.size(); ++i) ranges.push_back({i, 1});
   const View view{0, 0, 30, 256, 256};
-  Coverage first;
+  Mask first;
   renderer().draw(mesh.view(), ranges, view, first);
-  Coverage shuffled;
+  Mask shuffled;
   for (int i = 0; i < 5; ++i) {
     std::shuffle(ranges.begin(), ranges.end(), random);
     renderer().draw(mesh.view(), ranges, view, shuffled);
@@ -264,12 +264,12 @@ TEST_P(GlRendererTest, DrawsTheSameBytesWhereverInTheMesh) {
   }
   const View view{0, 0, 23.7, 256, 256};
   const TrapezoidRange all = alone.all();
-  Coverage expected;
+  Mask expected;
   renderer().draw(alone.view(), {&all, 1}, view, expected);
   const TrapezoidRange last{12'345, 3000};
-  Coverage coverage;
-  renderer().draw(behind_others.view(), {&last, 1}, view, coverage);
-  EXPECT_EQ(coverage, expected);
+  Mask mask;
+  renderer().draw(behind_others.view(), {&last, 1}, view, mask);
+  EXPECT_EQ(mask, expected);
   EXPECT_FALSE(expected.is_all(0));
 }
 
@@ -281,19 +281,19 @@ TEST_P(GlRendererTest, DrawsSeveralAndLargePicturesLikeTheReference) {
   const SampleMesh mesh = random_strips(random, {-50, -40, 9000, 8000}, 2000);
   const TrapezoidRange all = mesh.all();
   const MeshPart part{mesh.view(), {&all, 1}};
-  Coverage small;
-  Coverage large;
-  Coverage narrow;
-  const CoverageTask tasks[] = {{{&part, 1}, {0, 0, 30, 256, 256}, &small},
-                                {{&part, 1}, {0, 0, 3.5, 2500, 2300}, &large},
-                                {{&part, 1}, {700, 90, 9, 33, 301}, &narrow}};
+  Mask small;
+  Mask large;
+  Mask narrow;
+  const MaskTask tasks[] = {{{&part, 1}, {0, 0, 30, 256, 256}, &small},
+                            {{&part, 1}, {0, 0, 3.5, 2500, 2300}, &large},
+                            {{&part, 1}, {700, 90, 9, 33, 301}, &narrow}};
   for (const bool together : {true, false}) {
-    renderer().set_company(together);
+    renderer().set_batching(together);
     renderer().draw(tasks);
-    for (const CoverageTask& task : tasks) {
-      Coverage expected;
+    for (const MaskTask& task : tasks) {
+      Mask expected;
       reference_.draw(task.parts, task.view, expected);
-      const Difference difference = compare_coverages(expected, *task.out);
+      const Difference difference = compare_masks(expected, *task.out);
       EXPECT_TRUE(difference.is_within_bounds()) << together << ", " << difference;
     }
   }
@@ -303,17 +303,17 @@ TEST_P(GlRendererTest, IgnoresTrapezoidsWithoutHeightOrOutsideOfThePicture) {
   SampleMesh mesh;
   const std::uint32_t left = mesh.add_edge({0, 0}, {0, 64});
   const std::uint32_t right = mesh.add_edge({64, 0}, {64, 64});
-  const std::uint32_t level = mesh.add_edge({0, 30}, {64, 30});
+  const std::uint32_t horizontal = mesh.add_edge({0, 30}, {64, 30});
   mesh.add(left, right, 30, 30);
-  mesh.add(level, level, 30, 30);
+  mesh.add(horizontal, horizontal, 30, 30);
   mesh.add_box(-100, 0, 0, 64);
   mesh.add_box(64, 0, 100, 64);
   mesh.add_box(0, -100, 64, 0);
   mesh.add_box(0, 64, 64, 100);
-  Coverage coverage;
+  Mask mask;
   const TrapezoidRange all = mesh.all();
-  renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, 64, 64}, coverage);
-  EXPECT_TRUE(coverage.is_all(0));
+  renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, 64, 64}, mask);
+  EXPECT_TRUE(mask.is_all(0));
 }
 
 TEST_P(GlRendererTest, DrawsAcrossChunksOfALargeMesh) {
@@ -339,9 +339,9 @@ TEST_P(GlRendererTest, DrawsSeveralMeshesAsIfTheyWereOne) {
   east.add_box(3, 0, 6, 8);
   const TrapezoidRange one{0, 1};
   const MeshPart parts[] = {{west.view(), {&one, 1}}, {east.view(), {&one, 1}}};
-  Coverage coverage;
-  renderer().draw(parts, {0, 0, 8, 1, 1}, coverage);
-  EXPECT_EQ(coverage.at(0, 0), 191);
+  Mask mask;
+  renderer().draw(parts, {0, 0, 8, 1, 1}, mask);
+  EXPECT_EQ(mask.at(0, 0), 191);
 }
 
 TEST_P(GlRendererTest, NeighbouringPicturesPutTogetherEqualOneLargePicture) {
@@ -350,9 +350,9 @@ TEST_P(GlRendererTest, NeighbouringPicturesPutTogetherEqualOneLargePicture) {
   std::mt19937 random(seed);
   const SampleMesh mesh = random_strips(random, {-5000, -4000, 9000, 8000}, 500);
   const TrapezoidRange all = mesh.all();
-  Coverage large;
+  Mask large;
   renderer().draw(mesh.view(), {&all, 1}, {0, 0, 16, 512, 512}, large);
-  Coverage small;
+  Mask small;
   for (int tile = 0; tile < 4; ++tile) {
     const int column = tile % 2 * 256;
     const int row = tile / 2 * 256;
@@ -370,12 +370,12 @@ TEST_P(GlRendererTest, TwoThreadsDrawTheSameBytesAsOne) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   std::vector<SampleMesh> meshes;
-  std::vector<Coverage> expected(6);
+  std::vector<Mask> expected(6);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     meshes.push_back(random_strips(random, {-5000, -4000, 9000, 8000}, 300));
   }
   const View view{0, 0, 16, 256, 256};
-  const auto draw = [&](GlRenderer& with, std::size_t mesh, Coverage& out) {
+  const auto draw = [&](GlRenderer& with, std::size_t mesh, Mask& out) {
     const TrapezoidRange all = meshes[mesh].all();
     with.draw(meshes[mesh].view(), {&all, 1}, view, out);
   };
@@ -387,11 +387,11 @@ TEST_P(GlRendererTest, TwoThreadsDrawTheSameBytesAsOne) {
   std::vector<std::thread> threads;
   for (auto& with : renderers_) {
     threads.emplace_back([&, &with = *with] {
-      Coverage coverage;
+      Mask mask;
       for (std::size_t i = 0; i < 60; ++i) {
         const std::size_t mesh = i % expected.size();
-        draw(with, mesh, coverage);
-        if (!(coverage == expected[mesh])) ++wrong;
+        draw(with, mesh, mask);
+        if (!(mask == expected[mesh])) ++wrong;
         if (i % 10 == 9) with.forget(meshes[mesh].view().id);
       }
     });
@@ -404,10 +404,10 @@ TEST_P(GlRendererTest, DrawsAgainWhatWasForgotten) {
   SampleMesh mesh;
   mesh.add_box(0, 0, 8, 8);
   const TrapezoidRange all = mesh.all();
-  Coverage coverage;
+  Mask mask;
   for (int i = 0; i < 3; ++i) {
-    renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, coverage);
-    EXPECT_TRUE(coverage.is_all(255));
+    renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, mask);
+    EXPECT_TRUE(mask.is_all(255));
     renderer().forget(mesh.view().id);
   }
 }
@@ -416,12 +416,12 @@ TEST_P(GlRendererTest, KeepsDrawingAfterAnImpossibleRequest) {
   SampleMesh mesh;
   mesh.add_box(0, 0, 8, 8);
   const TrapezoidRange all = mesh.all();
-  Coverage coverage;
-  EXPECT_THROW(renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, -8, 8}, coverage),
+  Mask mask;
+  EXPECT_THROW(renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, -8, 8}, mask),
                std::invalid_argument);
   for (int side = 1; side < 12; ++side) {  // more sizes than targets are kept
-    renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, side, side}, coverage);
-    EXPECT_EQ(coverage.at(0, 0), 255);
+    renderer().draw(mesh.view(), {&all, 1}, {0, 0, 1, side, side}, mask);
+    EXPECT_EQ(mask.at(0, 0), 255);
   }
 }
 

@@ -10,13 +10,13 @@
 namespace trapeze {
 namespace {
 
-void expect_draws(CoverageRenderer& renderer) {
+void expect_draws(MaskRenderer& renderer) {
   testing::SampleMesh mesh;
   mesh.add_box(0, 0, 8, 8);
   const TrapezoidRange all = mesh.all();
-  Coverage coverage;
-  renderer.draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, coverage);
-  EXPECT_TRUE(coverage.is_all(255));
+  Mask mask;
+  renderer.draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, mask);
+  EXPECT_TRUE(mask.is_all(255));
   EXPECT_FALSE(renderer.description().empty());
 }
 

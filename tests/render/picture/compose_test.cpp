@@ -18,29 +18,29 @@ Picture compose(std::span<const PaintedClass> layers, int width, int height,
   return picture;
 }
 
-Coverage coverage_of(int width, int height, const std::vector<int>& levels) {
-  Coverage coverage(width, height);
+Mask mask_of(int width, int height, const std::vector<int>& values) {
+  Mask mask(width, height);
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
-      coverage.row_begin(row)[column] =
-          static_cast<std::uint8_t>(levels[static_cast<std::size_t>(row * width + column)]);
+      mask.row_begin(row)[column] =
+          static_cast<std::uint8_t>(values[static_cast<std::size_t>(row * width + column)]);
     }
   }
-  return coverage;
+  return mask;
 }
 
-Coverage random_coverage(std::mt19937& random, int width, int height) {
-  std::vector<int> levels(static_cast<std::size_t>(width * height));
-  for (int& level : levels) level = static_cast<int>(random() % 256);
-  return coverage_of(width, height, levels);
+Mask random_mask(std::mt19937& random, int width, int height) {
+  std::vector<int> values(static_cast<std::size_t>(width * height));
+  for (int& value : values) value = static_cast<int>(random() % 256);
+  return mask_of(width, height, values);
 }
 
 // One channel of "source over", straight from its definition, in double.
 struct Channels {
   double r, g, b, a;
 };
-Channels blend(const Channels& below, Rgba fill, int level) {
-  const double a = fill.a / 255.0 * level / 255.0;
+Channels blend(const Channels& below, Rgba fill, int value) {
+  const double a = fill.a / 255.0 * value / 255.0;
   const double sum = a + below.a * (1 - a);
   const auto mix = [&](double above, double under) {
     return sum == 0 ? 0 : (above * a + under * below.a * (1 - a)) / sum;
@@ -57,9 +57,9 @@ void expect_near(Rgba actual, const Channels& expected) {
   EXPECT_NEAR(actual.b, expected.b, 0.51);
 }
 
-TEST(ComposeTest, OneColourOverNothingIsItsCoverageAsOpacity) {
-  const Coverage coverage = coverage_of(3, 1, {0, 100, 255});
-  const PaintedClass layer{&coverage, {10, 20, 30, 255}};
+TEST(ComposeTest, OneColourOverNothingHasTheValuesOfItsMaskAsOpacities) {
+  const Mask mask = mask_of(3, 1, {0, 100, 255});
+  const PaintedClass layer{&mask, {10, 20, 30, 255}};
   const Picture picture = compose({&layer, 1}, 3, 1);
   EXPECT_TRUE(picture.is_indexed());
   EXPECT_EQ(picture.at(0, 0), kTransparent);
@@ -68,8 +68,8 @@ TEST(ComposeTest, OneColourOverNothingIsItsCoverageAsOpacity) {
 }
 
 TEST(ComposeTest, OneColourOverAnOpaqueBackgroundIsOpaque) {
-  const Coverage coverage = coverage_of(3, 1, {0, 51, 255});
-  const PaintedClass layer{&coverage, {255, 0, 0, 255}};
+  const Mask mask = mask_of(3, 1, {0, 51, 255});
+  const PaintedClass layer{&mask, {255, 0, 0, 255}};
   const Picture picture = compose({&layer, 1}, 3, 1, {0, 0, 255, 255});
   EXPECT_EQ(picture.at(0, 0), (Rgba{0, 0, 255, 255}));
   EXPECT_EQ(picture.at(1, 0), (Rgba{51, 0, 204, 255}));
@@ -77,8 +77,8 @@ TEST(ComposeTest, OneColourOverAnOpaqueBackgroundIsOpaque) {
 }
 
 TEST(ComposeTest, LayersThatDoNotShowCostNothing) {
-  const Coverage empty = coverage_of(2, 1, {0, 0});
-  const Coverage full = coverage_of(2, 1, {255, 128});
+  const Mask empty = mask_of(2, 1, {0, 0});
+  const Mask full = mask_of(2, 1, {255, 128});
   const std::vector<PaintedClass> layers{
       {&empty, {1, 1, 1, 255}}, {&full, {9, 9, 9, 0}}, {&full, {4, 5, 6, 255}}};
   const Picture picture = compose(layers, 2, 1);
@@ -93,7 +93,7 @@ TEST(ComposeTest, NoLayerIsTheBackground) {
 }
 
 TEST(ComposeTest, EveryLayerLiesOverTheOnesBefore) {
-  const Coverage full = coverage_of(1, 1, {255});
+  const Mask full = mask_of(1, 1, {255});
   const std::vector<PaintedClass> layers{{&full, {255, 0, 0, 255}}, {&full, {0, 255, 0, 255}}};
   EXPECT_EQ(compose(layers, 1, 1).at(0, 0), (Rgba{0, 255, 0, 255}));
 }
@@ -103,9 +103,9 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   for (const Rgba background : {kTransparent, Rgba{200, 210, 220, 255}, Rgba{9, 99, 200, 77}}) {
-    const Coverage a = random_coverage(random, 40, 30);
-    const Coverage b = random_coverage(random, 40, 30);
-    const Coverage c = random_coverage(random, 40, 30);
+    const Mask a = random_mask(random, 40, 30);
+    const Mask b = random_mask(random, 40, 30);
+    const Mask c = random_mask(random, 40, 30);
     const std::vector<PaintedClass> layers{
         {&a, {250, 3, 90, 255}}, {&b, {0, 128, 255, 140}}, {&c, {77, 200, 10, 30}}};
     const Picture picture = compose(layers, 40, 30, background);
@@ -114,7 +114,7 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
         Channels expected{double(background.r), double(background.g), double(background.b),
                           background.a / 255.0};
         for (const PaintedClass& layer : layers) {
-          expected = blend(expected, layer.colour, layer.coverage->at(column, row));
+          expected = blend(expected, layer.colour, layer.mask->at(column, row));
         }
         expect_near(picture.at(column, row), expected);
       }
@@ -128,8 +128,8 @@ TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
     left[i] = i % 64 < 30 ? 255 : 40;
     right[i] = i % 64 > 32 ? 255 : 0;
   }
-  const Coverage a = coverage_of(64, 64, left);
-  const Coverage b = coverage_of(64, 64, right);
+  const Mask a = mask_of(64, 64, left);
+  const Mask b = mask_of(64, 64, right);
   const std::vector<PaintedClass> layers{{&a, {255, 0, 0, 255}}, {&b, {0, 0, 255, 255}}};
   const Picture picture = compose(layers, 64, 64);
   EXPECT_TRUE(picture.is_indexed());
@@ -146,9 +146,9 @@ Picture compose(const PaintedLayer& layer, int width, int height, Rgba backgroun
 }
 
 TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
-  const Coverage west = coverage_of(4, 1, {255, 100, 64, 1});
-  const Coverage east = coverage_of(4, 1, {0, 155, 64, 254});
-  const Coverage rest = coverage_of(4, 1, {0, 0, 126, 0});  // of three, rounded down
+  const Mask west = mask_of(4, 1, {255, 100, 64, 1});
+  const Mask east = mask_of(4, 1, {0, 155, 64, 254});
+  const Mask rest = mask_of(4, 1, {0, 0, 126, 0});  // of three, rounded down
   const std::vector<PaintedClass> alike{
       {&west, {9, 8, 7, 255}}, {&east, {9, 8, 7, 255}}, {&rest, {9, 8, 7, 255}}};
   const Picture one = compose({.classes = alike}, 4, 1);
@@ -161,14 +161,14 @@ TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
 }
 
 TEST(ComposeTest, OverlappingClassesShareThePixel) {
-  const Coverage full = coverage_of(1, 1, {255});
+  const Mask full = mask_of(1, 1, {255});
   const std::vector<PaintedClass> classes{{&full, {200, 0, 0, 255}}, {nullptr, {0, 0, 100, 255}}};
   EXPECT_EQ(compose({.classes = classes}, 1, 1).at(0, 0), (Rgba{100, 0, 50, 255}));
 }
 
 TEST(ComposeTest, APatternLiesWithinTheClasses) {
-  const Coverage half = coverage_of(3, 1, {0, 51, 255});
-  const Coverage everywhere = coverage_of(3, 1, {255, 255, 51});
+  const Mask half = mask_of(3, 1, {0, 51, 255});
+  const Mask everywhere = mask_of(3, 1, {255, 255, 51});
   const PaintedClass fill{&half, {0, 0, 0, 255}};
   const PaintedClass nothing{&half, kTransparent};
   PaintedLayer layer{{&fill, 1}, &everywhere, {255, 255, 255, 255}, {}, 1};
@@ -183,10 +183,10 @@ TEST(ComposeTest, APatternLiesWithinTheClasses) {
 }
 
 TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
-  const Coverage fill = coverage_of(16, 1, std::vector<int>(16, 255));
-  const Coverage line = coverage_of(16, 1,
-                                    {255, 255, 255, 255, 255, 255, 255, 255,  //
-                                     0, 0, 0, 0, 0, 0, 0, 255});
+  const Mask fill = mask_of(16, 1, std::vector<int>(16, 255));
+  const Mask line = mask_of(16, 1,
+                            {255, 255, 255, 255, 255, 255, 255, 255,  //
+                             0, 0, 0, 0, 0, 0, 0, 255});
   const PaintedClass fills{&fill, {0, 0, 200, 255}};
   const PaintedClass lines{&line, {100, 0, 0, 255}};
   const PaintedLayer layer{{&fills, 1}, nullptr, {}, {&lines, 1}, 0.5};
@@ -198,7 +198,7 @@ TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
 }
 
 TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
-  const Coverage line = coverage_of(9, 1, {0, 0, 0, 0, 255, 0, 0, 0, 0});
+  const Mask line = mask_of(9, 1, {0, 0, 0, 0, 255, 0, 0, 0, 0});
   const PaintedClass everywhere{nullptr, {0, 200, 0, 255}};
   const PaintedClass lines{&line, {100, 0, 0, 255}};
   const Picture picture = compose({{&everywhere, 1}, nullptr, {}, {&lines, 1}, 1}, 9, 1);
@@ -207,9 +207,9 @@ TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
   EXPECT_EQ(picture.at(8, 0), (Rgba{0, 200, 0, 255}));
 }
 
-TEST(ComposeTest, RefusesACoverageOfAnotherSize) {
-  const Coverage coverage = coverage_of(2, 1, {1, 2});
-  const PaintedClass layer{&coverage, {1, 2, 3, 255}};
+TEST(ComposeTest, RefusesAMaskOfAnotherSize) {
+  const Mask mask = mask_of(2, 1, {1, 2});
+  const PaintedClass layer{&mask, {1, 2, 3, 255}};
   EXPECT_THROW(compose({&layer, 1}, 1, 2), std::invalid_argument);
 }
 

@@ -113,8 +113,8 @@ TEST(DebugMarksTest, ASlantedSideIsWithoutGapsAndStaysOnItsLine) {
     for (int column = 0; column < 40; ++column) {
       const double here = ink(picture, column, row);
       const double line = 5 + (row + 0.5 - 3) / 2;
-      const bool is_level_side = std::abs(row - 9.5) < 1 || std::abs(row - 39.5) < 1;
-      if (is_level_side) continue;
+      const bool is_horizontal_side = std::abs(row - 9.5) < 1 || std::abs(row - 39.5) < 1;
+      if (is_horizontal_side) continue;
       sum += here;
       if (here > 0) {
         EXPECT_LE(std::abs(column + 0.5 - line), 1.01) << column << ", " << row;
@@ -124,7 +124,7 @@ TEST(DebugMarksTest, ASlantedSideIsWithoutGapsAndStaysOnItsLine) {
       EXPECT_NEAR(sum, 1, 0.02) << row;
     }
     if (row < 9 || row > 41) {
-      EXPECT_EQ(sum, 0) << "beyond the trapezoid's levels, row " << row;
+      EXPECT_EQ(sum, 0) << "above the trapezoid's top or below its bottom, row " << row;
     }
   }
 }
@@ -175,7 +175,7 @@ TEST(DebugMarksTest, NothingIsDrawnBesideThePictureHoweverLargeTheTrapezoids) {
 TEST(DebugMarksTest, EveryEndOfAnEdgeIsMarkedAndNoImpliedCorner) {
   Picture picture = white_picture(12, 12);
   SampleMesh mesh;
-  // Both sides reach beyond the levels: the corners at rows 4 and 8 are no vertices.
+  // Both sides reach beyond top and bottom: the corners at rows 4 and 8 are no vertices.
   const auto left = mesh.add_edge({2 * kCells + 8, 8}, {2 * kCells + 8, 10 * kCells + 8});
   const auto right = mesh.add_edge({9 * kCells + 8, 8}, {9 * kCells + 8, 10 * kCells + 8});
   mesh.add(left, right, 4 * kCells + 8, 8 * kCells + 8);
@@ -254,9 +254,9 @@ TEST(DebugMarksTest, FacesThatFillAPictureLeaveNothingUntintedBetweenThem) {
     const auto left = mesh.add_edge({-9, -9}, {-9, 999});
     const auto middle = mesh.add_edge({somewhere(), -9}, {somewhere(), 999});
     const auto right = mesh.add_edge({999, -9}, {999, 999});
-    const std::int32_t level = somewhere();
-    mesh.add(left, middle, -9, level);
-    mesh.add(left, middle, level, 999);
+    const std::int32_t height = somewhere();
+    mesh.add(left, middle, -9, height);
+    mesh.add(left, middle, height, 999);
     mesh.add(middle, right, -9, 999);
     const TrapezoidRange all = mesh.all();
     mark_faces(

@@ -8,15 +8,15 @@
 namespace trapeze {
 namespace {
 
-Coverage draw(const Pattern& pattern, View view = View::of_tile({3, 2, 5}), int scale = 1) {
-  Coverage levels;
-  draw_pattern(pattern, view, scale, levels);
-  return levels;
+Mask draw(const Pattern& pattern, View view = View::of_tile({3, 2, 5}), int scale = 1) {
+  Mask mask;
+  draw_pattern(pattern, view, scale, mask);
+  return mask;
 }
 
 /// The share of the picture that is covered.
-double density(const Coverage& levels) {
-  const auto pixels = levels.pixels();
+double density(const Mask& mask) {
+  const auto pixels = mask.pixels();
   return std::accumulate(pixels.begin(), pixels.end(), 0.0) / 255 /
          static_cast<double>(pixels.size());
 }
@@ -44,14 +44,14 @@ TEST(PatternTest, CoversTheShareThatItsLengthsSay) {
 }
 
 TEST(PatternTest, LinesRunInTheDirectionOfTheAngle) {
-  const Coverage east = draw({PatternKind::hatch, {}, 8, 0, 2});
+  const Mask east = draw({PatternKind::hatch, {}, 8, 0, 2});
   for (int row = 0; row < 256; ++row) {
     for (int column = 1; column < 256; ++column) {
       ASSERT_EQ(east.at(column, row), east.at(0, row)) << column << " " << row;
     }
   }
   // Anticlockwise from east: a step east and a step north stay on the line.
-  const Coverage north_east = draw({PatternKind::hatch, {}, 8, 45, 2});
+  const Mask north_east = draw({PatternKind::hatch, {}, 8, 45, 2});
   for (int row = 1; row < 256; ++row) {
     for (int column = 0; column < 255; ++column) {
       ASSERT_NEAR(north_east.at(column, row), north_east.at(column + 1, row - 1), 1);
@@ -68,9 +68,9 @@ TEST(PatternTest, NeighbouringTilesJoin) {
       const View tile = View::of_tile({zoom, x, 1});
       View both = tile;
       both.width = 512;
-      const Coverage west = draw(pattern, tile);
-      const Coverage east = draw(pattern, View::of_tile({zoom, x + 1, 1}));
-      const Coverage whole = draw(pattern, both);
+      const Mask west = draw(pattern, tile);
+      const Mask east = draw(pattern, View::of_tile({zoom, x + 1, 1}));
+      const Mask whole = draw(pattern, both);
       for (int row = 0; row < 256; row += 5) {
         for (int column = 0; column < 256; ++column) {
           ASSERT_NEAR(west.at(column, row), whole.at(column, row), 1);
@@ -83,8 +83,8 @@ TEST(PatternTest, NeighbouringTilesJoin) {
 
 TEST(PatternTest, LengthsGrowWithTheScale) {
   const Pattern pattern{PatternKind::dots, {}, 12, 0, 5};
-  const Coverage one = draw(pattern);
-  const Coverage four = draw(pattern, View::of_tile({3, 2, 5}, 4), 4);
+  const Mask one = draw(pattern);
+  const Mask four = draw(pattern, View::of_tile({3, 2, 5}, 4), 4);
   EXPECT_NEAR(density(one), density(four), 0.01);
   EXPECT_EQ(four.width(), 1024);
   for (int row = 0; row < 64; ++row) {

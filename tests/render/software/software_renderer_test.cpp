@@ -16,32 +16,33 @@
 namespace trapeze {
 namespace {
 
-using testing::compare_coverages;
+using testing::compare_masks;
 using testing::Difference;
 using testing::random_scatter;
 using testing::random_strips;
 using testing::SampleMesh;
 using testing::x_at;
 
-Coverage draw(const SampleMesh& mesh, const View& view) {
+Mask draw(const SampleMesh& mesh, const View& view) {
   SoftwareRenderer renderer;
-  Coverage coverage;
+  Mask mask;
   const TrapezoidRange all = mesh.all();
-  renderer.draw(mesh.view(), {&all, 1}, view, coverage);
-  return coverage;
+  renderer.draw(mesh.view(), {&all, 1}, view, mask);
+  return mask;
 }
 
 View square_view(std::int64_t origin, double cells_per_pixel, int pixels) {
   return {origin, origin, cells_per_pixel, pixels, pixels};
 }
 
-int level(double area) {
+int value_of(double area) {
   return static_cast<int>(std::floor(area * 255 + 0.5));
 }
 
-// Coverage by another way: rows of 1/32 cell, in each of which every trapezoid is an interval of
-// x. Levels of vertices are whole cells, so no trapezoid begins or ends within such a row.
-std::vector<double> coverage_by_rows(const MeshView& mesh, const View& view) {
+// Shares of pixels by another way: rows of 1/32 cell, in each of which every trapezoid is an
+// interval of x. The y of a vertex is a whole number of cells, so no trapezoid begins or ends
+// within such a row.
+std::vector<double> shares_by_rows(const MeshView& mesh, const View& view) {
   std::vector<double> sums(static_cast<std::size_t>(view.width * view.height), 0.0);
   constexpr int kRowsPerCell = 32;
   for (const MeshTrapezoid& t : mesh.trapezoids) {
@@ -71,18 +72,18 @@ std::vector<double> coverage_by_rows(const MeshView& mesh, const View& view) {
 TEST(SoftwareRendererTest, CoversPixelsOfABoxByTheirSharesExactly) {
   SampleMesh mesh;
   mesh.add_box(10, 4, 38, 24);  // in pixels of 16 cells: 0.625..2.375 by 0.25..1.5
-  const Coverage coverage = draw(mesh, square_view(0, 16, 4));
+  const Mask mask = draw(mesh, square_view(0, 16, 4));
   const double columns[] = {0.375, 1, 0.375, 0};
   const double rows[] = {0.75, 0.5, 0, 0};
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
-      EXPECT_EQ(coverage.at(column, row), level(columns[column] * rows[row]))
+      EXPECT_EQ(mask.at(column, row), value_of(columns[column] * rows[row]))
           << column << ", " << row;
     }
   }
 }
 
-TEST(SoftwareRendererTest, ABoxWithItsEdgesChangedRoundTakesCoverageAway) {
+TEST(SoftwareRendererTest, ABoxWithItsEdgesChangedRoundTakesAreaAway) {
   SampleMesh mesh;
   mesh.add_box(-16, -16, 80, 80);
   // Two columns of holes over the west and the east border, a quarter of a pixel wide inside, and
@@ -90,11 +91,11 @@ TEST(SoftwareRendererTest, ABoxWithItsEdgesChangedRoundTakesCoverageAway) {
   for (const auto& [west, east] : {std::pair{-8, 4}, std::pair{60, 72}, std::pair{24, 32}}) {
     mesh.add(mesh.add_edge({east, 0}, {east, 16}), mesh.add_edge({west, 0}, {west, 16}), 0, 16);
   }
-  const Coverage coverage = draw(mesh, square_view(0, 16, 4));
+  const Mask mask = draw(mesh, square_view(0, 16, 4));
   const double first_row[] = {0.75, 0.5, 1, 0.75};
   for (int column = 0; column < 4; ++column) {
-    EXPECT_EQ(coverage.at(column, 0), level(first_row[column])) << column;
-    EXPECT_EQ(coverage.at(column, 1), 255) << column;
+    EXPECT_EQ(mask.at(column, 0), value_of(first_row[column])) << column;
+    EXPECT_EQ(mask.at(column, 1), 255) << column;
   }
 }
 
@@ -102,10 +103,10 @@ TEST(SoftwareRendererTest, HalvesThePixelsOnADiagonal) {
   SampleMesh mesh;
   const std::uint32_t left = mesh.add_edge({0, 0}, {0, 64});
   mesh.add(left, mesh.add_edge({0, 0}, {64, 64}), 0, 64);
-  const Coverage coverage = draw(mesh, square_view(0, 8, 8));
+  const Mask mask = draw(mesh, square_view(0, 8, 8));
   for (int row = 0; row < 8; ++row) {
     for (int column = 0; column < 8; ++column) {
-      EXPECT_EQ(coverage.at(column, row), column < row ? 255 : column == row ? 128 : 0);
+      EXPECT_EQ(mask.at(column, row), column < row ? 255 : column == row ? 128 : 0);
     }
   }
 }
@@ -133,28 +134,28 @@ TEST(SoftwareRendererTest, DrawsNothingForTrapezoidsWithoutHeight) {
   const std::uint32_t left = mesh.add_edge({0, 0}, {0, 64});
   const std::uint32_t right = mesh.add_edge({64, 0}, {64, 64});
   mesh.add(left, right, 30, 30);
-  const std::uint32_t level_edge = mesh.add_edge({0, 30}, {64, 30});
-  mesh.add(level_edge, level_edge, 30, 30);
+  const std::uint32_t horizontal_edge = mesh.add_edge({0, 30}, {64, 30});
+  mesh.add(horizontal_edge, horizontal_edge, 30, 30);
   EXPECT_TRUE(draw(mesh, square_view(0, 8, 8)).is_all(0));
 }
 
-TEST(SoftwareRendererTest, StopsAtFullCoverageWherePolygonsOverlap) {
+TEST(SoftwareRendererTest, StopsAtAWholePixelWherePolygonsOverlap) {
   SampleMesh mesh;
   for (int i = 0; i < 3; ++i) mesh.add_box(0, 0, 6, 8);
-  const Coverage coverage = draw(mesh, square_view(0, 8, 1));
-  EXPECT_EQ(coverage.at(0, 0), 255);
+  const Mask mask = draw(mesh, square_view(0, 8, 1));
+  EXPECT_EQ(mask.at(0, 0), 255);
   SampleMesh twice;
   twice.add_box(0, 0, 3, 8);
   twice.add_box(0, 0, 3, 8);
-  EXPECT_EQ(draw(twice, square_view(0, 8, 1)).at(0, 0), level(0.75));
+  EXPECT_EQ(draw(twice, square_view(0, 8, 1)).at(0, 0), value_of(0.75));
 }
 
 TEST(SoftwareRendererTest, SumsAHundredThousandTrapezoidsWithinOnePixel) {
   SampleMesh mesh;
   for (std::int32_t i = 0; i < 100'000; ++i) mesh.add_box(0, 2 * i, 1 << 17, 2 * i + 1);
   const double area = 100'000.0 * (1 << 17) / (262144.0 * 262144.0);
-  const Coverage coverage = draw(mesh, square_view(0, 262144, 1));
-  EXPECT_NEAR(coverage.at(0, 0), area * 255, 0.6);
+  const Mask mask = draw(mesh, square_view(0, 262144, 1));
+  EXPECT_NEAR(mask.at(0, 0), area * 255, 0.6);
 }
 
 TEST(SoftwareRendererTest, AgreesWithSummingRows) {
@@ -166,10 +167,10 @@ TEST(SoftwareRendererTest, AgreesWithSummingRows) {
     const Box box = i % 2 == 0 ? Box{1010, 1005, 1380, 1390} : Box{-3000, 0, 4000, 2600};
     const SampleMesh mesh =
         i % 4 < 2 ? random_strips(random, box, 10 << (i % 5)) : random_scatter(random, box, 90);
-    const std::vector<double> expected = coverage_by_rows(mesh.view(), view);
-    const Coverage actual = draw(mesh, view);
+    const std::vector<double> expected = shares_by_rows(mesh.view(), view);
+    const Mask actual = draw(mesh, view);
     for (std::size_t p = 0; p < expected.size(); ++p) {
-      // Half a level of rounding, and what level edges lose within a row.
+      // Half a value of rounding, and what horizontal edges lose within a row.
       ASSERT_NEAR(actual.pixels()[p], expected[p] * 255, 0.5 + 0.5)
           << "mesh " << i << ", pixel " << p;
     }
@@ -183,15 +184,15 @@ TEST(SoftwareRendererTest, CoversExactlyTheAreaOfTheMesh) {
   for (int i = 0; i < 20; ++i) {
     const SampleMesh mesh = random_strips(random, {3, 5, 8001, 7003}, 200);
     const View view = square_view(0, 32, 256);
-    const Coverage coverage = draw(mesh, view);
-    const double sum = std::accumulate(coverage.pixels().begin(), coverage.pixels().end(), 0.0);
+    const Mask mask = draw(mesh, view);
+    const double sum = std::accumulate(mask.pixels().begin(), mask.pixels().end(), 0.0);
     const double area = static_cast<double>(mesh.area()) / (32 * 32);
-    // Rounding to levels is a random walk of at most half a level a pixel.
+    // Rounding to whole values is a random walk of at most half a value a pixel.
     EXPECT_NEAR(sum / 255, area, 4 * 0.3 / 255 * 256);
   }
 }
 
-// The coverage right of an edge, in a picture that it passes from above to below: by rows, a
+// The area right of an edge, in a picture that it passes from above to below: by rows, a
 // thousand to a pixel.
 double share_right_of(const MeshView& mesh, std::uint32_t edge, const View& view, int column,
                       int row) {
@@ -219,15 +220,15 @@ TEST(SoftwareRendererTest, PlacesAnEdgeAcrossTheWorldToAThousandthOfAPixel) {
     const std::uint32_t left = mesh.add_edge(upper, lower);
     const std::uint32_t right = mesh.add_edge({kGridMax, upper.y}, {kGridMax, lower.y});
     mesh.add(left, right, upper.y, lower.y);
-    // A level is 1/255 of a pixel, which is 1/100 of a cell here: 2.5 / 100,000 of a pixel of
+    // A value is 1/255 of a pixel, which is 1/100 of a cell here: 2.5 / 100,000 of a pixel of
     // zoom 22. Every edge passes the picture, which is a cell wide and high.
     const View view{static_cast<std::int64_t>(std::floor(x_at(mesh.view(), left, 0.3737L))), 0,
                     0.01, 100, 100};
-    const Coverage coverage = draw(mesh, view);
+    const Mask mask = draw(mesh, view);
     int between = 0;
     for (int row = 0; row < 100; ++row) {
       for (int column = 0; column < 100; ++column) {
-        const int actual = coverage.at(column, row);
+        const int actual = mask.at(column, row);
         between += actual > 0 && actual < 255 ? 1 : 0;
         ASSERT_NEAR(actual, 255 * share_right_of(mesh.view(), left, view, column, row), 1.0)
             << column << ", " << row;
@@ -243,11 +244,11 @@ TEST(SoftwareRendererTest, NeighbouringPicturesPutTogetherEqualOneLargePicture) 
   std::mt19937 random(seed);
   for (int i = 0; i < 10; ++i) {
     const SampleMesh mesh = random_strips(random, {-5000, -4000, 9000, 8000}, 300);
-    const Coverage large = draw(mesh, square_view(0, 16, 256));
+    const Mask large = draw(mesh, square_view(0, 16, 256));
     for (int quarter = 0; quarter < 4; ++quarter) {
       const int column = quarter % 2 * 128;
       const int row = quarter / 2 * 128;
-      const Coverage small = draw(mesh, {column * 16, row * 16, 16, 128, 128});
+      const Mask small = draw(mesh, {column * 16, row * 16, 16, 128, 128});
       for (int y = 0; y < 128; ++y) {
         for (int x = 0; x < 128; ++x) {
           ASSERT_LE(std::abs(small.at(x, y) - large.at(column + x, row + y)), 1);
@@ -266,9 +267,9 @@ TEST(SoftwareRendererTest, LeavesNothingBehindForTheNextPicture) {
     const SampleMesh mesh = random_strips(random, {-3000, -3000, 6000, 6000}, 100);
     const View view = square_view(i * 10, 16, 100 + i % 3);
     const TrapezoidRange all = mesh.all();
-    Coverage coverage;
-    used.draw(mesh.view(), {&all, 1}, view, coverage);
-    ASSERT_EQ(coverage, draw(mesh, view));
+    Mask mask;
+    used.draw(mesh.view(), {&all, 1}, view, mask);
+    ASSERT_EQ(mask, draw(mesh, view));
   }
 }
 
@@ -280,9 +281,9 @@ TEST(SoftwareRendererTest, DrawsSeveralMeshesAsIfTheyWereOne) {
   const TrapezoidRange one{0, 1};
   const MeshPart parts[] = {{west.view(), {&one, 1}}, {east.view(), {&one, 1}}};
   SoftwareRenderer renderer;
-  Coverage coverage;
-  renderer.draw(parts, square_view(0, 8, 1), coverage);
-  EXPECT_EQ(coverage.at(0, 0), level(0.75));
+  Mask mask;
+  renderer.draw(parts, square_view(0, 8, 1), mask);
+  EXPECT_EQ(mask.at(0, 0), value_of(0.75));
 }
 
 TEST(SoftwareRendererTest, DrawsOnlyTheRangesNamed) {
@@ -290,10 +291,10 @@ TEST(SoftwareRendererTest, DrawsOnlyTheRangesNamed) {
   for (std::int32_t i = 0; i < 8; ++i) mesh.add_box(i, 0, i + 1, 1);
   const std::vector<TrapezoidRange> ranges{{1, 2}, {6, 1}, {7, 0}};
   SoftwareRenderer renderer;
-  Coverage coverage;
-  renderer.draw(mesh.view(), ranges, {0, 0, 1, 8, 1}, coverage);
-  const std::vector<int> levels(coverage.pixels().begin(), coverage.pixels().end());
-  EXPECT_EQ(levels, (std::vector<int>{0, 255, 255, 0, 0, 0, 255, 0}));
+  Mask mask;
+  renderer.draw(mesh.view(), ranges, {0, 0, 1, 8, 1}, mask);
+  const std::vector<int> values(mask.pixels().begin(), mask.pixels().end());
+  EXPECT_EQ(values, (std::vector<int>{0, 255, 255, 0, 0, 0, 255, 0}));
 }
 
 }  // namespace

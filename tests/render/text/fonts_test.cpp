@@ -38,26 +38,26 @@ std::string dejavu() {
   return file;
 }
 
-/// Levels of ink, 0 to 255, row by row.
+/// Darkness of ink, 0 to 255, row by row.
 struct Drawing {
   int width = 0;
-  std::vector<int> levels;
+  std::vector<int> values;
 
   int at(int x, int y) const {
-    return levels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+    return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];
   }
   long ink() const {
     long sum = 0;
-    for (const int level : levels) sum += level;
+    for (const int value : values) sum += value;
     return sum;
   }
   /// Of the columns from `from` on, as many as said.
   long ink_of(int from, int count) const {
     long sum = 0;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
       const int x = static_cast<int>(i) % width;
-      if (x >= from && x < from + count) sum += levels[i];
+      if (x >= from && x < from + count) sum += values[i];
     }
     return sum;
   }
@@ -84,7 +84,7 @@ class FontsTest : public ::testing::Test {
     Picture picture = blank(std::max(1, fonts.width_of(line, kSize)), kHeight);
     fonts.draw(line, 0, kBase, {kSize, kInk}, picture);
     Drawing drawing{picture.width, {}};
-    for (const Rgba pixel : picture.pixels) drawing.levels.push_back(255 - pixel.r);
+    for (const Rgba pixel : picture.pixels) drawing.values.push_back(255 - pixel.r);
     return drawing;
   }
   Drawing drawn(std::string_view line) const { return drawn_by(fonts_, line); }
@@ -111,9 +111,9 @@ TEST_F(FontsTest, AnAccentThatFollowsItsLetterIsDrawnOverIt) {
 TEST_F(FontsTest, LettersAreAntialiased) {
   const Drawing drawing = drawn("S");
   const auto grey =
-      std::ranges::count_if(drawing.levels, [](int level) { return level > 20 && level < 235; });
+      std::ranges::count_if(drawing.values, [](int value) { return value > 20 && value < 235; });
   EXPECT_GT(grey, 10);
-  EXPECT_TRUE(std::ranges::any_of(drawing.levels, [](int level) { return level == 255; }));
+  EXPECT_TRUE(std::ranges::any_of(drawing.values, [](int value) { return value == 255; }));
 }
 
 TEST_F(FontsTest, EveryLetterOfAsciiDiffersFromEveryOther) {
@@ -177,11 +177,11 @@ TEST_F(FontsTest, NumbersWithinHebrewRunFromLeftToRight) {
   const Drawing number = drawn("17");
   const Drawing reversed = drawn("71");
   const auto first_columns = [&](const Drawing& drawing) {
-    std::vector<int> levels;
+    std::vector<int> values;
     for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < number.width - 1; ++x) levels.push_back(drawing.at(x, y));
+      for (int x = 0; x < number.width - 1; ++x) values.push_back(drawing.at(x, y));
     }
-    return levels;
+    return values;
   };
   EXPECT_EQ(first_columns(line), first_columns(number));
   EXPECT_NE(first_columns(line), first_columns(reversed));

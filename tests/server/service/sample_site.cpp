@@ -11,7 +11,7 @@
 namespace trapeze::testing {
 namespace {
 
-std::vector<std::unique_ptr<CoverageRenderer>> software_renderers() {
+std::vector<std::unique_ptr<MaskRenderer>> software_renderers() {
   return make_renderers({RendererKind::software, {}}, 2).renderers;
 }
 

@@ -263,7 +263,7 @@ TEST_F(ServiceTest, WritesALineForEveryRequest) {
 }
 
 /// Draws by software, and notes which meshes were drawn and which are to be forgotten.
-class NotingRenderer : public CoverageRenderer {
+class NotingRenderer : public MaskRenderer {
  public:
   struct Notes {
     std::mutex mutex;
@@ -273,10 +273,10 @@ class NotingRenderer : public CoverageRenderer {
   explicit NotingRenderer(Notes& notes)
       : notes_(notes), renderer_(std::move(make_renderer({RendererKind::software, {}}).renderer)) {}
 
-  DrawTimes draw(std::span<const CoverageTask> tasks) override {
+  DrawTimes draw(std::span<const MaskTask> tasks) override {
     {
       const std::lock_guard lock(notes_.mutex);
-      for (const CoverageTask& task : tasks) {
+      for (const MaskTask& task : tasks) {
         for (const MeshPart& part : task.parts) notes_.kept.insert(part.mesh.id);
         ++notes_.drawn;
       }
@@ -292,12 +292,12 @@ class NotingRenderer : public CoverageRenderer {
 
  private:
   Notes& notes_;
-  std::unique_ptr<CoverageRenderer> renderer_;
+  std::unique_ptr<MaskRenderer> renderer_;
 };
 
 TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   NotingRenderer::Notes notes;
-  std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
   renderers.push_back(std::make_unique<NotingRenderer>(notes));
   CurrentDataset data;
   Metrics metrics;

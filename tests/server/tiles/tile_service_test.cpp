@@ -15,31 +15,31 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Draws only when it is let; counts what it draws.
-class GatedRenderer final : public CoverageRenderer {
+class GatedRenderer final : public MaskRenderer {
  public:
   struct Gate {
     std::promise<void> opener;
     std::shared_future<void> is_open = opener.get_future().share();
     std::atomic<int> begun = 0;  // tasks
     std::atomic<int> passes = 0;
-    bool gains_by_company = false;
+    bool gains_by_batching = false;
     std::atomic<bool> fails = false;
   };
-  using CoverageRenderer::draw;
+  using MaskRenderer::draw;
   explicit GatedRenderer(Gate& gate) : gate_(gate) {}
 
-  DrawTimes draw(std::span<const CoverageTask> tasks) override {
+  DrawTimes draw(std::span<const MaskTask> tasks) override {
     gate_.begun += static_cast<int>(tasks.size());
     ++gate_.passes;
     gate_.is_open.wait();
     if (gate_.fails) throw std::runtime_error("the device is lost");
-    for (const CoverageTask& task : tasks) {
+    for (const MaskTask& task : tasks) {
       task.out->resize(task.view.width, task.view.height);
       std::fill_n(task.out->row_begin(0), task.out->pixels().size(), std::uint8_t{0});
     }
     return {};
   }
-  bool gains_by_company() const override { return gate_.gains_by_company; }
+  bool gains_by_batching() const override { return gate_.gains_by_batching; }
   std::string_view name() const override { return "gated"; }
   std::string description() const override { return "gated"; }
 
@@ -52,7 +52,7 @@ class TileServiceTest : public ::testing::Test {
   ~TileServiceTest() override { open(); }
 
   void start(TileServiceOptions options = {}) {
-    std::vector<std::unique_ptr<CoverageRenderer>> renderers;
+    std::vector<std::unique_ptr<MaskRenderer>> renderers;
     renderers.push_back(std::make_unique<GatedRenderer>(gate_));
     service_ = std::make_unique<TileService>(options, std::move(renderers));
   }
@@ -105,7 +105,7 @@ TEST_F(TileServiceTest, EqualPlansUnderWayTogetherAreDrawnOnce) {
 }
 
 TEST_F(TileServiceTest, WhatWaitsIsDrawnInOnePassWhereThatIsFaster) {
-  gate_.gains_by_company = true;
+  gate_.gains_by_batching = true;
   start({.batch = 3});
   std::vector<std::future<TileAnswer>> answers;
   answers.push_back(submit(0));

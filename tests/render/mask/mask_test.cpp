@@ -1,4 +1,4 @@
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 #include <gtest/gtest.h>
 

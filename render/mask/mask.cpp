@@ -1,4 +1,4 @@
-#include "render/coverage/coverage.h"
+#include "render/mask/mask.h"
 
 #include <algorithm>
 #include <array>
@@ -55,19 +55,19 @@ void View::check() const {
   }
 }
 
-void Coverage::resize(int width, int height) {
+void Mask::resize(int width, int height) {
   width_ = width;
   height_ = height;
   pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
 }
 
-void Coverage::fill(std::uint8_t level) {
-  std::fill(pixels_.begin(), pixels_.end(), level);
+void Mask::fill(std::uint8_t value) {
+  std::fill(pixels_.begin(), pixels_.end(), value);
 }
 
-bool Coverage::is_all(std::uint8_t level) const {
+bool Mask::is_all(std::uint8_t value) const {
   return std::all_of(pixels_.begin(), pixels_.end(),
-                     [level](std::uint8_t p) { return p == level; });
+                     [value](std::uint8_t p) { return p == value; });
 }
 
 namespace {
@@ -91,14 +91,14 @@ FourOf<Element> sums_of(FourOf<Element> differences) {
   return pairs + __builtin_shufflevector(none, pairs, 0, 1, 4, 5);
 }
 
-void put_levels(FourOf<float> shares_of_255, std::uint8_t* levels) {
+void put_values(FourOf<float> shares_of_255, std::uint8_t* values) {
   const FourOf<float> none{};
   const FourOf<float> all = none + 255.0f;
   shares_of_255 = shares_of_255 < none ? none : shares_of_255;
   shares_of_255 = shares_of_255 > all ? all : shares_of_255;
   const auto rounded = __builtin_convertvector(shares_of_255 + 0.5f, FourOf<std::int32_t>);
   const auto bytes = __builtin_convertvector(rounded, FourOf<std::uint8_t>);
-  std::memcpy(levels, &bytes, sizeof bytes);
+  std::memcpy(values, &bytes, sizeof bytes);
 }
 
 template <class Element>
@@ -113,48 +113,48 @@ bool is_all_zero(const Element* differences) {
 
 // Between the boundaries of polygons nothing changes.
 template <class Element>
-void take_levels_by(Element whole, std::span<Element> differences, std::uint8_t* levels) {
-  const float levels_per_unit = 255.0f / static_cast<float>(whole);
+void resolve_row_by(Element whole, std::span<Element> differences, std::uint8_t* values) {
+  const float values_per_unit = 255.0f / static_cast<float>(whole);
   FourOf<Element> before{};
-  std::uint8_t level_before = 0;
+  std::uint8_t value_before = 0;
   const auto take_four = [&](Element* from, std::uint8_t* to) {
     FourOf<Element> sums;
     std::memcpy(&sums, from, sizeof sums);
     sums = before + sums_of<Element>(sums);
     before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
-    put_levels(__builtin_convertvector(sums, FourOf<float>) * levels_per_unit, to);
+    put_values(__builtin_convertvector(sums, FourOf<float>) * values_per_unit, to);
     std::memset(from, 0, sizeof sums);
   };
   std::size_t i = 0;
   for (; i + kBlock <= differences.size(); i += kBlock) {
     Element* begin = differences.data() + i;
     if (is_all_zero(begin)) {
-      std::memset(levels + i, level_before, kBlock);
+      std::memset(values + i, value_before, kBlock);
       continue;
     }
-    take_four(begin, levels + i);
-    take_four(begin + 4, levels + i + 4);
-    level_before = levels[i + kBlock - 1];
+    take_four(begin, values + i);
+    take_four(begin + 4, values + i + 4);
+    value_before = values[i + kBlock - 1];
   }
   for (; i < differences.size(); i += 4) {
     const std::size_t count = std::min<std::size_t>(4, differences.size() - i);
     std::array<Element, 4> rest{};
-    std::array<std::uint8_t, 4> levels_of_rest;
+    std::array<std::uint8_t, 4> values_of_rest;
     std::copy_n(differences.data() + i, count, rest.data());
-    take_four(rest.data(), levels_of_rest.data());
-    std::copy_n(levels_of_rest.data(), count, levels + i);
+    take_four(rest.data(), values_of_rest.data());
+    std::copy_n(values_of_rest.data(), count, values + i);
     std::fill_n(differences.data() + i, count, Element{0});
   }
 }
 
 }  // namespace
 
-void take_levels(std::span<float> differences, std::uint8_t* levels) {
-  take_levels_by(1.0f, differences, levels);
+void resolve_row(std::span<float> differences, std::uint8_t* values) {
+  resolve_row_by(1.0f, differences, values);
 }
 
-void take_levels(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* levels) {
-  take_levels_by(whole, differences, levels);
+void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* values) {
+  resolve_row_by(whole, differences, values);
 }
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-#include "render/coverage/stroke.h"
+#include "render/mask/stroke.h"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ struct PixelPoint {
   double y;
 };
 
-Coverage draw_edges(const std::vector<PixelPoint>& points, std::vector<OutlineEdge> edges,
-                    const Stroke& stroke, int scale = 1) {
+Mask draw_edges(const std::vector<PixelPoint>& points, std::vector<OutlineEdge> edges,
+                const Stroke& stroke, int scale = 1) {
   View view;
   view.cells_per_pixel = kCells;
   view.width = kSide;
@@ -29,14 +29,14 @@ Coverage draw_edges(const std::vector<PixelPoint>& points, std::vector<OutlineEd
     vertices.push_back({static_cast<std::int32_t>(std::lround(p.x * kCells)),
                         static_cast<std::int32_t>(std::lround(p.y * kCells))});
   }
-  Coverage levels(kSide, kSide);
-  levels.fill(0);
-  Stroker().draw(vertices, edges, stroke, view, scale, levels);
-  return levels;
+  Mask mask(kSide, kSide);
+  mask.fill(0);
+  Stroker().draw(vertices, edges, stroke, view, scale, mask);
+  return mask;
 }
 
 /// A ring, with lengths along it.
-Coverage draw_ring(const std::vector<PixelPoint>& points, const Stroke& stroke, int scale = 1) {
+Mask draw_ring(const std::vector<PixelPoint>& points, const Stroke& stroke, int scale = 1) {
   std::vector<OutlineEdge> edges;
   double along = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -48,8 +48,8 @@ Coverage draw_ring(const std::vector<PixelPoint>& points, const Stroke& stroke, 
 }
 
 /// In pixels.
-double area(const Coverage& levels) {
-  const auto pixels = levels.pixels();
+double area(const Mask& mask) {
+  const auto pixels = mask.pixels();
   return std::accumulate(pixels.begin(), pixels.end(), 0.0) / 255;
 }
 
@@ -60,20 +60,20 @@ TEST(StrokeTest, ALineIsAsWideAsSaid) {
     for (const double angle : {0.0, 0.3, 1.1, M_PI / 2, 2.5}) {
       const double dx = 30 * std::cos(angle);
       const double dy = 30 * std::sin(angle);
-      const Coverage levels = draw_edges({{50.3 - dx, 50.4 - dy}, {50.3 + dx, 50.4 + dy}},
-                                         {{0, 1, 0}}, {width, {}, LineJoin::round});
+      const Mask mask = draw_edges({{50.3 - dx, 50.4 - dy}, {50.3 + dx, 50.4 + dy}}, {{0, 1, 0}},
+                                   {width, {}, LineJoin::round});
       const double ends = M_PI * width * width / 4;
-      EXPECT_NEAR(area(levels), 60 * width + ends, 0.03 * 60 * width + 1) << width << " " << angle;
+      EXPECT_NEAR(area(mask), 60 * width + ends, 0.03 * 60 * width + 1) << width << " " << angle;
     }
   }
 }
 
 TEST(StrokeTest, CornersAreNoDarkerThanTheRest) {
   // The middle of a thin line lies at half its width everywhere, at the corners too.
-  const Coverage thin = draw_ring({{20.5, 20.5}, {70.5, 20.5}, {70.5, 70.5}, {20.5, 70.5}},
-                                  {0.5, {}, LineJoin::round});
+  const Mask thin = draw_ring({{20.5, 20.5}, {70.5, 20.5}, {70.5, 70.5}, {20.5, 70.5}},
+                              {0.5, {}, LineJoin::round});
   int highest = 0;
-  for (const std::uint8_t level : thin.pixels()) highest = std::max<int>(highest, level);
+  for (const std::uint8_t value : thin.pixels()) highest = std::max<int>(highest, value);
   EXPECT_NEAR(highest, 128, 1);
   EXPECT_NEAR(thin.at(45, 20), 128, 1);
   EXPECT_NEAR(thin.at(20, 20), 128, 1);
@@ -81,9 +81,9 @@ TEST(StrokeTest, CornersAreNoDarkerThanTheRest) {
 
 TEST(StrokeTest, JoinsDifferInTheCornerOnly) {
   const auto square = [](LineJoin join) { return draw_ring(kSquare, {8, {}, join}); };
-  const Coverage miter = square(LineJoin::miter);
-  const Coverage bevel = square(LineJoin::bevel);
-  const Coverage round = square(LineJoin::round);
+  const Mask miter = square(LineJoin::miter);
+  const Mask bevel = square(LineJoin::bevel);
+  const Mask round = square(LineJoin::round);
   // Of the corner's square of 4 x 4: all, half, and a quarter of a circle.
   const double sides = 4 * 50 * 8 - 4 * 16;
   EXPECT_NEAR(area(miter), sides + 4 * 16, 2);
@@ -100,8 +100,8 @@ TEST(StrokeTest, JoinsDifferInTheCornerOnly) {
 
 TEST(StrokeTest, LongMitersAreCutOff) {
   const std::vector<PixelPoint> needle = {{10, 50}, {60, 48}, {60, 52}};
-  const Coverage miter = draw_ring(needle, {4, {}, LineJoin::miter});
-  const Coverage bevel = draw_ring(needle, {4, {}, LineJoin::bevel});
+  const Mask miter = draw_ring(needle, {4, {}, LineJoin::miter});
+  const Mask bevel = draw_ring(needle, {4, {}, LineJoin::bevel});
   for (int column = 0; column < 12; ++column) {
     for (int row = 40; row < 60; ++row) {
       EXPECT_EQ(miter.at(column, row), bevel.at(column, row)) << column << " " << row;
@@ -110,8 +110,8 @@ TEST(StrokeTest, LongMitersAreCutOff) {
 }
 
 TEST(StrokeTest, DashesHaveTheirLengths) {
-  const Coverage dashed = draw_ring(kSquare, {2, {6, 4}, LineJoin::bevel});
-  const Coverage solid = draw_ring(kSquare, {2, {}, LineJoin::bevel});
+  const Mask dashed = draw_ring(kSquare, {2, {6, 4}, LineJoin::bevel});
+  const Mask solid = draw_ring(kSquare, {2, {}, LineJoin::bevel});
   EXPECT_NEAR(area(dashed) / area(solid), 0.6, 0.02);
   // 50 pixels are five dashes of six with gaps of four: from 20 on, on every side.
   for (int i = 0; i < 5; ++i) {
@@ -129,12 +129,12 @@ TEST(StrokeTest, NothingIsLeftOpenBetweenManySmallEdges) {
     circle.push_back({50 + 40 * std::cos(angle), 50 + 40 * std::sin(angle)});
   }
   for (const LineJoin join : {LineJoin::bevel, LineJoin::miter, LineJoin::round}) {
-    const Coverage levels = draw_ring(circle, {3, {}, join});
+    const Mask mask = draw_ring(circle, {3, {}, join});
     for (int row = 0; row < kSide; ++row) {
       for (int column = 0; column < kSide; ++column) {
         const double off = std::abs(std::hypot(column + 0.5 - 50, row + 0.5 - 50) - 40);
         const double expected = std::clamp(2 - off, 0.0, 1.0) * 255;
-        ASSERT_NEAR(levels.at(column, row), expected, 6) << column << " " << row;
+        ASSERT_NEAR(mask.at(column, row), expected, 6) << column << " " << row;
       }
     }
   }
@@ -147,14 +147,14 @@ TEST(StrokeTest, LengthsGrowWithTheScale) {
 }
 
 TEST(StrokeTest, EdgesFarOffTheViewAreNoTrouble) {
-  const Coverage levels = draw_edges({{-9e5, 50}, {9e5, 50}, {-9e5, -9e5}, {9e5, -8e5}},
-                                     {{0, 1, 0}, {2, 3, 0}}, {2, {}, LineJoin::round});
-  EXPECT_NEAR(area(levels), 2 * kSide, 0.5);
+  const Mask mask = draw_edges({{-9e5, 50}, {9e5, 50}, {-9e5, -9e5}, {9e5, -8e5}},
+                               {{0, 1, 0}, {2, 3, 0}}, {2, {}, LineJoin::round});
+  EXPECT_NEAR(area(mask), 2 * kSide, 0.5);
 }
 
 TEST(StrokeTest, LevelsOfAnotherSizeAreRefused) {
-  Coverage levels(3, 3);
-  EXPECT_THROW(Stroker().draw({}, {}, {1, {}, LineJoin::round}, View(), 1, levels),
+  Mask mask(3, 3);
+  EXPECT_THROW(Stroker().draw({}, {}, {1, {}, LineJoin::round}, View(), 1, mask),
                std::invalid_argument);
 }
 

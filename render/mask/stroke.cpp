@@ -1,4 +1,4 @@
-#include "render/coverage/stroke.h"
+#include "render/mask/stroke.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,8 +13,8 @@ constexpr std::uint16_t kMostMet = 3;  // more are no different
 // Lines go on beyond their ends by so many pixels, so that joins that open less need not be drawn.
 constexpr double kOverlap = 1.0 / 32;
 
-std::uint8_t to_level(float coverage) {
-  return static_cast<std::uint8_t>(coverage * 255 + 0.5f);
+std::uint8_t to_value(float share) {
+  return static_cast<std::uint8_t>(share * 255 + 0.5f);
 }
 
 struct Columns {
@@ -73,8 +73,8 @@ Stroker::Line Stroker::Line::turned() const {
 // A line's width and dashes, in pixels of one picture.
 class Stroker::Pen {
  public:
-  Pen(const Stroke& stroke, int scale, Coverage& levels)
-      : half_(stroke.width * scale / 2), join_(stroke.join), levels_(levels) {
+  Pen(const Stroke& stroke, int scale, Mask& mask)
+      : half_(stroke.width * scale / 2), join_(stroke.join), mask_(mask) {
     if (!stroke.is_dashed()) return;
     for (const double length : stroke.dashes) {
       dashes_.push_back(length * scale);
@@ -87,13 +87,13 @@ class Stroker::Pen {
   void draw_line(const Line& line) {
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
-    const Columns rows = columns_between(top, bottom, levels_.height());
+    const Columns rows = columns_between(top, bottom, mask_.height());
     const Slab beside(line.dx, -kOverlap, line.length + kOverlap);
     const Slab near(line.dy, -reach(), reach());
     for (int row = rows.begin; row < rows.end; ++row) {
       const double y = row + 0.5 - line.from.y;
       double min = -line.from.x;
-      double max = levels_.width() - line.from.x;
+      double max = mask_.width() - line.from.x;
       beside.narrow(y * line.dy, min, max);
       near.narrow(-y * line.dx, min, max);
       if (min <= max) draw_row(line, row, y, min + line.from.x, max + line.from.x);
@@ -102,7 +102,7 @@ class Stroker::Pen {
 
   // Round what is nearest to the end of lines that nothing or too much is joined to.
   void draw_dot(Place centre, double along) {
-    const float dash = dash_coverage(along);
+    const float dash = dash_share(along);
     for_each_pixel_around(centre, reach(), [&](double x, double y) {
       return dash * across(static_cast<float>(std::sqrt(x * x + y * y)));
     });
@@ -117,7 +117,7 @@ class Stroker::Pen {
     const LineJoin join =
         join_ == LineJoin::miter && half_cosine * kMiterLimit < 1 ? LineJoin::bevel : join_;
     const double radius = join == LineJoin::miter ? half_ / half_cosine + 0.5 : reach();
-    const float dash = dash_coverage(out.along);
+    const float dash = dash_share(out.along);
     for_each_pixel_around(out.from, radius, [&](double x, double y) {
       const bool is_beside_a_line = x * in.dx + y * in.dy < 0 || x * out.dx + y * out.dy > 0;
       if (is_beside_a_line) return 0.0f;
@@ -147,46 +147,46 @@ class Stroker::Pen {
     return std::min(std::max(covered, 0.0f), 1.0f);
   }
 
-  float dash_coverage(double along) const {
+  float dash_share(double along) const {
     if (dashes_.empty()) return 1;
     const double place = along - period_ * std::floor(along / period_);
-    double coverage = 0;
+    double share = 0;
     for (const double shift : {-period_, 0.0, period_}) {
       double begin = shift;
       for (std::size_t i = 0; i < dashes_.size(); i += 2) {
         const double end = begin + dashes_[i];
-        coverage += std::max(0.0, std::min(place + 0.5, end) - std::max(place - 0.5, begin));
+        share += std::max(0.0, std::min(place + 0.5, end) - std::max(place - 0.5, begin));
         begin = end + dashes_[i + 1];
       }
     }
-    return static_cast<float>(std::min(coverage, 1.0));
+    return static_cast<float>(std::min(share, 1.0));
   }
 
   void draw_row(const Line& line, int row, double y, double west, double east) {
-    const Columns columns = columns_between(west, east, levels_.width());
-    std::uint8_t* out = levels_.row_begin(row);
+    const Columns columns = columns_between(west, east, mask_.width());
+    std::uint8_t* out = mask_.row_begin(row);
     const double x = columns.begin + 0.5 - line.from.x;
     const auto offset = static_cast<float>(x * line.dy - y * line.dx);
     const auto step = static_cast<float>(line.dy);
     for (int column = columns.begin; column < columns.end; ++column) {
       const int i = column - columns.begin;
-      float coverage = across(std::abs(offset + static_cast<float>(i) * step));
+      float share = across(std::abs(offset + static_cast<float>(i) * step));
       if (!dashes_.empty()) {
-        coverage *= dash_coverage(line.along + (x + i) * line.dx + y * line.dy);
+        share *= dash_share(line.along + (x + i) * line.dx + y * line.dy);
       }
-      out[column] = std::max(out[column], to_level(coverage));
+      out[column] = std::max(out[column], to_value(share));
     }
   }
 
-  template <typename CoverageAt>
-  void for_each_pixel_around(Place centre, double radius, const CoverageAt& coverage_at) {
-    const Columns rows = columns_between(centre.y - radius, centre.y + radius, levels_.height());
-    const Columns columns = columns_between(centre.x - radius, centre.x + radius, levels_.width());
+  template <typename ShareAt>
+  void for_each_pixel_around(Place centre, double radius, const ShareAt& share_at) {
+    const Columns rows = columns_between(centre.y - radius, centre.y + radius, mask_.height());
+    const Columns columns = columns_between(centre.x - radius, centre.x + radius, mask_.width());
     for (int row = rows.begin; row < rows.end; ++row) {
-      std::uint8_t* out = levels_.row_begin(row);
+      std::uint8_t* out = mask_.row_begin(row);
       for (int column = columns.begin; column < columns.end; ++column) {
-        const float coverage = coverage_at(column + 0.5 - centre.x, row + 0.5 - centre.y);
-        out[column] = std::max(out[column], to_level(coverage));
+        const float share = share_at(column + 0.5 - centre.x, row + 0.5 - centre.y);
+        out[column] = std::max(out[column], to_value(share));
       }
     }
   }
@@ -195,16 +195,16 @@ class Stroker::Pen {
   const LineJoin join_;
   std::vector<double> dashes_;  // empty: no gaps
   double period_ = 0;
-  Coverage& levels_;
+  Mask& mask_;
 };
 
 void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                   const Stroke& stroke, const View& view, int scale, Coverage& levels) {
-  if (levels.width() != view.width || levels.height() != view.height) {
-    throw std::invalid_argument("the levels of an outline are not as large as the picture");
+                   const Stroke& stroke, const View& view, int scale, Mask& mask) {
+  if (mask.width() != view.width || mask.height() != view.height) {
+    throw std::invalid_argument("the mask of an outline is not as large as the picture");
   }
   measure(vertices, edges, view);
-  Pen pen(stroke, scale, levels);
+  Pen pen(stroke, scale, mask);
   for (const Line& line : lines_) pen.draw_line(line);
   meet_.assign(std::bit_ceil(3 * edges.size() + 1), Meeting());
   for (std::uint32_t i = 0; i < edges.size(); ++i) {
