@@ -8,6 +8,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNoVersion = 0xffffffff;
+constexpr std::uint64_t kRemovalsBetweenShares = 1024;
 constexpr std::uint32_t kLevelBit = 0x80000000;
 
 /// Equal but perhaps for another of two level vertices at the top or the bottom.
@@ -51,11 +52,13 @@ void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& 
 }  // namespace
 
 void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
-                             const GeneralizationOptions& options, History& history) {
+                             const GeneralizationOptions& options, History& history,
+                             WorkShare* share) {
   rows_ = rows;
   begin(graph, history);
   stack_.assign(graph, options);
   EditLog log(graph);
+  const auto vertices = static_cast<double>(graph.vertex_count());
   int level = 0;
   for (;;) {
     const std::optional<double> epsilon = stack_.remove_next(graph, log);
@@ -72,6 +75,10 @@ void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint3
     if (stack_.last_removal() == Removal::region) touch_along(graph, log);
     note_lost_area(graph, static_cast<Level>(level));
     log.forget();
+    const std::uint64_t removals = stack_.counts().removals;
+    if (share != nullptr && removals % kRemovalsBetweenShares == 0) {
+      share->tell(static_cast<double>(removals) / vertices);
+    }
   }
 }
 

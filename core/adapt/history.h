@@ -15,6 +15,7 @@
 #include "core/adapt/adaptable_graph.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/tolerance.h"
+#include "core/grid/work_share.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
@@ -57,9 +58,10 @@ struct History {
 class HistoryRecorder {
  public:
   /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
-  /// `graph` is adapted to the coarsest tolerance.
+  /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
+  /// many of the vertices have gone.
   void record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
-              const GeneralizationOptions& options, History& history);
+              const GeneralizationOptions& options, History& history, WorkShare* share = nullptr);
   /// The same of a single polygon, which is the feature of row 0.
   void record(TrapezoidalGraph& graph, const GeneralizationOptions& options, History& history);
 

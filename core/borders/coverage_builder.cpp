@@ -378,12 +378,16 @@ void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOu
 }  // namespace
 
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
-                                       const CoverageTolerance& tolerance,
-                                       TrapezoidalGraph& graph) {
+                                       const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
+                                       WorkShare* share) {
+  const auto tell = [share](double part) {
+    if (share != nullptr) share->tell(part);
+  };
   CoverageOutcome outcome;
   SetMap map{segments_of(features)};
   for (;;) {
     if (!map.sweep(boundary_, trapezoidation_, graph, outcome)) return outcome;
+    tell(0.5);
     outcome.areas.assign(features.size(), 0);
     outcome.overlaps.clear();
     if (!note_areas(graph, map.sets, outcome)) return outcome;
@@ -396,6 +400,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     if (features.size() - outcome.apart.size() < 2) return outcome;
     map.leave_out(apart);
   }
+  tell(0.6);
   Borders& borders = map.borders;
   Sides sides = sides_of(graph, map.sets, borders.segments.size());
   if (tolerance.widest_gap > 0) outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
@@ -407,6 +412,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   } else {
     BorderArcs::name_faces(sides, graph);
   }
+  tell(0.8);
   outcome.built = true;
   const Regions regions(graph);
   arcs_.trace(boundary_, static_cast<FaceId>(features.size()), regions, graph);

@@ -14,6 +14,7 @@
 #include "core/borders/border_arcs.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
+#include "core/grid/work_share.h"
 #include "core/sweep/boundary.h"
 #include "core/sweep/noding.h"
 #include "core/sweep/trapezoidation.h"
@@ -57,9 +58,9 @@ class CoverageBuilder {
   /// to the feature with the longest border. Of features that overlap by more than is tolerated,
   /// those are left out that have the fewest edges in common with neighbours. If fewer than two are
   /// left, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
-  /// outcome says built.
+  /// outcome says built. Tells `share`, if there is one, how far it is.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
-                        TrapezoidalGraph& graph);
+                        TrapezoidalGraph& graph, WorkShare* share = nullptr);
 
  private:
   Boundary boundary_;

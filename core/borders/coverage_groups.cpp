@@ -115,9 +115,9 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
 }
 
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
-                  CoverageBuilder& builder, TrapezoidalGraph& graph) {
+                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share) {
   Assembly assembly;
-  assembly.outcome = builder.build(features, {most_overlap(coverage), widest_gap}, graph);
+  assembly.outcome = builder.build(features, {most_overlap(coverage), widest_gap}, graph, share);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

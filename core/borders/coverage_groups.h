@@ -41,8 +41,8 @@ struct Assembly {
 
 /// Makes `graph` that of the features of a group that can live in one, see CoverageBuilder: apart
 /// stay those that overlap by too much, and all if fewer than two are left or they cannot be noded.
-/// Gaps of up to `widest_gap` metres are filled.
+/// Gaps of up to `widest_gap` metres are filled. Tells `share`, if there is one, how far it is.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
-                  CoverageBuilder& builder, TrapezoidalGraph& graph);
+                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share = nullptr);
 
 }  // namespace trapeze

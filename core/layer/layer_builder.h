@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "core/borders/coverage_builder.h"
 #include "core/grid/rings.h"
+#include "core/grid/work_share.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
@@ -23,7 +25,8 @@ namespace trapeze {
 /// feature.
 class LayerBuilder {
  public:
-  explicit LayerBuilder(const LayerOptions& options = {});
+  /// Tells `share`, if there is one, how far it is with what it adds; it must outlive the builder.
+  explicit LayerBuilder(const LayerOptions& options = {}, WorkShare* share = nullptr);
   ~LayerBuilder();
   LayerBuilder(LayerBuilder&&) noexcept;
   LayerBuilder& operator=(LayerBuilder&&) noexcept;
@@ -40,8 +43,10 @@ class LayerBuilder {
                         std::span<const Rings* const> features);
 
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
-  /// with the same options.
-  static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features);
+  /// with the same options. Calls `progress`, if there is one, with the share of the time that has
+  /// gone.
+  static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features,
+                                     const std::function<void(double)>& progress = {});
 
  private:
   struct State;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <stdexcept>
 #include <utility>
 
@@ -242,7 +243,7 @@ class Export {
   FeatureSource& source_;
   PolygonFile& file_;
   const ExportOptions& options_;
-  std::vector<Exporter> exporters_;
+  std::deque<Exporter> exporters_;
   FeaturePipeline pipeline_;
   std::vector<Kept> kept_;       // of the round at hand
   std::uint32_t first_row_ = 0;  // of these

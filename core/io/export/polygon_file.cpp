@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
@@ -92,11 +90,12 @@ fs::path folder_of(const std::string& path) {
 }
 
 /// In the folder of the file, so that the file can be moved to its place in one step.
-std::string make_folder_beside(const std::string& path) {
-  std::string name =
-      (folder_of(path) / ("." + fs::path(path).stem().string() + "-unfinished-XXXXXX")).string();
-  if (mkdtemp(name.data()) == nullptr) fail_to_write(path, std::generic_category().message(errno));
-  return name;
+Unfinished make_folder_beside(const std::string& path) {
+  try {
+    return Unfinished::folder_beside(path);
+  } catch (const std::system_error& error) {
+    fail_to_write(path, error.code().message());
+  }
 }
 
 }  // namespace
@@ -135,13 +134,11 @@ PolygonFile::PolygonFile(const std::string& path, const FeatureSource& source, E
       format_(format_of(path)),
       source_(source),
       folder_(make_folder_beside(path)),
-      unfinished_((fs::path(folder_) / fs::path(path).filename()).string()) {
+      unfinished_((fs::path(folder_.path()) / fs::path(path).filename()).string()) {
   try {
     create(crs);
   } catch (...) {
     dataset_.reset();
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
     throw;
   }
 }
@@ -149,8 +146,6 @@ PolygonFile::PolygonFile(const std::string& path, const FeatureSource& source, E
 PolygonFile::~PolygonFile() {
   const GdalMessages unheard;  // of closing what is thrown away
   dataset_.reset();
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 std::string PolygonFile::driver() const {
@@ -297,7 +292,7 @@ void PolygonFile::finish() {
          " features arrived; is the disk full?");
   }
   std::error_code error;
-  fs::rename(unfinished_, path_, error);
+  Unfinished::give_name(unfinished_, path_, error);
   if (error) fail(error.message());
 }
 

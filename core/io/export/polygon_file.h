@@ -9,6 +9,7 @@
 #include <ogrsf_frmts.h>
 
 #include "core/io/export/export_crs.h"
+#include "core/io/file/unfinished.h"
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/gdal_messages.h"
@@ -65,7 +66,7 @@ class PolygonFile {
   const std::string path_;
   const Format& format_;
   const FeatureSource& source_;
-  std::string folder_;  // of the unfinished file
+  const Unfinished folder_;  // of the unfinished file
   std::string unfinished_;
   GDALDatasetUniquePtr dataset_;
   OGRLayer* layer_ = nullptr;

@@ -10,6 +10,9 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
+
+#include "core/io/file/unfinished.h"
 
 namespace trapeze {
 namespace {
@@ -24,16 +27,13 @@ constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // what one write ta
 class NewFile {
  public:
   explicit NewFile(const std::string& path)
-      : path_(path), temporary_(path + ".tmp." + std::to_string(getpid())) {
-    // What has this name was left by a process that is no more.
-    unlink(temporary_.c_str());
+      : path_(path), temporary_(Unfinished::file_beside(path)) {
     // Read-only: to write into a file that is mapped would change what is being served.
-    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444);
+    descriptor_ = open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444);
     if (descriptor_ < 0) fail(path_);
   }
   ~NewFile() {
     if (descriptor_ >= 0) close(descriptor_);
-    if (!is_named_) unlink(temporary_.c_str());
   }
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -53,15 +53,15 @@ class NewFile {
     const int descriptor = descriptor_;
     descriptor_ = -1;
     if (close(descriptor) != 0) fail(path_);
-    if (rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_);
-    is_named_ = true;
+    std::error_code error;
+    Unfinished::give_name(temporary_.path(), path_, error);
+    if (error) throw std::runtime_error("cannot write " + path_ + ": " + error.message());
   }
 
  private:
   const std::string path_;
-  const std::string temporary_;
+  const Unfinished temporary_;
   int descriptor_ = -1;
-  bool is_named_ = false;
 };
 
 /// So that the name outlives a power cut, too. Not every file system can, and the file is there

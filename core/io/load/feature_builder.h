@@ -13,7 +13,7 @@ namespace trapeze {
 /// Belongs to one thread at a time. Gets features that stand by themselves in ascending order.
 class FeatureBuilder : public FeatureWorker {
  public:
-  explicit FeatureBuilder(const LayerOptions& generalization) : builder_(generalization) {}
+  explicit FeatureBuilder(const LayerOptions& generalization) : builder_(generalization, &share_) {}
 
   void build_apart(const FeatureKey& feature, Rings& rings) override;
   /// Builds one graph of the features, but for those that have to be built apart (see assemble()).

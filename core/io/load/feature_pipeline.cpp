@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
-#include <mutex>
+#include <future>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "core/borders/gap_closing.h"
-#include "core/grid/for_each_in_parallel.h"
 #include "core/io/load/bounded_queue.h"
 #include "core/sweep/clean_rings.h"
 
@@ -23,7 +21,24 @@ constexpr std::size_t kBatchFeatures = 2048;
 constexpr std::size_t kWaitingBatchesPerLane = 4;
 constexpr unsigned kMaxThreads = 256;
 
+constexpr std::chrono::milliseconds kProgressInterval{50};
+constexpr double kLeastShare = 1e-3;  // of a source, from which the rest is guessed
+
+// What the stages take for a vertex, measured on land use, buildings, counties and countries.
+constexpr double kReadCost = 1;
+constexpr double kCloseGapsCost = 15;
+constexpr double kGroupCost = 3;
+constexpr double kBuildCost = 10;
+
 using Task = std::vector<WaitingFeature*>;
+
+double work_of(const Task& task) {
+  double vertices = 0;
+  for (const WaitingFeature* feature : task) {
+    vertices += static_cast<double>(feature->rings.points.size());
+  }
+  return vertices;
+}
 
 /// The groups of features, and all others each by itself.
 std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode coverage) {
@@ -71,62 +86,65 @@ class FeaturePipeline::Lane {
     } else if (are_to_wait_) {
       waiting_.push_back({job.key, feature.rings});
     } else {
+      begin(static_cast<double>(job.bytes));
       worker_.build_apart(job.key, feature.rings);
+      end();
     }
   }
 
   void take(const Task& task) {
+    begin(work_of(task));
     if (task.size() == 1) {
       worker_.build_apart(task.front()->key, task.front()->rings);
     } else {
       worker_.build_together(task);
     }
+    end();
     for (WaitingFeature* feature : task) feature->rings = Rings();
   }
+
+  /// In the unit of what begin() got. Any thread may ask.
+  double work_done() const { return done_ + at_hand_ * worker_.share().get(); }
 
   std::vector<WaitingFeature> take_waiting() { return std::exchange(waiting_, {}); }
 
   FeatureTally tally;
 
  private:
+  void begin(double work) {
+    worker_.share().enter(0, 1);
+    at_hand_ = work;
+  }
+  void end() { done_ = done_ + at_hand_.exchange(0); }
+
   SourceRingReader reader_;
   const bool are_to_wait_;
   FeatureWorker& worker_;
   std::vector<WaitingFeature> waiting_;
+  std::atomic<double> at_hand_ = 0;
+  std::atomic<double> done_ = 0;
 };
 
-/// The lanes at work on batches, on threads of their own or, if there is one lane only, at once.
+/// The lanes at work on batches, each on a thread of its own.
 class FeaturePipeline::Pool {
  public:
   explicit Pool(const std::vector<std::unique_ptr<Lane>>& lanes)
-      : lanes_(lanes), queue_(kWaitingBatchesPerLane * lanes.size()) {
-    if (lanes.size() == 1) return;
+      : queue_(kWaitingBatchesPerLane * lanes.size()) {
     for (const auto& lane : lanes) {
-      threads_.emplace_back([this, &lane] { work(*lane); });
+      running_.push_back(std::async(std::launch::async, [this, &lane] { work(*lane); }));
     }
   }
-
-  ~Pool() {
-    queue_.abandon();
-    for (std::thread& thread : threads_) thread.join();
-  }
-
+  ~Pool() { queue_.abandon(); }
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
   /// False if a lane has failed: there is no use in reading on.
-  bool add(Batch batch) {
-    if (!threads_.empty()) return queue_.push(std::move(batch));
-    for (const Job& job : batch) lanes_.front()->take(job);
-    return true;
-  }
+  bool add(Batch batch) { return queue_.push(std::move(batch)); }
 
-  /// Waits until all is done; rethrows what stopped a lane.
-  void finish() {
+  /// Nothing more is added: the lanes end when all is done.
+  std::vector<std::future<void>>& close() {
     queue_.close();
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-    if (failure_ != nullptr) std::rethrow_exception(failure_);
+    return running_;
   }
 
  private:
@@ -136,17 +154,13 @@ class FeaturePipeline::Pool {
         for (const Job& job : *batch) lane.take(job);
       }
     } catch (...) {
-      const std::lock_guard lock(failure_mutex_);
-      if (failure_ == nullptr) failure_ = std::current_exception();
       queue_.abandon();
+      throw;
     }
   }
 
-  const std::vector<std::unique_ptr<Lane>>& lanes_;
   BoundedQueue<Batch> queue_;
-  std::vector<std::thread> threads_;
-  std::mutex failure_mutex_;
-  std::exception_ptr failure_;
+  std::vector<std::future<void>> running_;  // waits for them when it is destroyed
 };
 
 FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
@@ -166,7 +180,8 @@ bool FeaturePipeline::run(const Take& take, const RoundLimit& limit) {
     Pool pool(lanes_);
     is_more = read(take, limit, pool);
     read_until_ = std::chrono::steady_clock::now();
-    pool.finish();
+    is_all_read_ = !is_more;
+    wait_for(pool.close());
   }
   if (options_.coverage != CoverageMode::off) build_waiting();
   return is_more;
@@ -186,7 +201,7 @@ bool FeaturePipeline::read(const Take& take, const RoundLimit& limit, Pool& pool
     accept(next, take);
     if (batch_bytes_ < kBatchBytes && batch_.size() < kBatchFeatures) continue;
     if (!hand_over()) return is_more;
-    if (progress_) progress_(source_.progress());
+    show_progress();
   }
   hand_over();
   return is_more;
@@ -206,8 +221,10 @@ void FeaturePipeline::accept(SourceFeature& next, const Take& take) {
     ++tally_.other_geometry;
   } else {
     if (!next.failure.empty()) tally_.remark({order, 0, id}, "read, but: " + next.failure);
-    batch_bytes_ += geometry->WkbSize();
-    batch_.push_back({{order, take(next), id}, next.layer_index, std::move(geometry)});
+    const std::size_t bytes = geometry->WkbSize();
+    batch_bytes_ += bytes;
+    work_read_ += static_cast<double>(bytes);
+    batch_.push_back({{order, take(next), id}, next.layer_index, std::move(geometry), bytes});
   }
 }
 
@@ -231,12 +248,66 @@ void FeaturePipeline::build_waiting() {
     for (WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
     const GapClosing done = close_gaps(rings, options_.close_gaps);
     tally_.coverage.snapped += done.moved + done.led;
+    are_gaps_closed_ = true;
+    show_progress();
   }
   const std::vector<Task> tasks = tasks_of(waiting, options_.coverage);
+  work_read_ = 0;
+  for (const Task& task : tasks) work_read_ += work_of(task);
+  is_grouped_ = true;
+  show_progress();
   std::atomic<std::size_t> next = 0;
-  for_each_in_parallel(lanes_.size(), lanes_.size(), [&](std::size_t lane) {
-    for (std::size_t i = next++; i < tasks.size(); i = next++) lanes_[lane]->take(tasks[i]);
-  });
+  std::vector<std::future<void>> running;
+  try {
+    for (const auto& lane : lanes_) {
+      running.push_back(std::async(std::launch::async, [&next, &tasks, &lane] {
+        for (std::size_t i = next++; i < tasks.size(); i = next++) lane->take(tasks[i]);
+      }));
+    }
+    wait_for(running);
+  } catch (...) {
+    next = tasks.size();
+    throw;
+  }
+}
+
+/// Rethrows what stopped one.
+void FeaturePipeline::wait_for(std::vector<std::future<void>>& running) {
+  for (std::future<void>& lane : running) {
+    while (lane.wait_for(kProgressInterval) == std::future_status::timeout) show_progress();
+    lane.get();
+  }
+}
+
+/// What is guessed may fall, what is shown does not.
+void FeaturePipeline::show_progress() {
+  if (!progress_) return;
+  const double now = share();
+  if (now >= 0) shown_ = std::max(shown_, now);
+  progress_(now < 0 ? now : shown_);
+}
+
+/// Of the time that is to be expected, by what stages take for a vertex.
+double FeaturePipeline::share() const {
+  const double read = is_all_read_ ? 1 : source_.progress();
+  if (read < 0) return -1;
+  const bool is_coverage = options_.coverage != CoverageMode::off;
+  double built = 0;
+  for (const auto& lane : lanes_) built += lane->work_done();
+  // While reading goes on, as much is to be expected of each feature to come.
+  const double work = work_read_ / std::max(read, kLeastShare);
+  const double build_share = work > 0 ? std::min(1.0, built / work) : 0;
+  double done = kReadCost * read + kBuildCost * build_share;
+  double all = kReadCost + kBuildCost;
+  if (is_coverage) {
+    all += kGroupCost;
+    if (is_grouped_) done += kGroupCost;
+  }
+  if (options_.close_gaps > 0) {
+    all += kCloseGapsCost;
+    if (are_gaps_closed_) done += kCloseGapsCost;
+  }
+  return done / all;
 }
 
 std::vector<const FeatureTally*> FeaturePipeline::tallies() const {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <limits>
 #include <memory>
 #include <span>
@@ -14,6 +15,7 @@
 
 #include <ogr_geometry.h>
 
+#include "core/grid/work_share.h"
 #include "core/io/load/feature_tally.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_ring_reader.h"
@@ -37,6 +39,12 @@ class FeatureWorker {
   virtual void build_apart(const FeatureKey& feature, Rings& rings) = 0;
   /// Takes two or more that share borders, in ascending order of rows.
   virtual void build_together(std::span<WaitingFeature* const> features) = 0;
+
+  /// How far it is with what it took last; begun anew by who gives it something.
+  WorkShare& share() { return share_; }
+
+ protected:
+  WorkShare share_;
 };
 
 /// 0: one a core.
@@ -55,7 +63,8 @@ class FeaturePipeline {
   };
 
   /// There is a thread for each worker. `source` and the workers must outlive the pipeline.
-  /// `progress` is as in LoadOptions, and may be empty.
+  /// `progress` is as in LoadOptions, and may be empty: it is called now and then with the share of
+  /// the expected time that has gone, as far as it is spent here.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                   std::vector<FeatureWorker*> workers, std::function<void(double)> progress);
   ~FeaturePipeline();
@@ -82,6 +91,7 @@ class FeaturePipeline {
     FeatureKey key;
     std::size_t layer_index = 0;
     std::unique_ptr<OGRGeometry> geometry;
+    std::size_t bytes = 0;  // of the geometry, as WKB
   };
   using Batch = std::vector<Job>;
 
@@ -89,6 +99,9 @@ class FeaturePipeline {
   void accept(SourceFeature& next, const Take& take);
   std::vector<WaitingFeature> take_waiting();
   void build_waiting();
+  void wait_for(std::vector<std::future<void>>& running);
+  void show_progress();
+  double share() const;
 
   FeatureSource& source_;
   const LayerOptions options_;
@@ -101,6 +114,13 @@ class FeaturePipeline {
   // What is to be handed over next.
   Batch batch_;
   std::size_t batch_bytes_ = 0;
+
+  // For the progress.
+  bool is_all_read_ = false;
+  bool are_gaps_closed_ = false;
+  bool is_grouped_ = false;
+  double work_read_ = 0;  // what lanes are to do with what has been read; their unit
+  double shown_ = 0;
 };
 
 }  // namespace trapeze

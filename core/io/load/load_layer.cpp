@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
+#include <functional>
 #include <utility>
 
 #include "core/io/load/feature_builder.h"
@@ -12,6 +14,9 @@
 
 namespace trapeze {
 namespace {
+
+// Of the time; the rest is for joining what the threads have built.
+constexpr double kPipelineShare = 0.78;
 
 using Clock = std::chrono::steady_clock;
 
@@ -74,7 +79,7 @@ std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tall
   return result;
 }
 
-void fill_report(const FeaturePipeline& pipeline, const std::vector<FeatureBuilder>& builders,
+void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilder>& builders,
                  const FeatureSource& source, LoadReport& report) {
   report.driver = source.driver();
   report.features = pipeline.features() + source.passed_over();
@@ -85,26 +90,36 @@ void fill_report(const FeaturePipeline& pipeline, const std::vector<FeatureBuild
   report.notes = join_notes(tallies);
 }
 
-std::unique_ptr<Layer> join_layer(std::vector<FeatureBuilder>& builders, FeatureTable table) {
+std::unique_ptr<Layer> join_layer(std::deque<FeatureBuilder>& builders, FeatureTable table,
+                                  const std::function<void(double)>& progress) {
   std::vector<LayerBuilder> parts;
   for (FeatureBuilder& builder : builders) parts.push_back(builder.take_builder());
-  return LayerBuilder::join(parts, std::move(table));
+  return LayerBuilder::join(parts, std::move(table), progress);
 }
 
 LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {
   LoadedLayer loaded;
   TableReader table(source, options.selection);
-  std::vector<FeatureBuilder> builders;
+  std::deque<FeatureBuilder> builders;
   for (unsigned i = 0; i < thread_count(options.threads); ++i) {
     builders.emplace_back(options.generalization);
   }
   std::vector<FeatureWorker*> workers;
   for (FeatureBuilder& builder : builders) workers.push_back(&builder);
-  FeaturePipeline pipeline(source, options.generalization, workers, options.progress);
+  const auto progress = [&options](double share) {
+    if (options.progress) options.progress(share);
+  };
+  const auto building = [&progress](double share) {
+    progress(share < 0 ? share : share * kPipelineShare);
+  };
+  const auto joining = [&progress](double share) {
+    progress(kPipelineShare + share * (1 - kPipelineShare));
+  };
+  FeaturePipeline pipeline(source, options.generalization, workers, building);
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
   fill_report(pipeline, builders, source, loaded.report);
-  loaded.layer = join_layer(builders, table.take_table());
-  if (options.progress) options.progress(1);
+  loaded.layer = join_layer(builders, table.take_table(), joining);
+  progress(1);
   loaded.report.read_seconds = seconds_between(start, pipeline.read_until());
   loaded.report.total_seconds = seconds_between(start, Clock::now());
   return loaded;

@@ -21,8 +21,9 @@ struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
   LayerOptions generalization = {};
   SourceSelection selection = {};
-  /// Called from the thread that called load_layer now and then, with the share of features read,
-  /// in [0, 1], or < 0 if unknown; at the end with 1. What it throws ends the loading.
+  /// Called from the thread that called load_layer now and then, with about the share of the time
+  /// that has gone, reading and building alike: in [0, 1] and never falling, or < 0 while unknown;
+  /// at the end with 1. What it throws ends the loading.
   std::function<void(double)> progress = {};
 };
 

@@ -120,6 +120,53 @@ void wait_until_ready(std::uint16_t port) {
   FAIL() << "never ready";
 }
 
+/// A polygon whose graph takes seconds, in a folder of its own.
+std::string write_large_polygon(const std::string& folder) {
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + "/comb.geojson";
+  std::ofstream file(path);
+  file << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},)"
+       << R"("geometry":{"type":"Polygon","coordinates":[[[0,-1])";
+  constexpr int kTeeth = 400'000;
+  for (int i = 0; i <= kTeeth; ++i) {
+    file << ",[" << i * 1e-4 << "," << (i % 2 == 0 ? 0 : (i * 7919 % 1000) * 1e-3) << "]";
+  }
+  file << ",[" << kTeeth * 1e-4 << ",-1],[0,-1]]]}}]}";
+  return path;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST(ProgramTest, InterruptedCommandsLeaveNothingBehind) {
+  const std::string folder = scratch_path("interrupted");
+  const std::string source = write_large_polygon(folder);
+  for (const std::string output : {"out.gpkg", "out.fgb", "out.geojson"}) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+      Program program({"export", source, "--zoom", "20", "--output", folder + "/" + output});
+      for (int i = 0; i < 1000 && names_in(folder).size() < 2; ++i) {
+        std::this_thread::sleep_for(10ms);
+      }
+      EXPECT_EQ(names_in(folder).size(), 2u) << "it writes beside the output";
+      program.send_signal(signal);
+      EXPECT_EQ(program.wait(), 128 + signal);
+      EXPECT_THAT(program.output(), HasSubstr("trapeze: interrupted\n"));
+      EXPECT_THAT(names_in(folder), ::testing::ElementsAre("comb.geojson"));
+    }
+  }
+  Program program({"prepare", source, "--output", folder});
+  std::this_thread::sleep_for(200ms);
+  program.send_signal(SIGTERM);
+  EXPECT_EQ(program.wait(), 128 + SIGTERM);
+  EXPECT_THAT(names_in(folder), ::testing::ElementsAre("comb.geojson"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   Program program(serve_arguments({fixture("rings.geojson"), fixture("west.geojson")}));
   const std::uint16_t port = program.port();

@@ -551,6 +551,32 @@ TEST_F(LoadLayerTest, ReportsProgressThatRisesToOne) {
   EXPECT_EQ(shares.back(), 1);
 }
 
+/// A comb whose graph takes a while.
+std::string comb_of_teeth(int teeth) {
+  std::string ring = "0 -1";
+  for (int i = 0; i <= teeth; ++i) {
+    const double height = i % 2 == 0 ? 0 : (i * 7919 % 1000) * 1e-3;
+    ring += "," + std::to_string(i * 1e-4) + " " + std::to_string(height);
+  }
+  return "POLYGON((" + ring + "," + std::to_string(teeth * 1e-4) + " -1,0 -1))";
+}
+
+TEST_F(LoadLayerTest, ProgressCountsTheBuildingOfASingleLargePolygon) {
+  const std::string path = folder_.file("comb.fgb");
+  write_source(path, "FlatGeobuf", {{.features = {{comb_of_teeth(150'000), 1, ""}}}});
+  for (const CoverageMode coverage : {CoverageMode::off, CoverageMode::on}) {
+    std::vector<double> shares;
+    LoadOptions options{.threads = 2,
+                        .progress = [&shares](double share) { shares.push_back(share); }};
+    options.generalization.coverage = coverage;
+    load_layer(path, options);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_LT(shares.front(), .4) << "all has been read then";
+    EXPECT_TRUE(std::ranges::any_of(shares, [](double s) { return .35 < s && s < .7; }));
+    EXPECT_EQ(shares.back(), 1);
+  }
+}
+
 TEST_F(LoadLayerTest, PassesOnWhatProgressThrows) {
   struct Stop {};
   for (const unsigned threads : {1u, 4u}) {

@@ -1,0 +1,46 @@
+#include "server/cli/interruption.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <string_view>
+#include <thread>
+
+#include "core/io/file/unfinished.h"
+
+namespace trapeze {
+namespace {
+
+constexpr int kStatusOfSignals = 128;  // as shells have it: 128 and the number of the signal
+
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// On a thread of its own, where everything may be done that a handler may not.
+[[noreturn]] void wait_and_end(const sigset_t& signals) {
+  int signal = 0;
+  while (sigwait(&signals, &signal) != 0) {
+  }
+  remove_unfinished();
+  constexpr std::string_view words = "\ntrapeze: interrupted\n";
+  // The line feed ends a bar of progress.
+  const std::string_view shown = isatty(STDERR_FILENO) != 0 ? words : words.substr(1);
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, shown.data(), shown.size());
+  _exit(kStatusOfSignals + signal);  // the other threads are still at work
+}
+
+}  // namespace
+
+void end_cleanly_when_interrupted() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (!is_ignored(signal)) sigaddset(&signals, signal);
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // for the threads to come, too
+  std::thread([signals] { wait_and_end(signals); }).detach();
+}
+
+}  // namespace trapeze
