@@ -55,6 +55,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME trapeze)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION web)
+# Beside the libraries: the unit reloads by kill.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS procps)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, fonts-dejavu-core")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "tile server for polygon maps
 Reads polygons in any format of GDAL and serves them over HTTP as PNG and WebP

@@ -206,6 +206,16 @@ TEST(ProgramTest, ServesAConfiguration) {
   std::filesystem::remove(path);
 }
 
+TEST(ProgramTest, NamesTheConfigurationThatHasNoLayer) {
+  const std::string path = scratch_path("trapeze.toml");
+  std::ofstream(path) << "[server]\nport = 0\n";
+  Program program({"serve", "--config", path});
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_THAT(program.output(),
+              HasSubstr("nothing to serve: name files, or a [[layer]] in " + path));
+  std::filesystem::remove(path);
+}
+
 TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
   const std::string path = scratch_path("trapeze.toml");
   const auto write = [&path](const std::string& name, const std::string& more) {
