@@ -1,4 +1,4 @@
-// Chooses how to draw: by EGL, by OSMesa, or in plain C++, whatever works first.
+// Chooses the renderer: by EGL, by OSMesa or in plain C++, the first of them that works.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct RendererOptions {
   std::string device;
 };
 
-/// A way of drawing that was tried and does not work here, in words for a log.
+/// A renderer that was tried and does not work here, for a log.
 struct RendererFailure {
   std::string what;
   std::string reason;
@@ -30,14 +30,14 @@ struct RendererFailure {
 
 struct MadeRenderers {
   std::vector<std::unique_ptr<MaskRenderer>> renderers;
-  std::vector<RendererFailure> failures;  // what was tried before
+  std::vector<RendererFailure> failures;  // the renderers tried before, in order
 };
 
-/// Makes `count` renderers of one sort, one for each thread that draws. Those that draw by GL keep
-/// their meshes together: each mesh is uploaded once, and one call of forget is enough for all.
+/// Makes `count` renderers of one sort, one for each thread that draws. GL renderers
+/// share their meshes: each mesh is uploaded once, and one call of forget() frees it for all.
 ///
-/// With `automatic`, EGL is tried first, then OSMesa, and the software renderer is what is left if
-/// nothing else works. With any other kind, throws std::runtime_error with all reasons if that kind
+/// With `automatic`, EGL is tried first, then OSMesa, and the software renderer if
+/// neither works. With any other kind, throws std::runtime_error with all reasons if that kind
 /// does not work here.
 MadeRenderers make_renderers(const RendererOptions& options, int count);
 

@@ -1,4 +1,4 @@
-// What it takes that neighbours share their borders: layers with coverage off and auto, in turns.
+// The cost of shared borders: layers with coverage off and auto, in turns.
 //
 //   TRAPEZE_DATA=folder coverage_bench
 //

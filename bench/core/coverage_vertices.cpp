@@ -49,7 +49,7 @@ std::vector<Beside> boundary_of(const Layer& layer, Level level) {
   };
   layer.select({layer.bounds(), level, level, SmallPolygons::drop}, ranges);
   for_each_trapezoid(ranges, add);
-  layer.select_level_edges(layer.bounds(), level, ranges);
+  layer.select_horizontal_edges(layer.bounds(), level, ranges);
   for_each_trapezoid(ranges, add);
   sort_and_unite(boundary);
   return boundary;

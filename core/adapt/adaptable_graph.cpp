@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffff;
 
-// How far ahead, in candidates, each step is taken: some hundred nanoseconds later it has come, and
-// what came is still in the nearest cache.
+// How far ahead, in candidates, each step is prefetched: its memory arrives after some hundred
+// nanoseconds, and is then still in the first-level cache.
 constexpr std::size_t kCornerAhead = 24;
 constexpr std::size_t kEdgesAhead = 16;
 constexpr std::size_t kNodesAhead = 8;
@@ -107,7 +107,7 @@ void PriorityStack::add_regions() {
 }
 
 std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
-  // What is due already goes before what is yet to come.
+  // A candidate that is due already precedes those still to come.
   const bool has_more = position_ < order_.size();
   if (!retries_.empty() &&
       (retries_.front().weight <= epsilon_ || !has_more || retries_.front() < order_[position_])) {
@@ -207,7 +207,7 @@ bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
   return true;
 }
 
-/// A junction that became a corner is weighed where it stands each time that its turn comes.
+/// A junction that became a corner is weighed against its present neighbours whenever it is popped.
 bool PriorityStack::is_to_wait(CornerId c) {
   if (!graph_->is_coverage() || !is_dissolved_[c.value]) return false;
   weights_[c] = weight_in_place(c);
@@ -223,7 +223,7 @@ double PriorityStack::weight_in_place(CornerId c) const {
   return std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
 }
 
-/// Gives a weight to the corners of rings that are left and have none; false if there are none.
+/// Gives a weight to the remaining anchors of rings; false if there are none.
 bool PriorityStack::enqueue_anchors() {
   bool has_any = false;
   for (std::size_t i = 0; i < graph_->corners().size(); ++i) {
@@ -256,7 +256,7 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
       enqueue({weights_[c], graph_->corner(c).vertex, c});
     }
   }
-  // What it has become a part of is not measured anew before its turn comes.
+  // The region that it has become a part of is not measured again before it is popped.
   double known = 0;
   for (const RegionId taker : takers) known = std::max(known, region_weights_[taker]);
   if (!std::isfinite(known)) known = borders_.weight(region);
@@ -294,8 +294,8 @@ AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptio
 void AdaptableGraph::adapt_to(double epsilon) {
   while (log_.applied() > 0 && epsilon_of_edit_[log_.applied() - 1] >= epsilon) log_.revert();
   while (log_.applied() < log_.size() && epsilon_of_edit_[log_.applied()] < epsilon) log_.apply();
-  // The sequence goes on where it has been followed before; the next removal is known only once it
-  // has been made, so one too many is made and taken back.
+  // The sequence continues from where it was followed to before; the tolerance of the next removal
+  // is known only once it has been made, so one too many is made and reverted.
   while (log_.applied() == log_.size() && !exhausted_) {
     const std::optional<double> made = stack_.remove_next(graph_, log_);
     if (!made) {

@@ -1,20 +1,20 @@
 // One polygon's trapezoidal graph, adapted in place to any tolerance, forward and back (paper,
 // section 3.2).
 //
-// All vertices wait in a priority stack, ordered by weight and then by vertex. Adapting to a
+// All vertices are in a priority stack, ordered by weight and then by vertex. Adapting to a
 // tolerance pops every vertex of smaller weight and removes it, unless the topological consistency
 // test blocks it; a blocked vertex is tried again as soon as its blocker or one of its neighbours
-// in the ring has gone, and counts as of the weight that was popped last. So there is one fixed
-// sequence of removals, and the graph at a tolerance is a prefix of it: its state depends on the
-// tolerance only, never on what was asked before.
+// in the ring has been removed, with the weight of the vertex popped last. So there is one fixed
+// sequence of removals, and the graph at a tolerance is the result of a prefix of it: it depends on
+// the tolerance only, never on the tolerances it was adapted to before.
 //
-// The two vertices of a ring without a weight, between which all others are weighed, go with its
-// last triangle. Where rings hook into each other so that all of finite weight are blocked, these
-// two are weighed as well: an innermost ring has two vertices whose triangle is empty, wherever
-// they are, so that in the end nothing is left.
+// The two anchors of a ring, between which all its other vertices are weighed, have no finite
+// weight and are removed with its last triangle. Where rings hook into each other so that all
+// vertices of finite weight are blocked, the anchors are given weights as well: an innermost ring
+// always has two vertices whose triangle is empty, so that in the end nothing is left.
 //
-// In a coverage, arcs are weighed each by itself, so that a border is the same whichever side asks,
-// and regions wait in the stack as well (see region_borders.h).
+// In a coverage, each arc is weighed by itself, so that a border is the same for the polygons on
+// both sides, and regions are in the stack as well (see region_borders.h).
 //
 // Thread-safety: none; different graphs may be used by different threads.
 #pragma once
@@ -39,26 +39,26 @@ struct GeneralizationOptions {
   Topology topology = Topology::strict;
 };
 
-/// The corners of a graph in the order in which they are to go, with what blocks them.
+/// The corners of a graph in the order in which they are to be removed, and those that are blocked.
 class PriorityStack {
  public:
   /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use.
   void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options);
 
-  /// Makes the next removal that the sequence holds, through `log`; returns the tolerance that it
-  /// belongs to (cells): the graph at a tolerance has seen all removals of smaller ones. None if no
-  /// vertex of finite weight can go any more.
+  /// Carries out the next removal of the sequence, through `log`, and returns its tolerance
+  /// (cells): the graph at a tolerance has had all removals of smaller ones. None if no vertex of
+  /// finite weight can be removed any more.
   std::optional<double> remove_next(const TrapezoidalGraph& graph, EditLog& log);
 
   struct Counts {
     std::uint64_t removals = 0;
     std::uint64_t tests = 0;    // decisions made
-    std::uint64_t walked = 0;   // trapezoids looked at in them
+    std::uint64_t walked = 0;   // trapezoids examined for them
     std::uint64_t touched = 0;  // trapezoids changed by removals
   };
   const Counts& counts() const { return counts_; }
 
-  /// Whether some decision so far was that a vertex is blocked.
+  /// Whether any vertex has been blocked so far.
   bool has_blocked() const { return has_blocked_; }
 
   /// The corner that went last, how it went, and, if its whole loop went, the longest side of the
@@ -66,7 +66,7 @@ class PriorityStack {
   CornerId last_corner() const { return last_corner_; }
   Removal last_removal() const { return last_removal_; }
   std::pair<VertexId, VertexId> last_side() const { return last_side_; }
-  /// Of a coverage: the areas that changed hands when a loop or a region went last.
+  /// In a coverage: the areas that went to another face when a loop or a region was removed last.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
   double weight(CornerId c) const { return weights_[c]; }
 
@@ -138,10 +138,11 @@ class AdaptableGraph {
   AdaptableGraph(const AdaptableGraph&) = delete;
   AdaptableGraph& operator=(const AdaptableGraph&) = delete;
 
-  /// Makes the graph the one of tolerance `epsilon` (cells, >= 0), forward or back.
+  /// Adapts the graph to the tolerance `epsilon` (cells, >= 0), forward or back.
   void adapt_to(double epsilon);
 
-  /// The tolerances at which the graph is as it is now: those greater than `above`, up to `up_to`.
+  /// The tolerances at which the graph is the present one: those greater than `above`, up to and
+  /// including `up_to`.
   struct Unchanged {
     double above = -1;  // below zero: nothing has been removed
     double up_to = 0;

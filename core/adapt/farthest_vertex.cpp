@@ -10,7 +10,7 @@ struct FarthestVertex::Search {
   std::size_t piece_begin;
   std::size_t piece_end;
   Found best;
-  // Of the vertices of the tree that are asked for; `lap` is added to their index in the piece.
+  // The range of vertices of the tree to be searched; `lap` is added to their index in the piece.
   std::size_t range_begin = 0;
   std::size_t range_end = 0;
   std::size_t lap = 0;
@@ -79,7 +79,7 @@ FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   Search search{SegmentDistance(at(begin), at(end)), begin, end, {begin + 1, -1}};
   if (end - begin <= kFew || looked_at_ < kPatience * ring_.size()) {
     looked_at_ += end - begin;
-    look_at_all(begin + 1, end, search);
+    examine_all(begin + 1, end, search);
     return search.best;
   }
   if (!has_tree_) build_tree();
@@ -90,7 +90,7 @@ FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
 }
 
 /// The vertices [begin, end) of the piece.
-void FarthestVertex::look_at_all(std::size_t begin, std::size_t end, Search& search) const {
+void FarthestVertex::examine_all(std::size_t begin, std::size_t end, Search& search) const {
   Found& best = search.best;
   const std::size_t n = ring_.size();
   for (std::size_t i = begin; i < end; ++i) {
@@ -124,7 +124,7 @@ double FarthestVertex::bound_of(std::size_t row, std::size_t index, const Search
     return -1;
   double bound = 0;
   for (const Point p : rows_[row][index]) bound = std::max(bound, search.distance.squared(p));
-  // What rounding may add to a distance, twice over.
+  // Twice the greatest error of a distance by rounding.
   constexpr double kRounding = 4e-6;
   return bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding;
 }
@@ -135,7 +135,7 @@ void FarthestVertex::descend(std::size_t row, std::size_t index, double bound,
   if (row == 0) {
     const std::size_t end = std::min((index + 1) * kLeaf, search.range_end);
     const std::size_t begin = std::max(index * kLeaf, search.range_begin);
-    look_at_all(begin + search.lap, end + search.lap, search);
+    examine_all(begin + search.lap, end + search.lap, search);
     return;
   }
   const std::size_t left = 2 * index;

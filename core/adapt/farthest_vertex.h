@@ -1,11 +1,11 @@
-// The vertex of a piece of a ring that lies farthest from the chord of the piece: what a recursive
-// partitioning (paper, section 3.2) asks again and again.
+// Finds the vertex of a piece of a ring that lies farthest from the chord of the piece: the inner
+// step of the recursive partitioning (paper, section 3.2).
 //
-// Looking at all vertices of every piece is quadratic where the farthest one always is next to an
+// Examining all vertices of every piece is quadratic where the farthest one is always next to an
 // end: a comb with each tooth longer than the one before, a spiral, a long straight staircase. So a
 // tree of convex hulls over the vertices is kept: no vertex is farther away than the farthest
-// corner of a hull around it, and what lies in a hull that is nowhere far enough is not looked at.
-// The answer is the same as that of looking at all, bit for bit.
+// corner of a hull around it, and the vertices in a hull no corner of which is far enough are
+// skipped. The result is, bit for bit, that of examining all vertices.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ class SegmentDistance {
   double dx_, dy_, squared_length_, inverse_;
 };
 
-/// Reusable memory; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class FarthestVertex {
  public:
   /// `ring` must outlive its use here.
@@ -60,16 +60,17 @@ class FarthestVertex {
     double squared;      // its distance, in cells squared
   };
   /// Of the vertices begin + 1 .. end - 1 the one farthest from the segment between begin and end;
-  /// indices run past the end of the ring and are taken modulo its length. Of equally distant ones
-  /// it is the one nearest the middle of the piece, then the uppermost: a comb of equal teeth is
-  /// halved and not peeled tooth by tooth. begin + 1 < end <= begin + length of the ring.
+  /// indices may run past the end of the ring and are taken modulo its length. Of several at the
+  /// same distance it is the one nearest to the middle of the piece, then the uppermost: a comb of
+  /// equal teeth is halved instead of being split off tooth by tooth. begin + 1 < end <= begin +
+  /// length of the ring.
   Found find(std::size_t begin, std::size_t end);
 
  private:
   static constexpr std::size_t kLeaf = 64;  // vertices in a hull of the lowest row
-  static constexpr std::size_t kFew = 512;  // not worth a tree
-  // How often each vertex of a ring is looked at before a tree is worth it: more than is usual even
-  // for a ring of millions, whose pieces come in halves more or less.
+  static constexpr std::size_t kFew = 512;  // too few vertices for a tree
+  // How often each vertex of a ring is examined before a tree is built: more often than is usual
+  // even for a ring of millions of vertices, whose pieces are roughly halved each time.
   static constexpr std::size_t kPatience = 48;
 
   /// Convex hulls one after another.
@@ -88,7 +89,7 @@ class FarthestVertex {
   Point at(std::size_t i) const { return ring_[i < ring_.size() ? i : i - ring_.size()]; }
   void build_tree();
   void append_hull(Row& row);
-  void look_at_all(std::size_t begin, std::size_t end, Search& search) const;
+  void examine_all(std::size_t begin, std::size_t end, Search& search) const;
   bool wins_tie(std::size_t i, const Search& search) const;
   void search_range(std::size_t begin, std::size_t end, std::size_t lap, Search& search) const;
   void descend(std::size_t row, std::size_t index, double bound, Search& search) const;

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::uint32_t kNoVersion = 0xffffffff;
 constexpr std::uint64_t kRemovalsBetweenShares = 1024;
-constexpr std::uint32_t kLevelBit = 0x80000000;
+constexpr std::uint32_t kHorizontalBit = 0x80000000;
 
-/// Equal but perhaps for another of two level vertices at the top or the bottom.
+/// Equal, except that top or bottom may be another vertex of the same y.
 bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
   const auto y = [&history](std::uint32_t vertex) { return history.vertices[vertex].y; };
   return a.left == b.left && a.right == b.right && y(a.top) == y(b.top) &&
@@ -22,8 +22,8 @@ bool has_height(const History& history, const MeshTrapezoid& t) {
   return history.vertices[t.top].y != history.vertices[t.bottom].y;
 }
 
-/// The side of a trapezoid without height that is as level as it is, if there is one.
-std::optional<std::uint32_t> level_edge_of(const History& history, const MeshTrapezoid& t) {
+/// The horizontal side of a trapezoid without height, if it has one.
+std::optional<std::uint32_t> horizontal_edge_of(const History& history, const MeshTrapezoid& t) {
   for (const std::uint32_t side : {t.left, t.right}) {
     const MeshEdge& edge = history.edges[side];
     if (history.vertices[edge.upper].y == history.vertices[edge.lower].y) return side;
@@ -32,8 +32,9 @@ std::optional<std::uint32_t> level_edge_of(const History& history, const MeshTra
 }
 
 Lifespan& lifespan_of(History& history, std::uint32_t version) {
-  return (version & kLevelBit) == 0 ? history.lifespans[version]
-                                    : history.level_edges[version ^ kLevelBit].lifespan;
+  return (version & kHorizontalBit) == 0
+             ? history.lifespans[version]
+             : history.horizontal_edges[version ^ kHorizontalBit].lifespan;
 }
 
 /// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
@@ -64,7 +65,7 @@ void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint3
     const std::optional<double> epsilon = stack_.remove_next(graph, log);
     const int next = epsilon ? level_above(*epsilon) : kLastLevel + 1;
     if (next != level) {
-      // What has been removed up to now was due by `level`; the edit at hand is only due at `next`.
+      // All removals so far were due at `level`; the last edit is due only at `next`.
       if (epsilon) log.revert();
       if (level > 0) end_level(graph, static_cast<Level>(level));
       if (next > kLastLevel) return;
@@ -122,7 +123,8 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
       doubled += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(b.x) * a.y;
       c = corner.next;
     } while (c != CornerId(i));
-    // Running clockwise, the loop's own side is left of what goes down and right of what goes up.
+    // The inside of a clockwise loop is left of an edge that leads down and right of one that leads
+    // up.
     const Corner& first = graph.corner(CornerId(i));
     const bool goes_down = first.vertex == graph.edge(first.edge).end[kUp];
     const bool clockwise = doubled > 0;
@@ -170,7 +172,7 @@ void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level)
   for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
 }
 
-/// A hole counts as less of what fills it.
+/// A hole is subtracted from the feature that fills it.
 void HistoryRecorder::note_taken(const Taken& taken, Level level) {
   if (taken.face == kOutside) {
     history_->grains.push_back(
@@ -253,16 +255,17 @@ MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
 
 bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid,
                               std::uint32_t row) const {
-  if ((version & kLevelBit) == 0) {
+  if ((version & kHorizontalBit) == 0) {
     return history_->rows[version] == row &&
            covers_the_same(*history_, history_->trapezoids[version], trapezoid);
   }
-  const LevelEdge& open = history_->level_edges[version ^ kLevelBit];
+  const HorizontalEdge& open = history_->horizontal_edges[version ^ kHorizontalBit];
   return open.row == row && !has_height(*history_, trapezoid) &&
-         level_edge_of(*history_, trapezoid) == open.edge;
+         horizontal_edge_of(*history_, trapezoid) == open.edge;
 }
 
-// A trapezoid between level vertices has no area and is never drawn; but the edge along it may be.
+// A trapezoid between two vertices of the same y has no area and is never drawn; the edge along it
+// may be.
 std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::uint32_t row,
                                          Level level) {
   const Lifespan lifespan{level, kNeverDies};
@@ -272,10 +275,10 @@ std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::ui
     history_->rows.push_back(row);
     return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
   }
-  const std::optional<std::uint32_t> edge = level_edge_of(*history_, trapezoid);
+  const std::optional<std::uint32_t> edge = horizontal_edge_of(*history_, trapezoid);
   if (!edge) return kNoVersion;
-  history_->level_edges.push_back({*edge, lifespan, row});
-  return static_cast<std::uint32_t>(history_->level_edges.size() - 1) | kLevelBit;
+  history_->horizontal_edges.push_back({*edge, lifespan, row});
+  return static_cast<std::uint32_t>(history_->horizontal_edges.size() - 1) | kHorizontalBit;
 }
 
 }  // namespace trapeze

@@ -1,10 +1,10 @@
 // The history of a graph: every version of its inside trapezoids between the untouched polygon and
 // the coarsest tolerance, each with its lifespan (see tolerance.h).
 //
-// The sequence of removals is played once from fine to coarse. At every level of the ladder the
-// nodes that changed since the level before end their version there and begin a new one. Versions
-// that no level sees are never stored, which bounds the memory; edges have versions of their own,
-// which the versions of trapezoids name.
+// The sequence of removals is carried out once, from fine to coarse. At every level, the versions
+// of the nodes that have changed since the previous level end, and new ones begin. Versions that
+// exist at no level are not stored, which bounds the memory. Edges have versions of their own, to
+// which the versions of trapezoids refer.
 #pragma once
 
 #include <cstddef>
@@ -28,16 +28,16 @@ struct Grain {
   Point from;
   Point to;
   double area = 0;        // cells squared; negative if the loop was a hole
-  Level born = 0;         // the first level that does without the loop
+  Level born = 0;         // the first level without the loop
   std::uint32_t row = 0;  // of the feature
-  /// The feature that covers the place since; kNobody if none does. If one does, the area is to be
-  /// taken from it.
+  /// The feature that covers the place from then on; kNobody if there is none. If there is one, the
+  /// area is to be subtracted from its own.
   std::uint32_t taker = kNobody;
 };
 
-/// A version of an edge whose ends are level, and when it is part of the boundary of a feature. The
-/// trapezoid along it has no height and is not stored, so that nothing else tells of it.
-struct LevelEdge {
+/// A version of a horizontal edge, and when it is part of the boundary of a feature. The trapezoid
+/// along it has no height and is not stored, so the edge would otherwise be lost.
+struct HorizontalEdge {
   std::uint32_t edge = 0;
   Lifespan lifespan;
   std::uint32_t row = 0;  // of the feature
@@ -50,7 +50,7 @@ struct History {
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;  // by trapezoid
   std::vector<std::uint32_t> rows;  // by trapezoid: the feature that it is a part of
-  std::vector<LevelEdge> level_edges;
+  std::vector<HorizontalEdge> horizontal_edges;
   std::vector<Grain> grains;
 };
 
@@ -91,7 +91,7 @@ class HistoryRecorder {
   std::uint32_t vertex_base_ = 0;
   PriorityStack stack_;
   // The version that is open at present, by edge and by node; kNoVersion if there is none. That of
-  // a node without height is a level edge, flagged with kLevelBit, if it has one.
+  // a node without height is a horizontal edge, flagged with kHorizontalBit, if it has one.
   Table<EdgeId, std::uint32_t> edge_version_;
   Table<NodeId, std::uint32_t> node_version_;
   // Touched since the last level.

@@ -63,8 +63,8 @@ std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, Wei
   return weights_;
 }
 
-/// The uppermost vertex and the one farthest from it: a choice that any starting point and
-/// direction agree on.
+/// The uppermost vertex and the one farthest from it: a choice that does not depend on the first
+/// point of the ring or on its direction.
 VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) const {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -96,7 +96,7 @@ void VertexWeights::weigh_by_distance(std::span<const Point> ring, bool raise_pa
   split_pieces(ring, raise_parents);
 }
 
-// Binary recursive partitioning of the pieces at hand, iteratively.
+// Binary recursive partitioning of the given pieces, done iteratively.
 void VertexWeights::split_pieces(std::span<const Point> points, bool raise_parents) {
   const std::size_t n = points.size();
   splits_.clear();

@@ -1,9 +1,10 @@
 // Vertex weights: how much a vertex matters for the shape of its ring (paper, section 3.2).
 //
-// A weight is a distance in grid cells; a vertex is to go at every tolerance greater than its
-// weight. Two corners of a ring, its anchors, have no finite weight: they go with the ring.
+// A weight is a distance in grid cells; a vertex is to be removed at every tolerance greater
+// than its weight. Two corners of a ring, its anchors, have infinite weight: they are removed with
+// the ring.
 //
-// Thread-safety: one VertexWeights a thread.
+// Thread-safety: a VertexWeights may be used by one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,11 @@ namespace trapeze {
 
 enum class WeightRule : std::uint8_t {
   /// Douglas-Peucker distance, lowered to the weight of the parent in the BLG tree where that is
-  /// smaller: dropping all weights below a tolerance is exactly Douglas-Peucker at that tolerance.
+  /// smaller. Removing all vertices of smaller weight than a tolerance is then the same as
+  /// Douglas-Peucker at that tolerance.
   douglas_peucker,
-  /// The paper's adjustment, Eq. (1): the same distances, but the parent is raised to its children,
-  /// so
-  /// that no vertex is kept less long than one that was split off below it.
+  /// The paper's adjustment, Eq. (1): the same distances, but a parent is raised to the greatest
+  /// weight of its children, so that no vertex is removed before one that was split off below it.
   raised_parents,
   /// Visvalingam-Whyatt: the square root of the area of the triangle with the neighbours that are
   /// left, never less than that of a vertex removed before.
@@ -36,12 +37,13 @@ std::string_view name_of(WeightRule rule);
 /// Reusable memory for weighing rings.
 class VertexWeights {
  public:
-  /// The weight of every vertex of a closed ring of at least three points, in the order given;
-  /// equal for the same ring started elsewhere or run through the other way round.
+  /// The weight of every vertex of a closed ring of at least three points, in the order given. The
+  /// weights depend neither on the first point of the ring nor on its direction. The span is valid
+  /// until the next call.
   std::span<const double> weigh(std::span<const Point> ring, WeightRule rule);
 
-  /// The same of an arc between two vertices that stay, which have no finite weight; they may be at
-  /// the same place. At least two points.
+  /// The same for an arc of at least two points. Its two ends stay and have infinite weight; they
+  /// may be the same point.
   std::span<const double> weigh_arc(std::span<const Point> arc, WeightRule rule);
 
  private:

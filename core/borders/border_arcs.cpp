@@ -23,8 +23,8 @@ void sort_around(Point centre, std::vector<Spoke>& spokes) {
   });
 }
 
-// A pair that has been found leaves the circle, and its neighbours become neighbours: what lies
-// between those is the region that lay on both sides of it.
+// A pair that has been found is taken out of the circle, and the edges before and after it become
+// neighbours: between them lies the region that was on both sides of the pair.
 std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spokes) {
   std::vector<std::pair<EdgeId, EdgeId>> pairs;
   std::vector<Spoke> circle = spokes;
@@ -53,7 +53,7 @@ void BorderArcs::trace(const Boundary& boundary, FaceId faces, const Regions& re
     pair_edges(VertexId(v), regions, graph);
   }
   graph.corners_.assign(count, Corner{});
-  // Arcs with ends first, each from one of them; what is left are loops.
+  // First the arcs that have ends, each from one of its ends; the edges that remain form loops.
   for (std::size_t i = 0; i < count; ++i) {
     const EdgeId e(i);
     for (const VertexId v : {boundary.edges[e].upper, boundary.edges[e].lower}) {

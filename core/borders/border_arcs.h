@@ -1,9 +1,9 @@
-// Walks the edges of a graph of several polygons into arcs, and writes them down as corners.
+// Finds the arcs of a coverage and stores them as the corners of its graph.
 //
 // An arc is a run of edges between the same two regions. It ends at junctions, where three or more
-// regions meet; where an arc only passes through a vertex that others visit as well, as that of a
-// lake that touches another one in the middle of a country, it goes on. So a vertex can be the end
-// of some arcs and be passed through by others.
+// regions meet; where two pieces of boundary merely touch at a vertex, as two lakes in the middle
+// of a country may, the arcs continue. So a vertex can be the end of some arcs and in the middle of
+// others.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace trapeze {
 
-/// An edge as it leaves a vertex.
+/// An edge, seen from one of its ends.
 struct Spoke {
   EdgeId edge;
   Point far;           // its other end
@@ -30,14 +30,15 @@ struct Spoke {
 /// The spoke of an edge that begins or ends at `v`.
 Spoke spoke_of(const TrapezoidalGraph& graph, VertexId v, EdgeId e, RegionId left, RegionId right);
 
-/// Puts the spokes of one vertex in order around it.
+/// Sorts the spokes of one vertex counterclockwise around it.
 void sort_around(Point centre, std::vector<Spoke>& spokes);
 
-/// Which of the spokes, in order around their vertex, belong to arcs that go on there: pairs of
-/// edges that bound a wedge from both sides of which lies the same region. No two pairs cross.
+/// The pairs of edges by which arcs continue through a vertex: two edges that bound a wedge with
+/// the same region on both sides of it. The spokes are in order around the vertex. No two pairs
+/// cross.
 std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spokes);
 
-/// Reusable memory; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class BorderArcs {
  public:
   /// Fills the corners of `graph` from its edges and regions; edge i leaves corner i. Its faces are
@@ -45,7 +46,7 @@ class BorderArcs {
   void trace(const Boundary& boundary, FaceId faces, const Regions& regions,
              TrapezoidalGraph& graph);
 
-  /// The faces beside edge i are sides[i] from then on, left and right.
+  /// Sets the faces to the left and right of each edge i to sides[i].
   static void name_faces(std::span<const std::pair<FaceId, FaceId>> sides, TrapezoidalGraph& graph);
 
  private:

@@ -1,4 +1,4 @@
-// With whom a region has how much of its border.
+// The lengths of the borders of a region with each of its neighbours.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace trapeze {
 
-/// In cells.
+/// The length of an edge, in cells.
 inline double length_of(const TrapezoidalGraph& graph, const Edge& edge) {
   const Point a = graph.point(edge.end[kUp]);
   const Point b = graph.point(edge.end[kDown]);
@@ -33,8 +33,8 @@ class BorderLengths {
 
   std::size_t faces() const { return lengths_.size(); }
 
-  /// The face with the longest border, of several the one of the smallest number; kOutside if there
-  /// is none.
+  /// The face with the longest border, the one of the smallest number if there are several;
+  /// kOutside if there is none.
   FaceId longest() const {
     const auto found =
         std::min_element(lengths_.begin(), lengths_.end(), [](const auto& a, const auto& b) {

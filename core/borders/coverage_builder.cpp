@@ -59,13 +59,13 @@ class FeatureSets {
   std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
 };
 
-/// Different segments, and the sets of features whose boundary they are.
+/// Distinct segments, and for each the set of features whose boundary it belongs to.
 struct Borders {
   std::vector<Segment> segments;
   std::vector<std::uint32_t> owners;
 };
 
-/// What a feature has twice is inside of it on both sides, or outside.
+/// A segment that a feature has twice is inside it on both sides, or outside on both.
 Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
   sort_by_place(pieces);
   Borders borders;
@@ -87,7 +87,8 @@ Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
   return borders;
 }
 
-/// The map of which features cover what: its faces are numbers of sets.
+/// The subdivision of the plane by the sets of features that cover it: a face is the number of a
+/// set.
 struct SetMap {
   std::vector<OwnedSegment> pieces;
   FeatureSets sets = {};
@@ -118,7 +119,7 @@ struct SetMap {
     return false;
   }
 
-  /// What has been noded stays so.
+  /// Segments that have been noded remain noded.
   void leave_out(const std::vector<std::uint32_t>& features) {
     std::erase_if(pieces, [&features](const OwnedSegment& piece) {
       return std::binary_search(features.begin(), features.end(), piece.owner);
@@ -126,7 +127,7 @@ struct SetMap {
   }
 };
 
-/// What becomes of the features along an edge of a map of sets, each list in ascending order.
+/// The features that begin and end at an edge of a subdivision by sets, in ascending order.
 struct Crossing {
   std::vector<std::uint32_t> staying;  // on both of its sides
   std::vector<std::uint32_t> left;     // on its left side only
@@ -149,8 +150,8 @@ struct Crossing {
   }
 };
 
-/// Sums up areas of features, and of pairs of them, from the edges of a map of sets: a strip of an
-/// edge counts for what lies on one of its sides only. Exact.
+/// Sums up the areas of features, and of pairs of them, from the edges of a subdivision by sets:
+/// the strip of an edge counts for the features that are on one side of it only. Exact.
 class OverlapAreas {
  public:
   explicit OverlapAreas(std::size_t features) : doubled_(features, 0) {}
@@ -192,8 +193,8 @@ class OverlapAreas {
   std::unordered_map<std::uint64_t, Int128> doubled_overlaps_;
 };
 
-/// Areas and overlaps of the features whose map this is. False, and a failure in words, if more lie
-/// over each other than can be accounted for in a second or two.
+/// The areas and overlaps of the features of a subdivision. Returns false, with the reason as
+/// failure, if more features overlap than can be counted in a second or two.
 bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
   constexpr std::size_t kMostPairs = std::size_t{1} << 24;
   OverlapAreas areas(outcome.areas.size());
@@ -214,7 +215,7 @@ bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
   return true;
 }
 
-/// How many edges each feature has in common with a neighbour, which begins where it ends.
+/// The number of edges that each feature shares with a neighbour on the other side.
 std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Borders& borders,
                                             const FeatureSets& sets, std::size_t features) {
   std::vector<std::size_t> count(features, 0);
@@ -231,7 +232,7 @@ std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Bor
   return count;
 }
 
-/// Those by more than `most` of the smaller one's area.
+/// The overlaps of more than the share `most` of the area of the smaller feature.
 std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most) {
   std::vector<Overlap> overlaps;
   for (const Overlap& overlap : outcome.overlaps) {
@@ -241,9 +242,9 @@ std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most)
   return overlaps;
 }
 
-/// Without these, in ascending order, no two overlap. First go those that have the fewest edges in
-/// common with neighbours: an overseas region that is there a second time as a country, and not the
-/// motherland. Of several, that with the most overlaps goes, and of these the last one.
+/// Features without which no two overlap, in ascending order. Those that share the fewest edges
+/// with neighbours are left out first: an overseas region that occurs a second time as a country,
+/// and not the mainland. Of several, it is the one with the most overlaps, and of these the last.
 std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& overlaps,
                                                  const std::vector<std::size_t>& common_edges) {
   std::vector<std::vector<std::uint32_t>> overlapping(common_edges.size());
@@ -266,7 +267,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
     waiting.erase(waiting.begin());
     apart.push_back(worst);
     for (const std::uint32_t other : overlapping[worst]) {
-      // Its place among the others changes; those that went before are not there any more.
+      // Its place in the order changes; features that were left out before are no longer in it.
       if (waiting.erase(other) > 0 && --count[other] > 0) waiting.insert(other);
     }
   }
@@ -274,7 +275,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
   return apart;
 }
 
-/// What is drawn of a set: its last feature.
+/// The feature of a set that is drawn: the last one.
 FaceId face_of(const std::vector<std::uint32_t>& set) {
   return set.empty() ? kOutside : set.back() + 1;
 }
@@ -292,14 +293,14 @@ Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t e
   return sides;
 }
 
-/// What surrounds a region that no feature covers.
+/// The features around a region that no feature covers.
 struct Gap {
   double border = 0;  // its length in cells
   double reach = 0;   // the widest gap at this place, in cells
   BorderLengths neighbours = {};
 };
 
-/// Narrow gaps between features get the face of a neighbour; returns how many.
+/// Gives narrow gaps between features the face of a neighbour; returns the number of such gaps.
 std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides) {
   const Regions regions(g);
   std::vector<Gap> gaps(regions.face.size());
@@ -475,8 +476,8 @@ class FaceRings {
     }
   }
 
-  /// From arc to arc, until there is none left to go on by. Each vertex has an even number of ends
-  /// in a face, so that is where the ring began.
+  /// Walks from arc to arc until there is none to continue by. At each vertex a face has an even
+  /// number of ends of arcs, so the walk ends where the ring began.
   void walk(ArcEnd at) {
     Rings& rings = rings_[at.face - 1];
     for (;;) {
@@ -501,7 +502,7 @@ class FaceRings {
     is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
   }
 
-  /// What lies between the ends of an arc, with the end that it begins at.
+  /// The points of an arc between its ends, with the end at which it begins.
   void append(CornerId from, CornerId to, Rings& rings) const {
     const bool is_forward = !g_.corner(from).next.is_none();
     for (CornerId c = from; c != to; c = is_forward ? g_.corner(c).next : g_.corner(c).prev) {

@@ -1,8 +1,9 @@
-// From the rings of several features that share borders to one trapezoidal graph.
+// Builds one trapezoidal graph from the rings of several features that share borders.
 //
-// All rings are noded together, so that a border that two features have is there once. The sweep
-// knows for each face which features cover it: crossing an edge toggles those that own it. Where
-// several do, the one drawn last has it; edges that then have the same feature on both sides go.
+// All rings are noded together, so that a border that two features share occurs once. The sweep
+// knows for each face which features cover it: crossing an edge toggles those that own it. A face
+// that several features cover belongs to the one drawn last; edges that then have the same feature
+// on both sides are removed.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,7 @@ struct Overlap {
   double area = 0;  // cells squared
 };
 
-/// What came of the features of one coverage.
+/// The result of building one coverage, for reports.
 struct CoverageOutcome {
   bool built = false;        // false: nothing left to draw, or failed
   bool noded = false;        // vertices were missing on one side of a border, or borders crossed
@@ -36,29 +37,29 @@ struct CoverageOutcome {
   std::size_t shared_edges = 0;   // between two features
   std::size_t junctions = 0;      // vertices where three or more borders meet
   std::size_t gaps = 0;           // regions that no feature covers, with at least two around them
-  std::size_t filled = 0;         // such ones that were narrow enough to go to a neighbour
+  std::size_t filled = 0;         // gaps narrow enough to become a part of a neighbour
   std::vector<Overlap> overlaps;  // in order of their features
   std::vector<double> areas;      // of each feature by itself, cells squared
-  std::vector<std::uint32_t> apart;  // those that were left out, in ascending order
+  std::vector<std::uint32_t> apart;  // the features that were left out, in ascending order
   std::string failure;               // why it could not be built, empty otherwise
 };
 
-/// How far features may be from a coverage.
+/// The overlaps and gaps that are tolerated.
 struct CoverageTolerance {
-  double most_overlap = 0;  // of the area of the smaller one of two
+  double most_overlap = 0;  // as a share of the area of the smaller of two features
   double widest_gap = 0;    // metres on the ground
 };
 
-/// Reusable memory; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
-  /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the last one
-  /// has the place. Gaps whose mean width, area over half of the border, is at most the widest go
-  /// to the feature with the longest border. Of features that overlap by more than is tolerated,
-  /// those are left out that have the fewest edges in common with neighbours. If fewer than two are
-  /// left, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
-  /// outcome says built. Tells `share`, if there is one, how far it is.
+  /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the area
+  /// belongs to the last one. Gaps whose mean width (area over half of the border) is at most
+  /// `widest_gap` become a part of the feature with the longest border. Of features that overlap by
+  /// more than is tolerated, those that share the fewest edges with neighbours are left out. If
+  /// fewer than two remain, nothing is built. Never throws for bad geometry: `graph` is meaningful
+  /// only if the outcome says built. Tells `share`, if there is one, how far it is.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
                         TrapezoidalGraph& graph, WorkShare* share = nullptr);
 
@@ -69,7 +70,7 @@ class CoverageBuilder {
 };
 
 /// The rings of every face of a coverage, by face - 1, read from its edges: closed, and the inside
-/// of the face by even-odd. Where one face touches itself, they may pass through a vertex twice.
+/// of the face by even-odd. Where a face touches itself, a ring may pass through a vertex twice.
 std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph);
 
 }  // namespace trapeze

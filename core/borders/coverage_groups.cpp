@@ -18,7 +18,7 @@ constexpr std::array<std::pair<std::string_view, CoverageMode>, 3> kNames{{
     {"on", CoverageMode::on},
 }};
 
-/// Sets of features that are tied together; the smallest number of each stands for it.
+/// Disjoint sets of features (union-find); the smallest number of a set represents it.
 class Ties {
  public:
   explicit Ties(std::size_t count) : parent_(count) {
@@ -74,7 +74,7 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     return std::tuple(a.box.min_x, a.feature) < std::tuple(b.box.min_x, b.feature);
   });
-  // From west to east, with those that are not passed yet.
+  // A sweep from west to east over the boxes; those not passed yet are kept.
   std::vector<Place> open;
   for (const Place& place : places) {
     std::erase_if(open, [&](const Place& other) { return other.box.max_x < place.box.min_x; });
@@ -85,7 +85,7 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
   }
 }
 
-/// Of the smaller one of two polygons: what they may overlap by and still be neighbours.
+/// The greatest overlap of two neighbours, as a share of the area of the smaller one.
 double most_overlap(CoverageMode coverage) {
   return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
 }

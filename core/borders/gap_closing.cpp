@@ -24,7 +24,8 @@ double squared_distance(Point a, Point b) {
   return squared_length(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
 }
 
-/// Where the perpendicular from a point meets a segment, as a share of it, and how long it is.
+/// The foot of the perpendicular from a point to a segment, as a share of the segment, and its
+/// length.
 struct Foot {
   double along = 0;
   double squared_distance = 0;
@@ -48,7 +49,7 @@ Box around(Point p, double reach) {
           on_grid(std::ceil(p.x + reach)), on_grid(std::ceil(p.y + reach))};
 }
 
-/// Segments in an order of place under a tree, each with the number under which it was given.
+/// Segments sorted by place, with a tree over them, each with its index as given.
 class PlacedSegments {
  public:
   explicit PlacedSegments(const std::vector<Segment>& segments)
@@ -77,7 +78,7 @@ class PlacedSegments {
   SegmentTree tree_;
 };
 
-/// The vertices of all features: where each is, whose it is, and where it goes.
+/// The vertices of all features: the place of each, its features, and the place to which it moves.
 class Places {
  public:
   explicit Places(std::span<Rings* const> features) {
@@ -107,16 +108,16 @@ class Places {
     return std::binary_search(owners_[place].begin(), owners_[place].end(), feature);
   }
 
-  /// Each has a feature that the other has not.
+  /// Whether each has a feature that the other does not have.
   bool are_strangers(Place a, Place b) const {
     return !std::ranges::includes(owners_[a], owners_[b]) &&
            !std::ranges::includes(owners_[b], owners_[a]);
   }
 
-  /// Brings one to the other; false if both are where they must stay.
+  /// Moves one to the other; false if neither may move.
   bool join(Place a, Place b) {
     if (is_moved(a) || is_moved(b) || (has_guests_[a] && has_guests_[b])) return false;
-    // What has more features, or the first one, stays.
+    // The one with more features stays, or else the first one.
     const bool b_stays =
         has_guests_[b] || (!has_guests_[a] && owners_[b].size() > owners_[a].size());
     const Place guest = b_stays ? a : b;
@@ -167,7 +168,7 @@ std::vector<Pair> near_pairs(const Places& places, double metres) {
   return pairs;
 }
 
-/// An edge of a feature, between the places where its ends have gone.
+/// An edge of a feature, between the places to which its ends have moved.
 struct Border {
   std::uint32_t feature;
   std::uint32_t index;  // of its first point in the rings of the feature
@@ -192,7 +193,7 @@ std::vector<Border> borders_of(std::span<Rings* const> features, const Places& p
   return borders;
 }
 
-/// A vertex through which an edge is to be led.
+/// A vertex through which an edge is to be routed.
 struct Stop {
   std::uint32_t border;
   double along;

@@ -1,10 +1,10 @@
-// Closes gaps and overlaps between polygons that were drawn each by itself, so that their borders
-// run beside each other and not in one line.
+// Closes narrow gaps and overlaps between polygons whose borders were digitized separately, so that
+// they run beside each other instead of coinciding.
 //
-// First vertices: one goes to the nearest one of another polygon. Then edges: one is led through
-// the vertices of other polygons beside it. What two polygons have in common afterwards is noded as
-// in any coverage; places between borders that could not be brought together are left, and are
-// filled if they are narrow enough (see CoverageBuilder).
+// First, vertices are moved to the nearest vertex of another polygon. Then, edges are routed
+// through the vertices of other polygons beside them. The result is noded as any coverage is; gaps
+// between borders that could not be brought together remain, and are filled if they are narrow
+// enough (see CoverageBuilder).
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@
 
 namespace trapeze {
 
-/// What gaps may be closed up to, in metres.
+/// The greatest width of a gap that may be closed, in metres.
 constexpr double kWidestGap = 1000;
 
-/// What has been done.
+/// What close_gaps() has done.
 struct GapClosing {
-  std::size_t moved = 0;  // vertices that went to one of another feature
-  std::size_t led = 0;    // vertices through which edges of other features were led
+  std::size_t moved = 0;  // vertices moved to a vertex of another feature
+  std::size_t led = 0;    // vertices through which edges of other features were routed
 };
 
-/// Brings borders of different features together that are no farther apart than `metres` on the
-/// ground, in (0, kWidestGap]. A vertex moves by no more than that and goes nowhere if its features
-/// have a vertex there already, so that the shape of a single one is not simplified; the edges
-/// beside it bend by as much again. Rings are clean before and after (see clean_rings.h); features
-/// that were narrower than a gap may have none left. The result depends on the features and their
-/// order only.
+/// Makes borders of different features coincide where they are at most `metres` apart on the
+/// ground; 0 < metres <= kWidestGap. A vertex moves by no more than that, and not to a place where
+/// one of its features already has a vertex, so that the shape of a feature is not simplified; the
+/// edges beside it may bend by as much again. Rings are clean before and after (see clean_rings.h);
+/// features that were narrower than a gap may have none left. The result depends on the features
+/// and their order only.
 GapClosing close_gaps(std::span<Rings* const> features, double metres);
 
 }  // namespace trapeze

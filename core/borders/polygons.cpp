@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNoPart = 0xffffffff;
 
-/// Which connected part of the inside each node belongs to.
+/// The connected part of the inside to which each node belongs.
 class InsideParts {
  public:
   explicit InsideParts(const TrapezoidalGraph& graph) : g_(graph) {
@@ -58,7 +58,8 @@ EdgeId edge_before(const TrapezoidalGraph& g, CornerId c) {
   return g.corner(g.corner(c).prev).edge;
 }
 
-/// Both edges go down from the top; what lies between them, next to either, is within the loop.
+/// Both edges lead downwards from the top; the nodes between them, beside either, are inside the
+/// loop.
 Loop describe_loop(const TrapezoidalGraph& g, const InsideParts& parts, CornerId top) {
   const Point p = g.point(g.corner(top).vertex);
   const EdgeId out = g.corner(top).edge;
@@ -142,7 +143,8 @@ Polygons polygons_of_rings(Rings& rings) {
 
 }  // namespace
 
-// The corners of an adapted graph need not do: without the topology test its edges may cross.
+// The corners of an adapted graph may not suffice: without the topological consistency test its
+// edges may cross.
 Polygons polygons_of(const TrapezoidalGraph& graph) {
   Rings rings = rings_of(graph);
   return polygons_of_rings(rings);

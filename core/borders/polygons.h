@@ -1,5 +1,4 @@
-// From a trapezoidal graph back to polygons as other programs know them: one shell and its holes
-// each.
+// Converts a trapezoidal graph to polygons of the usual form: a shell with its holes.
 //
 // The links between inside nodes connect exactly what can be reached without crossing or touching
 // the boundary, so every connected part of the inside is one polygon. The loops of the boundary are
@@ -27,10 +26,10 @@ struct Polygons {
   Rings rings;
   std::vector<std::uint32_t> ends;  // polygon i is rings ends[i - 1] .. ends[i] - 1
 
-  /// The graph's edges crossed, as they may without the topology test; they were noded, and inside
-  /// is even-odd.
+  /// Whether edges of the graph crossed, as they may without the topological consistency test; they
+  /// were noded, and inside is even-odd.
   bool is_noded = false;
-  /// Why they could not be noded; then there are no polygons. Empty otherwise.
+  /// Why the edges could not be noded, in which case there are no polygons; empty otherwise.
   std::string failure;
 
   std::size_t size() const { return ends.size(); }
@@ -40,7 +39,7 @@ struct Polygons {
 
 /// The polygons that the inside nodes of `graph` make up, adapted or not; none if there are no
 /// inside nodes. Polygons are in sweep order of their topmost vertices, and so are the holes of
-/// each. They depend on what `graph` draws only, not on how it came about.
+/// each. They depend only on the area that `graph` covers, not on its history.
 Polygons polygons_of(const TrapezoidalGraph& graph);
 
 /// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common

@@ -118,7 +118,7 @@ void RegionBorders::collect_arcs(RegionId region) {
   edges_.clear();
   box_ = Box();
   has_junction_ = false;
-  // Seeds of arcs that are no more are dropped on the way.
+  // Seeds of arcs that no longer exist are dropped on the way.
   List& list = lists_[region];
   std::uint32_t before = kNobody;
   for (std::uint32_t i = list.first; i != kNobody; i = seeds_[i].next) {
@@ -219,8 +219,8 @@ std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
   return takers;
 }
 
-// Along all of its border, from which it is nowhere farther than a fraction of a pixel: that which
-// disappears can be short.
+// The area is spread along the whole border, from which the region is nowhere farther away than a
+// fraction of a pixel; the border that disappears may be short.
 void RegionBorders::note_taken(FaceId face, FaceId taker, double area) {
   taken_.clear();
   double length = 0;
@@ -257,7 +257,7 @@ CornerId RegionBorders::end_at(VertexId v, EdgeId edge) const {
 void RegionBorders::join_ends(CornerId a, CornerId b, EditLog& log) {
   const auto is_last = [this](CornerId c) { return graph_->corner(c).next.is_none(); };
   if (is_last(a) == is_last(b)) {
-    // Both lead here, or both from here: one is turned, that with fewer corners.
+    // Both arcs lead here, or both lead away: the one with fewer corners is reversed.
     const Direction on = is_last(a) ? kUp : kDown;
     const auto step = [&](CornerId c) {
       return on == kUp ? graph_->corner(c).prev : graph_->corner(c).next;
@@ -281,7 +281,7 @@ void RegionBorders::join_ends(CornerId a, CornerId b, EditLog& log) {
   dissolved_.push_back(last);
 }
 
-/// Turns the arc with this end round.
+/// Reverses the arc with this end.
 void RegionBorders::reverse(CornerId end, EditLog& log) {
   CornerId c = end;
   while (!graph_->corner(c).prev.is_none()) c = graph_->corner(c).prev;

@@ -1,12 +1,13 @@
-// What keeps a coverage from being crowded: a region too small to see is given to a neighbour.
+// Dissolves the small regions of a coverage: a region too small to see becomes a part of a
+// neighbour.
 //
-// Removing vertices alone would leave every region at least a triangle and every junction where it
-// is. So a region whose mean width has shrunk below a tolerance goes to the face, other than the
-// outside, with which it has the longest border: that border disappears, edge by edge, which no
-// boundary can cross, and the rest of its borders is the neighbour's from then on. Junctions where
-// only two arcs are left become corners of one.
+// Removing vertices alone would leave every region at least a triangle and every junction in its
+// place. So a region whose mean width is below a limit set by the tolerance becomes a part of that
+// face, other than the outside, with which it has the longest border. That border is removed edge
+// by edge, which cannot make boundaries cross; the rest of the region's border becomes the
+// neighbour's. Junctions where only two arcs are left become corners of one arc.
 //
-// Follows a graph through the sequence of its removals, forward only. Thread-safety: none.
+// Must be told of every removal from the graph, and follows them forward only. Thread-safety: none.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,8 @@
 
 namespace trapeze {
 
-/// A part of an area that has changed hands, along a segment of the border of the region it was.
+/// A part of an area that went from one face to another, along a segment of the border of the
+/// region that was removed.
 struct Taken {
   Point from;
   Point to;
@@ -32,30 +34,31 @@ struct Taken {
 
 class RegionBorders {
  public:
-  /// `graph`, a coverage, must outlive the use of this.
+  /// `graph`, a coverage, must outlive the use of this object.
   void assign(const TrapezoidalGraph& graph);
 
-  /// Regions are numbered 0 .. count() - 1; one that has become part of another is no more.
+  /// Regions are numbered 0 .. count() - 1; one that has become a part of another no longer exists.
   std::size_t count() const { return parent_.size(); }
 
-  /// The tolerance at which the region is to go, in cells: such that a square goes when it is half
-  /// a pixel wide and the tolerance a quarter of one. Infinite if it does not go as a region: it is
-  /// no more, is what surrounds everything, or has no junction, so that its loops go by themselves.
+  /// The tolerance at which the region is to be removed, in cells: such that a square is removed
+  /// when it is half a pixel wide and the tolerance a quarter of a pixel. Infinite if it is not
+  /// removed as a region: it no longer exists, is the unbounded one, or has no junction, so that
+  /// its loops are removed vertex by vertex.
   double weight(RegionId region);
 
-  /// Gives a region of finite weight to a neighbour, as one edit that begins here, and returns the
-  /// regions that are one with it from then on, under its number.
+  /// Makes a region of finite weight a part of a neighbour, as one new edit, and returns the
+  /// regions that are united from then on, under its number.
   std::vector<RegionId> remove(RegionId region, EditLog& log);
 
-  /// To be called after a corner has gone other than with its loop: of its two edges `gone` is no
-  /// more, and `kept` leaves `corner`.
+  /// To be called after a corner has been removed other than with its loop: of its two edges,
+  /// `gone` no longer exists, and `kept` leaves `corner`.
   void note_joined(EdgeId gone, EdgeId kept, CornerId corner);
-  /// To be called before a triangular loop goes, of which `edge` is one, and its inside lies on
-  /// `side` of it: what is inside becomes part of what is outside.
+  /// To be called before a triangular loop is removed. `edge` is one of its edges, and its inside
+  /// lies on `side` of that edge: the region inside becomes a part of the one outside.
   void note_lost_loop(EdgeId edge, Side side, Point from, Point to);
 
   // What the last removal did.
-  /// Areas that changed hands.
+  /// Areas that went from one face to another.
   std::span<const Taken> taken() const { return taken_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }
@@ -63,7 +66,8 @@ class RegionBorders {
   std::span<const CornerId> dissolved() const { return dissolved_; }
 
  private:
-  // Every arc is in the lists of the two regions beside it, named by one of its edges at first.
+  // Every arc is in the lists of the two regions beside it, identified by one of its original
+  // edges.
   static constexpr std::uint32_t kNobody = 0xffffffff;
   struct Seed {
     EdgeId edge;
@@ -74,7 +78,7 @@ class RegionBorders {
     std::uint32_t last = kNobody;
   };
 
-  // An arc of the region at hand, as edges_[begin .. end).
+  // An arc of the current region, as edges_[begin .. end).
   struct Arc {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -110,7 +114,7 @@ class RegionBorders {
   RegionId unbounded_;
   std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order
 
-  // Of the region at hand.
+  // Of the current region.
   Table<EdgeId, std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;
   std::vector<Arc> arcs_;

@@ -3,7 +3,7 @@
 namespace trapeze {
 namespace {
 
-/// Links lead to all that can be reached without crossing an edge.
+/// Links lead to every node that can be reached without crossing an edge.
 class Flood {
  public:
   Flood(const TrapezoidalGraph& graph, Regions& regions) : g_(graph), regions_(regions) {

@@ -1,5 +1,5 @@
-// The connected pieces of the faces of a graph: a feature of several islands has several, and so
-// has the outside, with a hole each and what surrounds everything.
+// The regions of a graph: the connected pieces of its faces. A feature of several islands has
+// several regions; so has the outside, namely each hole and the unbounded region around everything.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Regions {
   explicit Regions(const TrapezoidalGraph& graph);
 
   Table<EdgeId, std::array<RegionId, 2>> beside;  // left and right of each edge but the frame's
-  Table<RegionId, double> area;                   // cells squared; that at the frame has none
+  Table<RegionId, double> area;  // cells squared; meaningless for the unbounded region
   Table<RegionId, FaceId> face;
   RegionId unbounded;  // at the frame
 };

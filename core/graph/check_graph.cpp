@@ -8,18 +8,18 @@
 namespace trapeze {
 namespace {
 
-/// Where an edge meets the level y, as a fraction with a positive denominator; exact.
+/// The x of an edge at the y of a vertex, as a fraction with a positive denominator; exact.
 struct Fraction {
   Int128 num;
   Int128 den;
 };
 
-Fraction x_at_level(const TrapezoidalGraph& g, EdgeId e, VertexId level) {
+Fraction x_at(const TrapezoidalGraph& g, EdgeId e, VertexId at) {
   const Point u = g.point(g.edge(e).end[kUp]);
   const Point l = g.point(g.edge(e).end[kDown]);
-  const Point p = g.point(level);
+  const Point p = g.point(at);
   const Int128 dy = std::int64_t{l.y} - u.y;
-  // In sweep order a level edge is passed through from left to right at once: it is met at p
+  // The sweep line passes along a horizontal edge from left to right: it meets the edge at p
   // itself.
   if (dy == 0) return {p.x, 1};
   return {Int128{u.x} * dy + (Int128{l.x} - u.x) * (std::int64_t{p.y} - u.y), dy};
@@ -105,8 +105,8 @@ class Checker {
       return;
     }
     for (const Direction d : {kUp, kDown}) {
-      const Fraction l = x_at_level(g_, n.edge[kLeft], n.end[d]);
-      const Fraction r = x_at_level(g_, n.edge[kRight], n.end[d]);
+      const Fraction l = x_at(g_, n.edge[kLeft], n.end[d]);
+      const Fraction r = x_at(g_, n.edge[kRight], n.end[d]);
       require(l.num * r.den <= r.num * l.den, "I3: the edges of node ", id.value, " cross");
     }
   }
@@ -118,17 +118,17 @@ class Checker {
       const Side own = opposite(s);
       if (g_.is_frame(id) && id == g_.frame_edge(s)) continue;  // nothing beyond the frame
       NodeId n = e.extreme[s][kUp];
-      VertexId level = e.end[kUp];
+      VertexId top = e.end[kUp];
       NodeId last;
       while (!n.is_none() && ok()) {
         const Node& node = g_.node(n);
-        require(node.is_alive() && node.edge[own] == id && node.end[kUp] == level,
+        require(node.is_alive() && node.edge[own] == id && node.end[kUp] == top,
                 "I6: the nodes along edge ", id.value, " do not follow each other");
-        level = node.end[kDown];
+        top = node.end[kDown];
         last = n;
         n = node.link[own][kDown];
       }
-      require(level == e.end[kDown] && last == e.extreme[s][kDown], "I6: the nodes along edge ",
+      require(top == e.end[kDown] && last == e.extreme[s][kDown], "I6: the nodes along edge ",
               id.value, " do not reach its end");
       if (!ok()) return;
     }

@@ -22,8 +22,8 @@ struct PlainTrapezoid {
   friend bool operator==(const PlainTrapezoid&, const PlainTrapezoid&) = default;
 };
 
-/// All trapezoids of a graph in a canonical order: two graphs are the same map exactly if these are
-/// equal (the map of a given set of rings is unique).
+/// All trapezoids of a graph in a canonical order. Two graphs are the same trapezoidation exactly
+/// if these are equal, because the trapezoidation of a given set of rings is unique.
 std::vector<PlainTrapezoid> plain_trapezoids(const TrapezoidalGraph& graph);
 
 }  // namespace trapeze

@@ -1,9 +1,9 @@
 // Edit records: the only way to change a trapezoidal graph, and the way to change it back.
 //
-// An edit is one removal. Whoever makes it asks the log for each node, edge and corner that it
-// changes; the log keeps the value from before. To revert an edit is to swap the kept values with
-// those in the graph, last first; to apply it again, to swap them once more, first to last. Undo is
-// exact for every operator by this one mechanism (paper, section 3.2).
+// An edit is one removal. An operator asks the log for each node, edge and corner that it is going
+// to change, and the log keeps the previous value. An edit is reverted by swapping the kept values
+// with those in the graph, last to first, and applied again by swapping them once more, first to
+// last. This one mechanism makes undo exact for every operator (paper, section 3.2).
 //
 // Thread-safety: none.
 #pragma once
@@ -26,7 +26,7 @@ class EditLog {
     Record record;
   };
 
-  /// Changes to `graph`, which must outlive the log, go through this log from now on.
+  /// All changes to `graph`, which must outlive the log, are made through the log from now on.
   explicit EditLog(TrapezoidalGraph& graph) : graph_(&graph) {}
 
   /// Starts a new edit; every edit before it must be applied.
@@ -41,16 +41,16 @@ class EditLog {
   std::size_t size() const { return edits_.size(); }
   std::size_t applied() const { return applied_; }
 
-  /// Takes back the last applied edit; there is one.
+  /// Reverts the last applied edit; there is one.
   void revert();
-  /// Makes the first edit that is not applied anew; there is one.
+  /// Applies the first edit that is not applied; there is one.
   void apply();
 
-  /// What the last edit recorded touched, some perhaps more than once.
+  /// The nodes and edges that the last recorded edit changed; some may occur more than once.
   std::span<const Kept<NodeId, Node>> touched_nodes() const;
   std::span<const Kept<EdgeId, Edge>> touched_edges() const;
 
-  /// Drops all records: the graph as it is is the new beginning. Memory is kept.
+  /// Drops all edits; the present graph can no longer be reverted. Memory is kept for reuse.
   void forget();
 
   std::size_t memory() const;

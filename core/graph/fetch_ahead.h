@@ -1,10 +1,10 @@
-// Asks early for the memory that removals will look at.
+// Prefetches the memory that removals will read.
 //
-// Vertices go in the order of their weights, so successive ones lie anywhere on the map: of a large
-// graph nothing about the next one is in the cache, and each step from corner to edge to node to
-// neighbour would wait for memory. Each of these functions takes one step for a vertex so far ahead
-// that the step before has come by then. They change nothing, and may be called for corners that
-// have gone or never go.
+// Vertices are removed in the order of their weights, so successive ones lie anywhere on the map:
+// in a large graph, nothing about the next one is in the cache, and each step from corner to edge
+// to node to neighbour would wait for memory. Each of these functions prefetches one such step. It
+// is to be called so long after the previous one that its memory has arrived by then. They change
+// nothing, and may be called for corners that have been removed or never will be.
 #pragma once
 
 #include "core/graph/trapezoidal_graph.h"
@@ -16,7 +16,7 @@ template <class IdType, class Record>
 void fetch(const Table<IdType, Record>& table, IdType id) {
   if (id.is_none()) return;
   __builtin_prefetch(&table[id]);
-  // Without it GCC takes a function that only fetches for one without effect, and drops its calls.
+  // Otherwise GCC considers a function that only prefetches to have no effect, and drops its calls.
   __asm__ volatile("");
 }
 
@@ -43,7 +43,7 @@ inline void fetch_nodes(const TrapezoidalGraph& graph, CornerId c) {
   }
 }
 
-/// After fetch_nodes(): what the nodes at the vertex are next to.
+/// After fetch_nodes(): the neighbours of the nodes at the vertex.
 inline void fetch_neighbours(const TrapezoidalGraph& graph, CornerId c) {
   const Corner& corner = graph.corner(c);
   if (!corner.is_alive()) return;

@@ -27,7 +27,7 @@ void Generalization::remove(CornerId corner, Removal removal) {
 //
 //        A |                     A |
 //     p    |    p'                 |
-//   -------V-------     =>     p   |   p'       the levels left and right of V disappear
+//   -------V-------     =>     p   |   p'       the lines left and right of V disappear
 //     q    |    q'                 |
 //        B |                     B |
 void Generalization::remove_regular(CornerId corner) {
@@ -36,8 +36,8 @@ void Generalization::remove_regular(CornerId corner) {
   unlink(corner, joined);
 }
 
-/// Makes one edge of two that follow each other, with the nodes along them; returns the one that is
-/// left. The one with fewer nodes along it gives way.
+/// Makes one edge of two successive ones, with the nodes along them, and returns the one that is
+/// left. The edge with fewer nodes along it is removed.
 EdgeId Generalization::join_edges(EdgeId upper, EdgeId lower) {
   const bool keep_lower = upper_list_is_shorter(upper, lower);
   const EdgeId keep = keep_lower ? lower : upper;
@@ -62,10 +62,10 @@ EdgeId Generalization::join_edges(EdgeId upper, EdgeId lower) {
     const Side own = opposite(s);
     const NodeId p = above.extreme[s][kDown];
     const NodeId q = below.extreme[s][kUp];
-    const bool level_disappears = g_.node(p).link[s][kDown] == q;
+    const bool line_disappears = g_.node(p).link[s][kDown] == q;
     set_link(p, own, kDown, q);
     set_link(q, own, kUp, p);
-    if (level_disappears) merge_levels(p, q, kDown);
+    if (line_disappears) merge_stacked(p, q, kDown);
   }
   return keep;
 }
@@ -92,12 +92,12 @@ bool Generalization::upper_list_is_shorter(EdgeId upper, EdgeId lower) const {
   }
 }
 
-// The level between two nodes with the same edges disappears:
+// The horizontal line between two nodes with the same edges disappears:
 //
 //   |   keep   |             |          |
 //   |----------|      =>     |   keep   |       (d: downwards)
 //   |   gone   |             |          |
-void Generalization::merge_levels(NodeId keep, NodeId gone, Direction d) {
+void Generalization::merge_stacked(NodeId keep, NodeId gone, Direction d) {
   const Node lost = g_.node(gone);
   Node& merged = log_.edit(keep);
   merged.end[d] = lost.end[d];
@@ -114,8 +114,8 @@ void Generalization::merge_levels(NodeId keep, NodeId gone, Direction d) {
 }
 
 // Horizontal generalization. The tip (wedge) is eliminated; the nodes on its two outer sides merge
-// pairwise by level down to A, the nearer neighbour; the far edge now starts at A, and what was a
-// division or join at V is one at A.
+// pairwise from top to bottom, down to A, the nearer neighbour; the far edge now starts at A, and
+// what was a division or join at V is one at A.
 //
 //   |      u      |              |             |
 //   |------V------|              |             |
@@ -137,7 +137,7 @@ void Generalization::remove_extremum(CornerId corner) {
   const NodeId p = g_.edge(x.near_edge).extreme[s][back];
   const NodeId q = far.extreme[other][back];
   const NodeId beyond = g_.node(p).link[s][back];
-  const bool level_disappears = !beyond.is_none() && g_.node(q).link[other][back] == beyond;
+  const bool line_disappears = !beyond.is_none() && g_.node(q).link[other][back] == beyond;
 
   const Zipped zipped = zip(p, q, s, d, x.near_vertex);
   Edge& shortened = log_.edit(x.far_edge);
@@ -148,7 +148,7 @@ void Generalization::remove_extremum(CornerId corner) {
   set_link(below_wedge, other, back, NodeId());
   kill(wedge);
   kill(x.near_edge);
-  if (level_disappears) merge_levels(beyond, zipped.first, d);
+  if (line_disappears) merge_stacked(beyond, zipped.first, d);
   unlink(corner, x.far_edge);
 }
 
@@ -156,7 +156,7 @@ void Generalization::remove_extremum(CornerId corner) {
 //
 //        T                T
 //       / \              / \                  |  one node a  |
-//    p1/   \   =>      p/   \ q      =>       |  level from  |
+//    p1/   \   =>      p/   \ q      =>       |  line from   |
 //     M     \  q       (     )                |  both sides  |
 //    p2\     \          \   /                 |              |
 //          `--B           B
@@ -178,8 +178,9 @@ void Generalization::remove_loop(CornerId corner) {
   kill(loop.long_edge);
   const Node& last = g_.node(zipped.last);
   const NodeId below = last.link[s][kDown];
-  if (!below.is_none() && last.link[other][kDown] == below) merge_levels(zipped.last, below, kDown);
-  if (top_disappears) merge_levels(above, zipped.first, kDown);
+  if (!below.is_none() && last.link[other][kDown] == below)
+    merge_stacked(zipped.last, below, kDown);
+  if (top_disappears) merge_stacked(above, zipped.first, kDown);
   for (const CornerId c : {loop.top, loop.middle, loop.bottom}) {
     log_.edit(c) = Corner{g_.corner(c).vertex, {}, {}, {}};
   }
@@ -188,7 +189,7 @@ void Generalization::remove_loop(CornerId corner) {
 // The border between two faces that become one disappears.
 //
 //     T                    T
-//  p1 | q1              |  p1  |       the levels of T and B disappear as well, unless another
+//  p1 | q1              |  p1  |       the lines through T and B disappear too, unless another
 //  ---|           =>    |------|       edge begins or ends there
 //  p2 |---              |  q1  |
 //     | q2              |------|
@@ -205,9 +206,9 @@ void Generalization::remove_edge(EdgeId edge) {
   const Node& last = g_.node(zipped.last);
   const NodeId below = last.link[kLeft][kDown];
   if (!below.is_none() && last.link[kRight][kDown] == below) {
-    merge_levels(zipped.last, below, kDown);
+    merge_stacked(zipped.last, below, kDown);
   }
-  if (top_disappears) merge_levels(above, zipped.first, kDown);
+  if (top_disappears) merge_stacked(above, zipped.first, kDown);
 }
 
 // Two lists of nodes, along the outer sides of two edges that disappear between them, become one.
@@ -270,7 +271,8 @@ void Generalization::insert_before(NodeId n, NodeId next, Side side, Direction d
   }
 }
 
-/// `gone`, of the same levels as `keep` and on its `side`, gives it its edge and its links there.
+/// Merges `gone` into `keep`, which has the same top and bottom: `keep` gets the edge and the links
+/// that `gone` has on `side`.
 void Generalization::drop_beside(NodeId keep, NodeId gone, Side side, Direction d) {
   const Node lost = g_.node(gone);
   Node& widened = log_.edit(keep);

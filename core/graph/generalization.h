@@ -1,16 +1,16 @@
 // The generalization operators (paper, section 3.2): removing one vertex changes the trapezoids
 // next to it, and nothing else.
 //
-// The paper's operators on inside trapezoids all come about here, with the outside meshed as well:
-//   merging       two trapezoids above each other become one where a level disappears, or two
-//   beside
-//                 each other where the edge between them disappears;
+// All of the paper's operators on inside trapezoids occur here; the outside is meshed as well:
+//   merging       two trapezoids, one above the other, become one where the horizontal line between
+//                 them disappears, or two, side by side, where the edge between them disappears;
 //   elimination   the trapezoid in the tip of an extremum, or inside the last triangle, disappears;
 //   degeneration  a trapezoid whose top or bottom had two corners becomes a triangle, when the edge
 //                 that ended beside its tip now ends at it;
-//   adjustment    a trapezoid keeps its levels and gets another edge or another end.
+//   adjustment    a trapezoid keeps its top and bottom and gets another edge or another vertex.
 //
-// All changes go through the edit log. Decide first (topology_test.h).
+// All changes go through the edit log. Whether a vertex may be removed is decided before (see
+// topological_consistency.h).
 #pragma once
 
 #include "core/graph/edit_log.h"
@@ -21,16 +21,16 @@ namespace trapeze {
 
 class Generalization {
  public:
-  /// Both must outlive this, and `log` be the log of `graph`.
+  /// Both must outlive this object; `log` is the log of `graph`.
   Generalization(const TrapezoidalGraph& graph, EditLog& log) : g_(graph), log_(log) {}
 
-  /// Removes `corner` as one edit. `removal` is what decide_removal() answered for the graph as it
-  /// is, and not blocked.
+  /// Removes `corner` as one edit. `removal` is the answer of decide_removal() for the present
+  /// graph, and is not `blocked`.
   void remove(CornerId corner, Removal removal);
 
-  /// Removes an edge, as a part of the edit at hand: the nodes beside it become one list. No other
-  /// edge changes, so that no boundary can come to cross another one. Corners are left to the
-  /// caller, and so are faces: those beside the edge are to be the same.
+  /// Removes an edge, as a part of the current edit: the two lists of nodes along it become one. No
+  /// other edge changes, so no boundary can come to cross another one. Precondition: the faces on
+  /// both sides of the edge are the same. Corners are left to the caller.
   void remove_edge(EdgeId edge);
 
  private:
@@ -40,12 +40,13 @@ class Generalization {
 
   EdgeId join_edges(EdgeId upper, EdgeId lower);
   bool upper_list_is_shorter(EdgeId upper, EdgeId lower) const;
-  void merge_levels(NodeId keep, NodeId gone, Direction d);
+  void merge_stacked(NodeId keep, NodeId gone, Direction d);
 
   struct Zipped {
     NodeId first;  // the merged node at the start
     NodeId last;   // the merged node at the stop
-    NodeId rest;   // what goes on beyond the stop on the far side; none if both sides stop
+    NodeId
+        rest;  // the node that continues beyond the stop on the far side; none if both sides stop
   };
   Zipped zip(NodeId near, NodeId far, Side near_side, Direction d, VertexId stop);
   void insert_before(NodeId n, NodeId next, Side side, Direction d);

@@ -16,8 +16,8 @@ bool joins(const Edge& e, VertexId a, VertexId b) {
 
 // The boundary comes from `upper` through v to `lower`; the chord upper-lower runs on side t of it:
 //
-//      upper            Along both edges on side t, every level between two trapezoids is that of a
-//       | \             vertex X; each must lie beyond the chord, seen from v.
+//      upper            Along both edges on side t, every line between two trapezoids goes through
+//       | \             a vertex X; each must lie beyond the chord, seen from v.
 //       |  v   . X
 //       | /
 //      lower    (t: left)

@@ -1,11 +1,12 @@
-// May a vertex be removed? The topological consistency test (paper, section 3.3), exact and local.
+// The topological consistency test (paper, section 3.3): whether a vertex may be removed. Exact and
+// local.
 //
 // Removing a vertex V between A and B replaces the boundary A V B by A B. No edge is crossed, and
 // no part of the boundary changes sides, exactly if the closed triangle A V B holds no other
 // vertex. If it holds one, then a trapezoid along AV or VB on the triangle's side has such a vertex
 // at its top or bottom: the horizontal line from the vertex nearest to AV or VB reaches it
-// unhindered. So only those trapezoids are looked at (the paper's minimal surrounding trapezoid
-// set).
+// without meeting another edge. So only those trapezoids are examined (the paper's minimal
+// surrounding trapezoid set).
 #pragma once
 
 #include <cstdint>
@@ -16,31 +17,31 @@ namespace trapeze {
 
 enum class Topology : std::uint8_t {
   strict,  // the boundary never crosses or touches itself where it did not before
-  fast,  // only what the operators themselves need is asked for, as in the paper's runs without the
-         // test: the boundary may come to cross itself
+  fast,    // only the preconditions of the operators are tested, as in the paper's runs without the
+           // test: the boundary may come to cross itself
 };
 
-/// What removing a corner amounts to.
+/// The kind of a removal.
 enum class Removal : std::uint8_t {
   blocked,
   regular,   // A and B on different sides of V in sweep order: vertical generalization
   extremum,  // A and B on the same side of V: horizontal generalization
-  loop,      // the loop is a triangle: it goes as a whole
-  region,    // not of a corner: a region between junctions is given to a neighbour
+  loop,      // the loop is a triangle and is removed as a whole
+  region,    // no corner: a region between junctions becomes a part of a neighbour
 };
 
 struct Decision {
   Removal removal = Removal::blocked;
   /// If blocked: a vertex whose removal, from any loop, may unblock it.
   VertexId blocker;
-  std::uint32_t walked = 0;  // trapezoids looked at
+  std::uint32_t walked = 0;  // trapezoids examined
 };
 
 /// Decides about the removal of `corner`, which is alive.
 Decision decide_removal(const TrapezoidalGraph& graph, CornerId corner, Topology topology);
 
-/// At an extremum: the edges to the nearer and to the farther neighbour of V in sweep order, and
-/// where they are. Meaningful if V's neighbours lie both above or both below it.
+/// The edges from an extremum V to its nearer and its farther neighbour in sweep order, and these
+/// neighbours. Precondition: both neighbours of V lie above it, or both below.
 struct Extremum {
   Direction away = kDown;  // from V towards its neighbours
   EdgeId near_edge;

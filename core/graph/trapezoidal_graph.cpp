@@ -58,12 +58,12 @@ NodeId beyond_tip(const TrapezoidalGraph& g, NodeId tip, Direction d) {
   return beyond.is_none() ? beside : beyond;
 }
 
-/// Where an edge meets the level of a vertex that it spans. A level edge is passed through at once
-/// in sweep order: it is met at the vertex itself.
-double x_at(const TrapezoidalGraph& g, EdgeId e, VertexId level) {
+/// The x of an edge at the y of a vertex that lies between its ends in sweep order. The sweep line
+/// passes along a horizontal edge: it meets the edge at the vertex itself.
+double x_at(const TrapezoidalGraph& g, EdgeId e, VertexId at) {
   const Point a = g.point(g.edge(e).end[kUp]);
   const Point b = g.point(g.edge(e).end[kDown]);
-  const Point p = g.point(level);
+  const Point p = g.point(at);
   if (a.y == b.y) return p.x;
   return a.x + (static_cast<double>(b.x) - a.x) *
                    ((static_cast<double>(p.y) - a.y) / (static_cast<double>(b.y) - a.y));
@@ -132,7 +132,7 @@ Connectedness TrapezoidalGraph::connectedness(NodeId n) const {
                       : Connectedness::isolated;
 }
 
-// Vertices are in sweep order, so of several level tops the leftmost has the smallest id.
+// Vertices are in sweep order, so of several tops of the same y the leftmost has the smallest id.
 NodeId TrapezoidalGraph::starting_node() const {
   NodeId best;
   for (const NodeId n : inside_nodes()) {
@@ -175,7 +175,7 @@ Int128 TrapezoidalGraph::doubled_area() const {
 }
 
 std::vector<Int128> TrapezoidalGraph::doubled_areas() const {
-  // Between two levels, twice the area left of an edge from u to l is
+  // Between y0 and y1, twice the area left of an edge from u to l is
   //   (y1 - y0) * (2 x_u (y_l - y_u) + (x_l - x_u) (y0 + y1 - 2 y_u)) / (y_l - y_u).
   // The fraction is summed per side of an edge, and is whole once the pieces cover the edge from
   // end to end.

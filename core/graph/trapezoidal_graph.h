@@ -63,11 +63,12 @@ struct Edge {
   friend bool operator==(const Edge&, const Edge&) = default;
 };
 
-/// One visit of a simple loop of the boundary to a vertex, and the edge by which it leaves.
+/// One visit of a simple loop of the boundary to a vertex, and the edge by which the loop leaves
+/// it.
 ///
-/// Between polygons that share borders, the boundary consists of arcs too: they lead from one
-/// junction to another, or back to the same one. Their first corner has none before it, their last
-/// one has none after it and no edge.
+/// In a coverage, the boundary consists of arcs too, which lead from one junction to another or
+/// back to the same one. The first corner of an arc has no previous one; the last has no next one
+/// and no edge.
 struct Corner {
   VertexId vertex;
   EdgeId edge;
@@ -75,7 +76,7 @@ struct Corner {
   CornerId next;
 
   bool is_alive() const { return !prev.is_none() || !next.is_none(); }
-  /// At a junction, where an arc ends.
+  /// Whether an arc begins or ends here, at a junction.
   bool is_end() const { return prev.is_none() != next.is_none(); }
   friend bool operator==(const Corner&, const Corner&) = default;
 };
@@ -116,7 +117,7 @@ class TrapezoidalGraph {
   const Corner& corner(CornerId c) const { return corners_[c]; }
   /// Faces are numbered 1 .. face_count(), and kOutside.
   FaceId face_count() const { return face_count_; }
-  /// The graph of several polygons that share borders.
+  /// Whether this is the graph of several polygons that share borders.
   bool is_coverage() const { return face_count_ > 1; }
   EdgeId frame_edge(Side s) const { return frame_[s]; }
 
@@ -141,9 +142,9 @@ class TrapezoidalGraph {
   std::vector<Link> pseudo_links() const;
   Connectedness connectedness(NodeId n) const;
 
-  /// The topmost inside node, the leftmost if several are level (the paper's starting node), and
-  /// the bottommost, the rightmost if several are level (the ending node). None if nothing is
-  /// inside.
+  /// The paper's starting node: the topmost inside node, the leftmost of several of the same top y;
+  /// and its ending node: the bottommost, the rightmost of several of the same bottom y. None if
+  /// there are no inside nodes.
   NodeId starting_node() const;
   NodeId ending_node() const;
 
@@ -157,7 +158,7 @@ class TrapezoidalGraph {
   /// The same by face.
   std::vector<Int128> doubled_areas() const;
 
-  /// Bytes held.
+  /// Bytes of memory held.
   std::size_t memory() const;
 
   friend bool operator==(const TrapezoidalGraph&, const TrapezoidalGraph&) = default;
@@ -176,17 +177,18 @@ class TrapezoidalGraph {
   FaceId face_count_ = 1;
 };
 
-/// A point of a quad strip: where the level y of a vertex meets an edge; x is rounded to doubles.
+/// A point of a quad strip: a point of an edge at the y of a vertex, in cells; x is rounded to a
+/// double.
 struct StripPoint {
   double x = 0;
   double y = 0;
 };
 
-/// What an edge adds to twice the area of the face on its left, and takes from that on its right,
-/// in cells squared: exact once all edges of a face have been summed.
+/// What an edge adds to twice the area of the face on its left and subtracts from that of the face
+/// on its right, in cells squared. The sum over all edges of a face is exact.
 Int128 doubled_strip(const TrapezoidalGraph& graph, const Edge& edge);
 
-/// The loops of the boundary that are left, read from the corners.
+/// The loops of the boundary of the present graph, read from its corners.
 Rings rings_of(const TrapezoidalGraph& graph);
 
 /// A trapezoidal chain as a quad strip: left and right point of the top of the first node, then

@@ -1,4 +1,4 @@
-// Independent pieces of work on all cores.
+// Runs independent pieces of work on all cores.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,9 @@
 
 namespace trapeze {
 
-/// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads of which one is
-/// the caller's; returns when all are done. Rethrows one of what they threw, if any did.
+/// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads, one of which
+/// is the caller's, and returns when all calls have ended. If any of them throws, rethrows one of
+/// the exceptions.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, std::size_t max_threads, const Work& work) {
   std::atomic<std::size_t> next = 0;

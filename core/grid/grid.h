@@ -1,19 +1,19 @@
 // The integer grid on which all geometry of the core lives.
 //
 // Web Mercator (EPSG:3857) is snapped to 2^31 x 2^31 square cells: x grows eastwards, y grows
-// southwards (so "above" means "smaller y"), the origin (0, 0) is the point 0 E, 0 N, and both
-// coordinates lie in [kGridMin, kGridMax]. A cell is 1.87 cm wide at the equator, 2 cells are one
-// pixel of a 256-pixel tile at zoom 22.
+// southwards (so "above" means "smaller y"), the origin (0, 0) is longitude 0,
+// latitude 0, and both coordinates lie in [kGridMin, kGridMax]. A cell is 1.87 cm wide at the
+// equator; 2 cells are one pixel of a 256-pixel tile at zoom 22.
 //
-// All predicates are exact: three points of the grid span at most twice the area 2^62, which fits
-// into 64 bits. There is no tolerance anywhere in the core.
+// All predicates are exact: twice the area of a triangle of grid points is at most 2^62, which fits
+// into 64 bits. No predicate has a tolerance.
 #pragma once
 
 #include <cstdint>
 
 namespace trapeze {
 
-/// For sums and products that 64 bits cannot hold; g++ and clang both have it.
+/// For sums and products that do not fit into 64 bits; an extension of g++ and clang.
 __extension__ using Int128 = __int128;
 
 constexpr int kGridBits = 31;
@@ -29,8 +29,9 @@ struct Point {
   friend constexpr bool operator==(Point, Point) = default;
 };
 
-/// The sweep order: by y, then by x. It acts as a shear that leaves no two distinct points level,
-/// so that every trapezoid has exactly one vertex on its top and one on its bottom.
+/// The sweep order: by y, then by x. It acts as a shear that leaves no two distinct points at
+/// the same height, so that every trapezoid has exactly one vertex on its top and one on its
+/// bottom.
 constexpr bool is_above(Point a, Point b) {
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }

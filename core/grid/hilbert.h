@@ -1,4 +1,5 @@
-// The Hilbert curve over the grid: sorting by it puts what is near on the map near in memory.
+// The Hilbert curve over the grid: sorting by it puts points that are near each other on the map
+// near each other in memory.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 
 namespace trapeze {
 
-/// Position along a Hilbert curve of order 16: neighbours on the map are neighbours in the order.
+/// The position of a point along a Hilbert curve of order 16. Points with successive positions are
+/// neighbours on the map.
 inline std::uint32_t hilbert(Point p) {
   std::uint32_t x = (static_cast<std::uint32_t>(p.x) + 0x40000000u) >> 15;
   std::uint32_t y = (static_cast<std::uint32_t>(p.y) + 0x40000000u) >> 15;

@@ -1,4 +1,4 @@
-// The boundary of one feature on the grid, as it is read: any number of closed rings.
+// The boundary of one feature on the grid, as read from its source: any number of closed rings.
 //
 // Nothing is assumed about orientation, nesting or validity: inside is even-odd over all rings.
 #pragma once

@@ -1,5 +1,5 @@
-// An array that owns its items, or looks at items that something else holds, such as a mapped file.
-// Who reads it sees no difference.
+// An array that owns its items or is a view of items that something else holds, such as a mapped
+// file. Reading it is the same in both cases.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class StoredArray {
     array.items_ = items;
     return array;
   }
-  // A vector that is moved keeps its memory, so what is looked at stays where it is.
+  // Moving a vector does not move its items, so the view remains valid.
   StoredArray(StoredArray&& other) noexcept
       : own_(std::move(other.own_)), items_(std::exchange(other.items_, {})) {}
   StoredArray& operator=(StoredArray&& other) noexcept {
@@ -39,7 +39,7 @@ class StoredArray {
   auto begin() const { return items_.begin(); }
   auto end() const { return items_.end(); }
 
-  /// Items that are only looked at are copied before they are added to.
+  /// Here and below, an array that is a view copies its items first.
   void append(std::span<const T> more) {
     own_items();
     own_.insert(own_.end(), more.begin(), more.end());
@@ -62,7 +62,7 @@ class StoredArray {
     return own_.back();
   }
 
-  /// Bytes of memory, its own or that it looks at.
+  /// Bytes of memory, whether owned or viewed.
   std::size_t memory() const {
     return own_.empty() ? items_.size_bytes() : own_.capacity() * sizeof(T);
   }

@@ -7,12 +7,12 @@
 namespace trapeze {
 namespace {
 
-/// Steps above level 1, not yet rounded.
+/// The number of levels above level 1, not yet rounded.
 double steps(double epsilon) {
   return (std::log2(epsilon) - kFirstExponent) * kLevelsPerOctave;
 }
 
-std::array<double, kLastLevel + 1> ladder() {
+std::array<double, kLastLevel + 1> epsilons_of_levels() {
   std::array<double, kLastLevel + 1> epsilons{};
   for (int k = 1; k <= kLastLevel; ++k) {
     epsilons[static_cast<std::size_t>(k)] =
@@ -21,12 +21,12 @@ std::array<double, kLastLevel + 1> ladder() {
   return epsilons;
 }
 
-const std::array<double, kLastLevel + 1> kLadder = ladder();
+const std::array<double, kLastLevel + 1> kEpsilons = epsilons_of_levels();
 
 }  // namespace
 
 double epsilon_of_level(Level level) {
-  return kLadder[level];
+  return kEpsilons[level];
 }
 
 Level nearest_level(double epsilon) {
@@ -37,8 +37,8 @@ Level nearest_level(double epsilon) {
 }
 
 int level_above(double epsilon) {
-  return static_cast<int>(std::upper_bound(kLadder.begin() + 1, kLadder.end(), epsilon) -
-                          kLadder.begin());
+  return static_cast<int>(std::upper_bound(kEpsilons.begin() + 1, kEpsilons.end(), epsilon) -
+                          kEpsilons.begin());
 }
 
 }  // namespace trapeze

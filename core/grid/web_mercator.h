@@ -1,4 +1,5 @@
-// Between longitude and latitude (degrees, WGS 84), metres of EPSG:3857, tiles and the grid.
+// Conversions between longitude and latitude (degrees, WGS 84), metres of EPSG:3857, tiles and the
+// grid.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ struct GridPosition {
 GridPosition grid_from_metres(double x, double y);
 GridPosition metres_from_grid(double x, double y);
 
-/// How many cells a length on the ground is, at the level of y (cells): the map grows towards the
-/// poles.
+/// The length in cells of a length on the ground, at the latitude of `y` (cells): the scale of the
+/// map grows towards the poles.
 double cells_from_ground(double metres, double y);
 
 struct LonLat {

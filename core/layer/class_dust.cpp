@@ -37,7 +37,7 @@ void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, do
   sums_.clear();
   keys_.clear();
   motes.clear();
-  // Pixels of more cells than the grid's side over 2^28 are told apart.
+  // The key distinguishes pixels of more cells than the side of the grid over 2^28.
   pixel = std::max(pixel, static_cast<double>(kGridSize) / (1 << 28));
   grains.visit(box, level, [&](const FeatureGrain& grain) {
     const std::uint8_t feature_class = classes[grain.row];

@@ -1,5 +1,5 @@
-// Dust for a style that draws features in classes: motes for each class, taken together within the
-// pixels of one picture, so that there are no more than its pixels times its classes.
+// Dust for a style that draws features in classes: motes for each class, merged within the pixels
+// of one picture, so that there are at most as many as its pixels times its classes.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// The class of features that are left out.
+/// The class of features that are not drawn.
 constexpr std::uint8_t kNotDrawn = 0xff;
 
 struct ClassMote {
@@ -22,7 +22,7 @@ struct ClassMote {
   bool is_hole = false;  // takes area away
 };
 
-/// Keeps memory from use to use; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class ClassDust {
  public:
   /// Replaces `motes` by those of the grains born at `level` or before that lie in the box, in

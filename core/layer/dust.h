@@ -1,5 +1,5 @@
-// Dust: the area of loops too small to draw, kept as covered area, so that a town seen from far is
-// a grey tint and not a hole.
+// Dust: the area of loops too small to draw, kept as covered area, so that a town at a small scale
+// is a grey tint and not a hole.
 //
 // A grain that a loop left behind is laid out as square motes. From one octave of tolerance to the
 // next, motes that fall into one pixel (four times the tolerance: the default tolerance is a
@@ -23,17 +23,17 @@ struct Mote {
   double y = 0;     // cells
   double area = 0;  // cells squared, may be negative
   Lifespan lifespan;
-  bool is_merged = false;  // stands for several
+  bool is_merged = false;  // replaces several motes
 };
 
 /// The side of a pixel, in cells, whose default tolerance is that of the level.
 double pixel_of_level(Level level);
 
-/// Motes of less are left out, in cells squared.
+/// Motes of a smaller area are left out, in cells squared.
 constexpr double kSmallestMote = 0.5;
 
-/// Calls visit(x, y, area) for the motes of a loop of that area, laid out along the segment that
-/// was left of it: one a pixel of so many cells.
+/// Calls visit(x, y, area) for the motes of a loop of that area, distributed along the segment that
+/// was left of it: one for each pixel, `pixel` cells long.
 template <typename Visit>
 void lay_out(Point from, Point to, double area, double pixel, const Visit& visit) {
   constexpr int kMaxMotes = 256;
@@ -47,7 +47,7 @@ void lay_out(Point from, Point to, double area, double pixel, const Visit& visit
   }
 }
 
-/// The square of a mote, or what comes near it in whole cells. `area` is positive.
+/// The square of a mote, rounded to whole cells. `area` is positive.
 Box box_of_mote(double x, double y, double area);
 
 /// The motes of all levels. The sum of the areas alive at a level is that of the grains born by

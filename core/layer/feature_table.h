@@ -1,5 +1,5 @@
-// Ids and attributes of the features of a layer, by row; geometry lives elsewhere under the same
-// row.
+// Ids and attributes of the features of a layer, by row; their geometry is stored elsewhere,
+// under the same row.
 //
 // Thread-safety: immutable once filled, any number of threads may read.
 #pragma once
@@ -23,12 +23,12 @@ struct Field {
   FieldType type = FieldType::text;
 };
 
-/// Null is std::monostate. The string looks at memory of the table.
+/// Null is std::monostate. The string is a view of memory of the table.
 using Value = std::variant<std::monostate, std::int64_t, double, std::string_view>;
 
 class FeatureTable {
  public:
-  /// The cells as flat arrays, to be stored and looked at again.
+  /// The cells as flat arrays, which can be stored and viewed again.
   struct Cells {
     struct Column {
       std::span<const std::uint64_t> numbers;
@@ -43,8 +43,8 @@ class FeatureTable {
 
   FeatureTable() = default;
   explicit FeatureTable(std::vector<Field> fields);
-  /// A table that looks at cells, which must outlive it. Throws std::invalid_argument if they do
-  /// not fit each other or the fields; if it does not, no value is read from beyond them.
+  /// A table that is a view of cells, which must outlive it. Throws std::invalid_argument if their
+  /// sizes do not fit each other or the fields, so that no value is ever read from beyond them.
   FeatureTable(std::vector<Field> fields, const Cells& cells);
 
   /// Appends a row and returns its number; `values` are as many as fields, each null or of its

@@ -1,6 +1,6 @@
-// Where the grains of a layer are: what its polygons left behind when they became too small, each
-// with its feature, for those who must tell the dust of one feature from that of another. Who need
-// not draws motes, which are fewer (see dust.h).
+// Finds the grains of a layer by place: what its polygons left behind when they became too small,
+// each with its feature. They serve where the dust of one feature must be told from that of
+// another; elsewhere motes are drawn, which are fewer (see dust.h).
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,8 @@ struct FeatureGrain {
   }
 };
 
-/// Sorts grains so that what is born in one octave and lies near is near in the array.
+/// Sorts grains so that those born in the same octave and near each other on the map are near each
+/// other in the array.
 void sort_for_index(std::vector<FeatureGrain>& grains);
 
 /// Thread-safety: immutable, any number of threads may read.

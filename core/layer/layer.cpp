@@ -36,10 +36,10 @@ void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>&
   c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
 }
 
-void Layer::select_level_edges(const Box& box, Level level,
-                               std::vector<TrapezoidRange>& ranges) const {
+void Layer::select_horizontal_edges(const Box& box, Level level,
+                                    std::vector<TrapezoidRange>& ranges) const {
   ranges.clear();
-  contents_->level_edge_index.select(box, level, level, contents_->lifespans, ranges);
+  contents_->horizontal_edge_index.select(box, level, level, contents_->lifespans, ranges);
 }
 
 const GrainIndex& Layer::grains() const {
@@ -89,7 +89,7 @@ std::size_t Layer::memory() const {
   const LayerContents& c = *contents_;
   return c.vertices.memory() + c.edges.memory() + c.trapezoids.memory() + c.lifespans.memory() +
          c.feature_of.memory() + c.outline_points.memory() + c.ring_ends.memory() +
-         c.outline_ends.memory() + c.polygon_index.memory() + c.level_edge_index.memory() +
+         c.outline_ends.memory() + c.polygon_index.memory() + c.horizontal_edge_index.memory() +
          c.mote_index.memory() + c.merged_mote_index.memory() + c.grains.memory();
 }
 

@@ -1,6 +1,6 @@
 // A layer ready to be drawn: the trapezoids of all its polygons, where they are, and its features.
 //
-// Thread-safety: immutable to the eye; any number of threads may read.
+// Thread-safety: immutable; any number of threads may read.
 #pragma once
 
 #include <cstdint>
@@ -41,12 +41,12 @@ class Layer {
   const Box& bounds() const;
   const MeshView& mesh() const;
 
-  /// What of the mesh is wanted.
+  /// The part of the mesh that is asked for.
   struct Selection {
     Box box;
     Level level = 0;  // of tolerance
-    /// The level of a quarter of a pixel: dust is taken together within pixels of this size,
-    /// however much greater the tolerance is.
+    /// The level of a quarter of a pixel: dust is merged within pixels of this size, however much
+    /// greater the tolerance is.
     Level pixel_level = kLastLevel;
     SmallPolygons small = SmallPolygons::dust;
   };
@@ -54,30 +54,31 @@ class Layer {
   /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
   /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
   /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
-  /// that stands for holes, left and right edge have changed places: its area is negative.
+  /// that stands for holes, left and right edges are swapped: its area is negative.
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
-  /// Replaces `ranges` by what stands for the level edges of the boundary at the level that may
-  /// touch the box: trapezoids without height, whose left and right side are the edge. All other
-  /// edges of the boundary are sides of trapezoids that select() names.
-  void select_level_edges(const Box& box, Level level, std::vector<TrapezoidRange>& ranges) const;
+  /// Replaces `ranges` by the horizontal edges of the boundary at the level that may touch the box,
+  /// as trapezoids without height whose left and right sides are the edge. All other edges of the
+  /// boundary are sides of trapezoids that select() finds.
+  void select_horizontal_edges(const Box& box, Level level,
+                               std::vector<TrapezoidRange>& ranges) const;
 
-  /// What small polygons and holes left behind, feature by feature: the same dust as select()
-  /// names, before any of it is taken together.
+  /// What small polygons and holes left behind, feature by feature: the same dust that select()
+  /// finds, before any of it is merged.
   const GrainIndex& grains() const;
 
-  /// True only if the ranges that were selected cover the selection's box wholly, so that nothing
-  /// need be drawn to know it; may be false though they do.
+  /// True only if the ranges that were selected cover the whole box of the selection, so that it is
+  /// filled without being drawn; may be false although they do.
   bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
 
   /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
-  /// in one pixel taken together.
+  /// in one pixel being merged.
   void small_polygons(const Selection& selection, std::vector<Box>& places) const;
 
   /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
   void append_outline(std::uint32_t row, Rings& rings) const;
 
-  /// The row, in features(), of the polygon that a trapezoid, or a level edge, is a part of;
+  /// The row, in features(), of the polygon that a trapezoid, or a horizontal edge, is a part of;
   /// kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 

@@ -42,7 +42,7 @@ bool is_sorted_up_to(std::span<const std::uint32_t> ends, std::size_t end) {
   return std::ranges::is_sorted(ends) && (ends.empty() || ends.back() <= end);
 }
 
-/// What is drawn between two edges then stays within them: no division by nothing, no place off the
+/// A trapezoid then lies between its edges: nothing is divided by zero, and no point is off the
 /// grid.
 bool lies_between_its_edges(const LayerArrays& a, const MeshTrapezoid& t) {
   const std::int32_t top = a.vertices[t.top].y;
@@ -91,8 +91,8 @@ void check_features(const LayerArrays& a) {
 
 void check_sums(const LayerArrays& a) {
   require(a.single_motes <= a.trapezoids.size() - a.feature_of.size(), "there is too much dust");
-  require(a.level_edges <= a.feature_of.size() &&
-              a.size.trapezoids == a.feature_of.size() - a.level_edges &&
+  require(a.horizontal_edges <= a.feature_of.size() &&
+              a.size.trapezoids == a.feature_of.size() - a.horizontal_edges &&
               a.size.motes == a.trapezoids.size() - a.feature_of.size(),
           "the sums are not those of the trapezoids");
   const Box& box = a.bounds;
@@ -123,14 +123,14 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.polygon_index = c.polygon_index.entries();
   arrays.mote_index = c.mote_index.entries();
   arrays.merged_mote_index = c.merged_mote_index.entries();
-  arrays.level_edge_index = c.level_edge_index.entries();
+  arrays.horizontal_edge_index = c.horizontal_edge_index.entries();
   arrays.grains = c.grains.grains();
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
   arrays.cells = c.features.cells();
   arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
-  arrays.level_edges = c.level_edge_index.range().count;
+  arrays.horizontal_edges = c.horizontal_edge_index.range().count;
   arrays.single_motes = c.mote_index.range().count;
   arrays.size = c.size;
   arrays.bounds = c.bounds;
@@ -152,12 +152,13 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   look_at(arrays.outline_points, layer->outline_points);
   look_at(arrays.ring_ends, layer->ring_ends);
   look_at(arrays.outline_ends, layer->outline_ends);
-  const std::size_t level_edges = arrays.feature_of.size();
-  const std::size_t polygons = level_edges - arrays.level_edges;
-  const std::size_t singles = level_edges + arrays.single_motes;
+  const std::size_t horizontal_edges = arrays.feature_of.size();
+  const std::size_t polygons = horizontal_edges - arrays.horizontal_edges;
+  const std::size_t singles = horizontal_edges + arrays.single_motes;
   layer->polygon_index = MeshIndex(between(0, polygons), arrays.polygon_index);
-  layer->level_edge_index = MeshIndex(between(polygons, level_edges), arrays.level_edge_index);
-  layer->mote_index = MeshIndex(between(level_edges, singles), arrays.mote_index);
+  layer->horizontal_edge_index =
+      MeshIndex(between(polygons, horizontal_edges), arrays.horizontal_edge_index);
+  layer->mote_index = MeshIndex(between(horizontal_edges, singles), arrays.mote_index);
   layer->merged_mote_index =
       MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index);
   layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));

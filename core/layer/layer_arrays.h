@@ -1,4 +1,4 @@
-// All that a layer holds, as flat arrays: to be stored, and mapped again without a copy.
+// The contents of a layer as flat arrays, which can be stored, and mapped again without copying.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@
 
 namespace trapeze {
 
-/// The arrays look at memory of something else.
+/// The spans are views of memory that something else owns.
 struct LayerArrays {
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
-  // Of polygons, for level edges, of single motes, of merged ones.
+  // In this order: of polygons, for horizontal edges, of single motes, of merged motes.
   std::span<const MeshTrapezoid> trapezoids;
   std::span<const Lifespan> lifespans;
-  std::span<const std::uint32_t> feature_of;  // of those of polygons and for level edges
+  std::span<const std::uint32_t> feature_of;  // of those of polygons and for horizontal edges
   std::span<const MeshIndex::Entry> polygon_index;
-  std::span<const MeshIndex::Entry> level_edge_index;
+  std::span<const MeshIndex::Entry> horizontal_edge_index;
   std::span<const MeshIndex::Entry> mote_index;
   std::span<const MeshIndex::Entry> merged_mote_index;
   std::span<const FeatureGrain> grains;
@@ -33,7 +33,7 @@ struct LayerArrays {
   FeatureTable::Cells cells;
 
   std::vector<Field> fields;
-  std::uint64_t level_edges = 0;
+  std::uint64_t horizontal_edges = 0;
   std::uint64_t single_motes = 0;
   LayerSize size;
   Box bounds;
@@ -46,10 +46,10 @@ LayerArrays arrays_of(const Layer& layer);
 /// A layer that looks at the arrays and keeps `mapping` while it lives. Equal to the one that the
 /// arrays were taken from: draws the same, answers the same.
 ///
-/// Trusts nothing: looks at every item, on all cores, and throws std::invalid_argument in words if
-/// an index leads nowhere or a trapezoid does not lie between its edges on the grid. A layer that
-/// is returned can be drawn and asked for anything without reading beyond the arrays, whoever wrote
-/// them. They must not change while the layer lives.
+/// Checks every item, on all cores, and throws std::invalid_argument, saying what is wrong, if an
+/// index is out of range or a trapezoid does not lie between its edges on the grid. No use of a
+/// layer that is returned reads beyond the arrays, whoever wrote them. They must not change during
+/// its lifetime.
 std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<const void> mapping);
 
 }  // namespace trapeze

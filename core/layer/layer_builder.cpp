@@ -26,7 +26,7 @@ struct Stock {
     std::size_t vertices;  // where its arrays begin
     std::size_t edges;
     std::size_t trapezoids;
-    std::size_t level_edges;
+    std::size_t horizontal_edges;
     std::size_t grains;
   };
   struct Outline {
@@ -76,7 +76,7 @@ struct GrowingLayer {
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
-  std::vector<LevelEdge> level_edges;
+  std::vector<HorizontalEdge> horizontal_edges;
   std::vector<Grain> grains;
   std::vector<FeatureGrain> feature_grains;
   Rings outlines;
@@ -94,7 +94,7 @@ void add_grain(const Grain& grain, GrowingLayer& layer) {
   }
 }
 
-/// Lays the histories one after another.
+/// Concatenates the histories.
 void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
   for (const auto& [stock, p] : parts) {
     const History& history = stock->history;
@@ -116,10 +116,10 @@ void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
     layer.feature_of.insert(layer.feature_of.end(), rows.begin(), rows.end());
     const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
     layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
-    for (LevelEdge level_edge :
-         part_of(history.level_edges, *stock, p, &Stock::Part::level_edges)) {
-      level_edge.edge += edge_shift;
-      layer.level_edges.push_back(level_edge);
+    for (HorizontalEdge horizontal_edge :
+         part_of(history.horizontal_edges, *stock, p, &Stock::Part::horizontal_edges)) {
+      horizontal_edge.edge += edge_shift;
+      layer.horizontal_edges.push_back(horizontal_edge);
     }
     for (const Grain& grain : part_of(history.grains, *stock, p, &Stock::Part::grains)) {
       add_grain(grain, layer);
@@ -170,24 +170,26 @@ void order_trapezoids(GrowingLayer& layer) {
   permute(layer.feature_of, order);
 }
 
-/// A level edge stands behind the trapezoids as one without height, between the edge and itself.
-void append_level_edges(GrowingLayer& layer) {
+/// A horizontal edge stands behind the trapezoids as one without height, between the edge and
+/// itself.
+void append_horizontal_edges(GrowingLayer& layer) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
-  for (std::size_t i = 0; i < layer.level_edges.size(); ++i) {
-    const LevelEdge& level_edge = layer.level_edges[i];
-    const MeshEdge& edge = layer.edges[level_edge.edge];
+  for (std::size_t i = 0; i < layer.horizontal_edges.size(); ++i) {
+    const HorizontalEdge& horizontal_edge = layer.horizontal_edges[i];
+    const MeshEdge& edge = layer.edges[horizontal_edge.edge];
     Box box;
     box.include(layer.vertices[edge.upper]);
     box.include(layer.vertices[edge.lower]);
-    keys.emplace_back(order_key(box, level_edge.lifespan), static_cast<std::uint32_t>(i));
+    keys.emplace_back(order_key(box, horizontal_edge.lifespan), static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   for (const auto& [key, i] : keys) {
-    const LevelEdge& level_edge = layer.level_edges[i];
-    const MeshEdge& edge = layer.edges[level_edge.edge];
-    layer.trapezoids.push_back({edge.upper, edge.lower, level_edge.edge, level_edge.edge});
-    layer.lifespans.push_back(level_edge.lifespan);
-    layer.feature_of.push_back(level_edge.row);
+    const HorizontalEdge& horizontal_edge = layer.horizontal_edges[i];
+    const MeshEdge& edge = layer.edges[horizontal_edge.edge];
+    layer.trapezoids.push_back(
+        {edge.upper, edge.lower, horizontal_edge.edge, horizontal_edge.edge});
+    layer.lifespans.push_back(horizontal_edge.lifespan);
+    layer.feature_of.push_back(horizontal_edge.row);
   }
 }
 
@@ -233,7 +235,7 @@ void order_edges_and_vertices(GrowingLayer& layer) {
   layer.vertices.swap(vertices);
 }
 
-/// The square of a mote as a trapezoid; one of negative area has its edges changed round.
+/// The square of a mote as a trapezoid; one of negative area has its edges swapped.
 void append_mote(const Mote& mote, GrowingLayer& layer) {
   append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), layer.vertices, layer.edges,
              layer.trapezoids);
@@ -291,7 +293,7 @@ struct LayerBuilder::State {
   void begin_part(std::uint32_t row) {
     const History& history = stock.history;
     stock.parts.push_back({row, history.vertices.size(), history.edges.size(),
-                           history.trapezoids.size(), history.level_edges.size(),
+                           history.trapezoids.size(), history.horizontal_edges.size(),
                            history.grains.size()});
   }
 
@@ -357,15 +359,15 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   order_trapezoids(arrays);
   tell(0.5);
   const auto polygons = static_cast<std::uint32_t>(arrays.trapezoids.size());
-  append_level_edges(arrays);
-  const auto level_edges = static_cast<std::uint32_t>(arrays.trapezoids.size());
+  append_horizontal_edges(arrays);
+  const auto horizontal_edges = static_cast<std::uint32_t>(arrays.trapezoids.size());
   order_edges_and_vertices(arrays);
   tell(0.7);
   for (const Point p : arrays.vertices) layer->bounds.include(p);
   layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
   const std::uint32_t motes = append_dust(settle(arrays.grains), arrays);
   const auto all = static_cast<std::uint32_t>(arrays.trapezoids.size());
-  layer->size.motes = all - level_edges;
+  layer->size.motes = all - horizontal_edges;
   sort_for_index(arrays.feature_grains);
   arrays.feature_grains.shrink_to_fit();
 
@@ -377,9 +379,9 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   };
   tell(0.8);
   layer->polygon_index = index(0, polygons);
-  layer->level_edge_index = index(polygons, level_edges);
-  layer->mote_index = index(level_edges, level_edges + motes);
-  layer->merged_mote_index = index(level_edges + motes, all);
+  layer->horizontal_edge_index = index(polygons, horizontal_edges);
+  layer->mote_index = index(horizontal_edges, horizontal_edges + motes);
+  layer->merged_mote_index = index(horizontal_edges + motes, all);
   layer->grains = GrainIndex(std::move(arrays.feature_grains));
   return std::make_unique<Layer>(std::move(layer));
 }

@@ -14,17 +14,17 @@
 namespace trapeze {
 
 struct LayerContents {
-  std::shared_ptr<const void> mapping;  // what arrays that own nothing look at
+  std::shared_ptr<const void> mapping;  // owns the memory of the arrays that are views
   StoredArray<Point> vertices;
   StoredArray<MeshEdge> edges;
   StoredArray<MeshTrapezoid> trapezoids;
   StoredArray<Lifespan> lifespans;        // by trapezoid
   StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
-  MeshView view;                          // looks at the arrays above
-  // Trapezoids of polygons come first, then those that stand for level edges, then those of single
-  // motes, then those of merged ones.
+  MeshView view;                          // of the arrays above
+  // Trapezoids of polygons come first, then those that stand for horizontal edges, then those of
+  // single motes, then those of merged motes.
   MeshIndex polygon_index;
-  MeshIndex level_edge_index;
+  MeshIndex horizontal_edge_index;
   MeshIndex mote_index;
   MeshIndex merged_mote_index;
   GrainIndex grains;

@@ -19,9 +19,9 @@ class UntestedLayer {
   /// `layer` must outlive this.
   explicit UntestedLayer(const Layer& layer) : layer_(layer) {}
 
-  /// The same polygons without the test; the layer itself if it was built so. Built when first
-  /// asked for, which takes about as long as loading took and as much memory again; callers that
-  /// come meanwhile wait.
+  /// The same polygons without the test; the layer itself if it was built so. Built on the
+  /// first call, which takes about as long and as much memory as loading the layer did; concurrent
+  /// callers wait.
   const Layer& get() const;
 
   /// The mesh of get(), if that was built and is not the layer itself.
@@ -33,7 +33,7 @@ class UntestedLayer {
   const Layer& layer_;
   mutable std::once_flag once_;
   mutable std::unique_ptr<const Layer> built_;
-  mutable std::atomic<bool> is_built_ = false;  // set after it, for those who do not wait
+  mutable std::atomic<bool> is_built_ = false;  // set afterwards, for those who do not wait
 };
 
 }  // namespace trapeze

@@ -1,5 +1,5 @@
-// How far along its outline every edge of a polygon lies: what dashes need to run on from edge to
-// edge.
+// The distance along the outline at which each edge of a polygon begins, so that a dash pattern can
+// continue from edge to edge.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace trapeze {
 
-/// An edge as it is met on the way around its loop.
+/// An edge of a loop, in the direction in which the loop is walked.
 struct LoopEdge {
   std::uint32_t edge = 0;
   bool leads_up = false;  // from its lower vertex to its upper one
-  double along = 0;       // cells from where the loop begins to where the edge does
+  double along = 0;       // length of the loop up to the beginning of the edge, in cells
 };
 
-/// Walks the loops that the edges form: each begins at its edge of the smallest number. `edges` are
-/// different; the answer has one item for each, in ascending order of edges. Depends on nothing but
-/// the set of edges. Edges that form no loop are walked as far as they lead.
+/// Walks the loops that the edges form, each from its edge of the smallest index. `edges` has no
+/// duplicates; the result has one item for each edge, in ascending order of edges, and depends only
+/// on the set of edges. Edges that do not form a loop are walked to their end.
 std::vector<LoopEdge> measure_loops(const MeshView& mesh, std::vector<std::uint32_t> edges);
 
 }  // namespace trapeze

@@ -17,7 +17,7 @@ struct Interval {
   double max;
 };
 
-/// Where the edge runs in x between two levels.
+/// The range of x of the edge between y0 and y1.
 Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, std::int32_t y1) {
   const Point a = mesh.vertices[edge.upper];
   const Point b = mesh.vertices[edge.lower];
@@ -29,8 +29,8 @@ Interval x_range(const MeshView& mesh, const MeshEdge& edge, std::int32_t y0, st
   return {std::min(x0, x1), std::max(x0, x1)};
 }
 
-/// Whether one side is beyond the box's west and the other beyond its east border, all the way
-/// between two levels.
+/// Whether, all the way from y0 to y1, the left side is west of the box and the right side east of
+/// it.
 bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box, std::int32_t y0,
            std::int32_t y1) {
   const Interval left = x_range(mesh, mesh.edges[trapezoid.left], y0, y1);
@@ -38,7 +38,7 @@ bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box,
   return left.max + 1 <= box.min_x && right.min - 1 >= box.max_x;
 }
 
-/// An octave of levels to a class; the untouched and the undying are classes of their own.
+/// One class an octave of levels; level 0 and kNeverDies have classes of their own.
 unsigned lifespan_class(Level level) {
   return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
 }

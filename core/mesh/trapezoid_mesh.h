@@ -1,7 +1,7 @@
 // The trapezoids of a whole layer as they are stored for drawing: flat, immutable arrays.
 //
-// A mesh holds every version that any trapezoid ever had between the finest and the coarsest
-// tolerance, each with its lifespan; the trapezoids alive at one level tile the polygons of the
+// A mesh holds every version of every trapezoid between the finest and the coarsest tolerance, each
+// with its lifespan; the trapezoids alive at one level tile the polygons of the
 // layer at that tolerance, without overlap (inside one polygon). Only inside trapezoids are stored.
 //
 // Thread-safety: immutable after construction, any number of threads may read.
@@ -16,7 +16,7 @@
 
 namespace trapeze {
 
-/// A non-horizontal (in sweep order) straight piece of boundary: `upper` is above `lower`.
+/// A straight piece of boundary: `upper` is above `lower` in sweep order.
 struct MeshEdge {
   std::uint32_t upper = 0;  // index of a vertex
   std::uint32_t lower = 0;  // index of a vertex
@@ -24,10 +24,9 @@ struct MeshEdge {
   friend constexpr bool operator==(const MeshEdge&, const MeshEdge&) = default;
 };
 
-/// The region between two edges, from the level of vertex `top` down to the level of vertex
-/// `bottom`. Both edges span the whole height; corners lie where edges and levels meet and are not
-/// stored. top.y == bottom.y is possible (the sweep order breaks ties): such a trapezoid has no
-/// area.
+/// The area between two edges, from the y of vertex `top` down to the y of vertex `bottom`. Both
+/// edges reach from one to the other. The four corners lie on the edges and are not stored. top.y
+/// == bottom.y is possible (the sweep order breaks ties): such a trapezoid has no area.
 struct MeshTrapezoid {
   std::uint32_t top = 0;     // index of a vertex
   std::uint32_t bottom = 0;  // index of a vertex
@@ -37,9 +36,10 @@ struct MeshTrapezoid {
   friend constexpr bool operator==(const MeshTrapezoid&, const MeshTrapezoid&) = default;
 };
 
-/// What a renderer draws from; looks at memory owned by a TrapezoidMesh (or a mapped file).
+/// What a renderer draws from; a view of the arrays of a layer or of a mapped file.
 struct MeshView {
-  std::uint64_t id = 0;  // unique in this process: equal ids mean equal contents, for uploads
+  std::uint64_t id =
+      0;  // unique in this process: equal ids mean equal contents, so that uploads can be reused
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
   std::span<const MeshTrapezoid> trapezoids;
@@ -60,7 +60,7 @@ struct TrapezoidRange {
   friend constexpr bool operator==(const TrapezoidRange&, const TrapezoidRange&) = default;
 };
 
-/// Calls visit(trapezoid), its number, for every one of the ranges.
+/// Calls visit(index) for every trapezoid of the ranges.
 template <typename Visit>
 void for_each_trapezoid(std::span<const TrapezoidRange> ranges, const Visit& visit) {
   for (const TrapezoidRange& range : ranges) {

@@ -14,8 +14,8 @@
 
 namespace trapeze {
 
-/// Vertices 1 .. n are the distinct points in sweep order; 0 and n + 1 belong to the frame and have
-/// no edges here. Memory is kept between uses.
+/// Vertices 1 .. n are the distinct points in sweep order; vertices 0 and n + 1 belong to the frame
+/// and have no edges here. Memory is kept for reuse. Thread-safety: none.
 struct Boundary {
   struct Ends {
     VertexId upper;
@@ -28,7 +28,7 @@ struct Boundary {
   /// Edges at vertex v: incident[first[v] .. first[v + 1]), in no order.
   Table<VertexId, std::uint32_t> first;
   std::vector<EdgeId> incident;
-  /// Some vertex has more than two edges: rings touch there.
+  /// Whether some vertex has more than two edges: rings touch there.
   bool has_touches = false;
   /// For rings without touches: edge i leaves the i-th point of the rings, at this vertex.
   std::vector<VertexId> ring_vertex;

@@ -1,8 +1,8 @@
-// Walks the edges of a trapezoidal graph into simple loops and writes them down as corners.
+// Finds the simple loops of the boundary and stores them as the corners of a trapezoidal graph.
 //
-// The rings of the source serve where they can. Where rings touch, the edges at the common vertex
-// are paired anew, two edges that bound one inside wedge at a time, and a loop that still comes
-// back to a vertex is cut there, so that every loop visits a vertex at most once.
+// Rings of the source that do not touch are such loops already. Where rings touch, the edges at the
+// common vertex are paired again, so that each pair bounds one inside wedge; a loop that still
+// returns to a vertex is cut there, so that every loop visits a vertex at most once.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-/// Reusable memory; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class BoundaryLoops {
  public:
   /// Fills the corners of `graph` from rings that do not touch each other or themselves; `boundary`

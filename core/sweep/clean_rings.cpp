@@ -14,8 +14,8 @@ bool is_spike(Point a, Point b, Point c) {
   return dot < 0;
 }
 
-/// Cleans points[begin, end) in place and returns the end of what is left, at least three points or
-/// none.
+/// Cleans points[begin, end) in place and returns the end of the points that remain, at least three
+/// or none.
 std::size_t clean_ring(std::vector<Point>& points, std::size_t begin, std::size_t end) {
   std::size_t top = begin;  // points[begin, top) has no spike but perhaps at its two ends
   for (std::size_t i = begin; i < end; ++i) {

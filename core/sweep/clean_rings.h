@@ -1,4 +1,5 @@
-// Removes from rings what has no area after snapping: duplicate points, spikes, collapsed rings.
+// Removes from rings the parts that have no area after snapping to the grid: duplicate points,
+// spikes and collapsed rings.
 #pragma once
 
 #include <cstddef>

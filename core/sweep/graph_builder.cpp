@@ -31,8 +31,8 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
 }
 
 bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome) {
-  // The quick way is repeated while it may help; the thorough one is certain to be enough at once,
-  // and repeated only for safety.
+  // Noding at crossings only is fast and is repeated while it may help. Noding at all vertices
+  // always suffices at once; it is repeated only for safety.
   constexpr int kQuickPasses = 3;
   constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);

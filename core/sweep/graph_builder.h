@@ -1,4 +1,4 @@
-// From the rings of one feature, whatever their state, to its trapezoidal graph.
+// Builds the trapezoidal graph of one feature from its rings, which may be invalid in any way.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@ namespace trapeze {
 struct BuildOutcome {
   bool built = false;               // false: nothing left to draw, or failed
   bool noded = false;               // rings crossed, touched or overlapped and were noded
-  std::size_t rings = 0;            // rings that came in
+  std::size_t rings = 0;            // rings of the feature as given
   std::size_t collapsed_rings = 0;  // rings without area after snapping
   std::size_t vertices = 0;         // vertices of the finished polygon
   std::string failure;              // why it could not be built, empty otherwise
 };
 
-/// Reusable memory; one a thread.
+/// Holds working memory for reuse; one thread at a time.
 class GraphBuilder {
  public:
   /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed

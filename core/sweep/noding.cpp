@@ -83,7 +83,7 @@ bool passes_cell(const Segment& s, Point centre) {
   return left && right;
 }
 
-/// A hot cell on the way of a segment.
+/// A hot cell that a segment passes through.
 struct Pass {
   std::uint32_t segment;
   Point hot;

@@ -1,9 +1,9 @@
 // Noding on the integer grid: rings that cross, touch or overlap become edges that meet only at
 // common vertices.
 //
-// Snap rounding (Hobby 1999; Guibas and Marimont 1998): cells are made "hot", and each segment is
-// led through the centres of all hot cells that it passes. No point moves by more than half a cell
-// in x and y. Pieces that then coincide cancel in pairs (even-odd).
+// Snap rounding (Hobby 1999; Guibas and Marimont 1998): some cells are "hot", and each segment is
+// routed through the centres of all hot cells that it passes through. No point moves by more than
+// half a cell in x and in y. Pieces that then coincide cancel in pairs (even-odd).
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,8 @@ namespace trapeze {
 std::vector<Segment> segments_of(const Rings& rings);
 
 enum class HotCells : std::uint8_t {
-  /// Those of crossings and of vertices that lie on other segments. Quick, and nearly always
-  /// enough; but a segment that
-  /// is moved can come to cross another one next to it.
+  /// Those of crossings and of vertices that lie on other segments. Fast, and nearly always enough;
+  /// but a segment that is moved can come to cross another one next to it.
   crossings,
   /// Those of all vertices as well: the result is certain to have no crossing left.
   crossings_and_vertices,
@@ -33,11 +32,11 @@ struct Piece {
   std::uint32_t source = 0;  // the index of the segment
 };
 
-/// Leads the segments through the hot cells and returns all pieces, those that coincide as well.
+/// Routes the segments through the hot cells and returns all pieces, including those that coincide.
 std::vector<Piece> node_pieces(const std::vector<Segment>& segments, HotCells cells);
 
-/// Leads the segments through the hot cells and returns the pieces, upper end first; those that
-/// coincide an odd number of times once, an even number of times not at all.
+/// Routes the segments through the hot cells and returns the pieces, upper end first. Of an odd
+/// number of coinciding pieces one is returned, of an even number none.
 std::vector<Segment> node_segments(const std::vector<Segment>& segments, HotCells cells);
 
 }  // namespace trapeze

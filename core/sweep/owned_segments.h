@@ -18,7 +18,8 @@ struct OwnedSegment {
 /// All segments of the rings, feature by feature.
 std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features);
 
-/// By their ends in sweep order, then by owner: what coincides lies side by side.
+/// Sorts by upper end, then lower end, in sweep order, then by owner: segments that coincide become
+/// neighbours in the array.
 void sort_by_place(std::vector<OwnedSegment>& segments);
 
 }  // namespace trapeze

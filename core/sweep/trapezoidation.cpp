@@ -5,7 +5,7 @@
 namespace trapeze {
 namespace {
 
-/// Negative if p lies left of the edge (at p's level in sweep order), positive if right, 0 if on
+/// Negative if p lies left of the edge (on the sweep line through p), positive if right, 0 if on
 /// it.
 std::int64_t side_of(Point upper, Point lower, Point p) {
   return -orientation(upper, lower, p);
@@ -34,7 +34,7 @@ bool Trapezoidation::sweep() {
   for (std::size_t v = 1; v <= count; ++v) {
     if (!sweep_vertex(VertexId(v))) return false;
   }
-  // Only the frame is left; its last node ends at infinity.
+  // Only the frame remains; its last node ends at infinity.
   close(0, VertexId(count + 1));
   return true;
 }
@@ -138,7 +138,7 @@ bool Trapezoidation::sweep_general(VertexId v) {
   }
   const Slot right = status_[left].next;
 
-  // Unless the caller knows better, faces alternate from left to right (even-odd).
+  // Unless the caller gives faces, they alternate from left to right (even-odd).
   Slot last = left;
   FaceId face = g.edges_[status_[left].edge].face[kRight];
   for (const EdgeId e : starting_) {

@@ -2,9 +2,9 @@
 //
 // The sweep goes through the vertices in sweep order and keeps the edges that cross the sweep line
 // from left to right, in a balanced tree and in a linked list. At a regular vertex one edge takes
-// the place of another in O(1); only where edges begin is the tree searched. Every pair of edges
-// that become neighbours is tested, so a crossing, an overlap or a vertex on an edge is always
-// found (Shamos and Hoey): the sweep either succeeds or says that the boundary is not noded.
+// the place of another in O(1); only where edges begin is the tree searched. Every two edges
+// that become neighbours are tested, so a crossing, an overlap or a vertex on an edge is always
+// found (Shamos and Hoey): the sweep either succeeds or reports that the boundary is not noded.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace trapeze {
 
-/// The face on the right of an edge that has the given one on its left. Two edges that meet at a
-/// vertex of their own lead from one face to the same other one.
+/// The face on the right of an edge, given the face on its left. Two edges that meet at a vertex
+/// that no other edge has separate the same two faces.
 using FaceBeyond = std::function<FaceId(EdgeId edge, FaceId left)>;
 
-/// Reusable memory of the sweep; one a thread.
+/// The sweep, with working memory for reuse; one thread at a time.
 class Trapezoidation {
  public:
   /// Makes `graph` the trapezoidal graph of the boundary, with even-odd faces; its corners are left
@@ -29,11 +29,12 @@ class Trapezoidation {
   /// noded: two edges cross or overlap, or a vertex lies on an edge.
   bool build(const Boundary& boundary, TrapezoidalGraph& graph);
 
-  /// The same with faces of the caller's; what is left of everything is kOutside.
+  /// The same with faces given by the caller; what lies to the left of all edges is kOutside.
   bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph);
 
  private:
-  // A place in the status: an edge that crosses the sweep line and what lies right of it.
+  // An entry of the status structure: an edge that crosses the sweep line, and the open node to its
+  // right.
   using Slot = std::uint32_t;
   static constexpr Slot kNoSlot = 0xffffffff;
   struct Status {

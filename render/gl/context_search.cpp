@@ -35,7 +35,7 @@ class Search {
  public:
   explicit Search(const std::function<void(std::unique_ptr<GlContext>)>& use) : use_(use) {}
 
-  // Takes the candidate if it opens, `refusal` has nothing to say against it, and it is of use.
+  // Takes the candidate if it opens, `refusal` returns no reason against it, and `use` accepts it.
   template <typename Refusal>
   void attempt(const ContextCandidate& candidate, Refusal refusal) {
     try {

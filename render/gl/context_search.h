@@ -10,10 +10,11 @@
 
 namespace trapeze {
 
-/// What there is to try, best first: hardware devices, software devices, surfaceless, OSMesa.
+/// The contexts to try, best first: hardware devices, software devices, surfaceless, OSMesa.
 std::vector<ContextCandidate> list_context_candidates();
 
-/// Opens that one; it is current nowhere afterwards. Throws std::runtime_error with the reason.
+/// Opens a candidate; its context is current on no thread afterwards. Throws std::runtime_error
+/// with the reason.
 std::unique_ptr<GlContext> open_context(const ContextCandidate& candidate);
 
 struct ContextSearch {
@@ -21,8 +22,8 @@ struct ContextSearch {
   std::vector<ContextFailure> failures;
 };
 
-/// Opens one candidate after another and hands each that opens to `use`, until one is taken without
-/// an exception. Never throws because of a candidate or its use: the reason is kept.
+/// Opens one candidate after another and passes each that opens to `use`, until a call of `use`
+/// returns without an exception. Failures of a candidate or of its use are not thrown, but listed.
 ContextSearch use_first_context(const ContextRequest& request,
                                 const std::function<void(std::unique_ptr<GlContext>)>& use);
 

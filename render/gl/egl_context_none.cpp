@@ -1,4 +1,4 @@
-// Instead of egl_context.cpp where there is no EGL.
+// Replaces egl_context.cpp in builds without EGL.
 #include <stdexcept>
 
 #include "render/gl/egl_context.h"

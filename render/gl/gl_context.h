@@ -1,8 +1,8 @@
 // Headless OpenGL contexts, without a window system: EGL devices, EGL surfaceless, OSMesa.
 //
-// All are desktop OpenGL 4.3 core or later. EGL's default display is never asked for: it may start
-// looking for an X server. EGL displays are initialized once and stay so until the process ends,
-// since a display is one object in the whole process, whoever asked for it.
+// All are desktop OpenGL 4.3 core or later. EGL's default display is never used: it may look
+// for an X server. EGL displays are initialized once and remain so until the process ends, because
+// a display is one object for the whole process.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// The least OpenGL that will do: 4.3, core.
+/// The lowest version of OpenGL that suffices: 4.3, core profile.
 constexpr int kLeastGlMajor = 4;
 constexpr int kLeastGlMinor = 3;
 
@@ -22,7 +22,7 @@ enum class ContextPath { egl_device, egl_software_device, egl_surfaceless, osmes
 /// "EGL device", "EGL software device", "EGL surfaceless" or "OSMesa".
 std::string_view name_of(ContextPath path);
 
-/// A way to a context that may or may not work.
+/// A context that may be tried, and may turn out not to work.
 struct ContextCandidate {
   ContextPath path = ContextPath::egl_surfaceless;
   int device_index = -1;    // place in EGL's own list of devices; -1 where there is no device
@@ -32,14 +32,14 @@ struct ContextCandidate {
   std::string text() const;
 };
 
-/// What a context turned out to be.
+/// A context that has been opened.
 struct ContextInfo {
   ContextCandidate candidate;
   std::string vendor;
   std::string renderer;
   std::string version;
 
-  /// True if the processor draws.
+  /// Whether the CPU draws.
   bool is_software() const;
   /// One line for logs.
   std::string text() const;
@@ -72,7 +72,7 @@ class GlContext {
   ContextInfo info_;
 };
 
-/// Makes a context current for the time of a scope.
+/// Makes a context current for the duration of a scope.
 class CurrentContext {
  public:
   explicit CurrentContext(GlContext& context) : context_(context) { context.make_current(); }

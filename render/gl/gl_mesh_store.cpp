@@ -44,7 +44,7 @@ GlMeshStore::ChunkPointer& GlMeshStore::place(std::uint64_t mesh_id, std::uint32
 
 GlMeshStore::ChunkPointer GlMeshStore::chunk(const GlFunctions& gl, const MeshView& mesh,
                                              std::uint32_t index) {
-  // Held during an upload: whoever needs the same chunk has to wait for it anyway.
+  // Locked during an upload: other threads that need the same chunk have to wait for it anyway.
   const std::lock_guard lock(mutex_);
   ChunkPointer& chunk = place(mesh.id, index);
   if (!chunk) chunk = upload(gl, mesh, index);
@@ -61,10 +61,10 @@ GLuint GlMeshStore::changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id
 
 GlMeshStore::ChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
                                                   std::size_t trapezoids) const {
-  const std::shared_ptr<Chunk> chunk(new Chunk, [graveyard = graveyard_](const Chunk* dead) {
-    const std::lock_guard lock(graveyard->mutex);
-    graveyard->buffers.push_back(dead->buffer);
-    graveyard->textures.push_back(dead->texture);
+  const std::shared_ptr<Chunk> chunk(new Chunk, [released = released_](const Chunk* dead) {
+    const std::lock_guard lock(released->mutex);
+    released->buffers.push_back(dead->buffer);
+    released->textures.push_back(dead->texture);
     delete dead;
   });
   const std::size_t bytes = trapezoids * kIntegersPerTrapezoid * sizeof(std::int32_t);
@@ -119,9 +119,9 @@ void GlMeshStore::delete_forgotten(const GlFunctions& gl) {
   std::vector<GLuint> buffers;
   std::vector<GLuint> textures;
   {
-    const std::lock_guard lock(graveyard_->mutex);
-    buffers.swap(graveyard_->buffers);
-    textures.swap(graveyard_->textures);
+    const std::lock_guard lock(released_->mutex);
+    buffers.swap(released_->buffers);
+    textures.swap(released_->textures);
   }
   gl.DeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
   gl.DeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());

@@ -1,10 +1,10 @@
 // The trapezoids of meshes in the memory of a GL device, uploaded once for a whole share group.
 //
 // A trapezoid is stored with its own copy of the ten integers that make it up (the y of its top and
-// bottom, both ends of both sides): 40 bytes, read in one place, where three indexed arrays would
-// take about 30 and four dependent reads. Meshes are cut into chunks of equal numbers of
-// trapezoids, uploaded when they are first drawn; so no index outgrows 32 bits and no buffer the
-// limits of the device, however large the mesh.
+// bottom, both ends of both sides): 40 bytes, read from one place; three indexed arrays would take
+// about 30 bytes and four dependent reads. Meshes are cut into chunks of equal numbers of
+// trapezoids, uploaded when they are first drawn; so indices fit into 32 bits, and buffers into the
+// limits of the device, however large the mesh is.
 //
 // Thread-safety: all functions may be called from all threads; those that take `gl` need a context
 // of the share group current on the calling thread.
@@ -36,24 +36,24 @@ class GlMeshStore {
   /// Trapezoids in a chunk: chunk i begins at trapezoid i * chunk_size().
   std::uint32_t chunk_size() const { return chunk_size_; }
 
-  /// That chunk, ready to be drawn from in any context of the group. Throws std::runtime_error if
-  /// the device has no memory left.
+  /// The chunk of that index, uploaded and usable in any context of the share group. Throws
+  /// std::runtime_error if the device is out of memory.
   ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index);
 
-  /// The buffer of that chunk of a mesh that changes: it has room for chunk_size() trapezoids,
-  /// which the caller writes. Nobody may draw from it meanwhile, and draws that follow find the
-  /// chunk under the id. Throws like chunk().
+  /// The buffer of that chunk of a mesh whose contents change: it has room for chunk_size()
+  /// trapezoids, which the caller writes. No thread may draw from it meanwhile; later draws find
+  /// the chunk under the id. Throws like chunk().
   GLuint changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id, std::uint32_t index);
 
-  /// Lets go of the chunks of a mesh; a draw in progress still finds those that it holds.
+  /// Releases the chunks of a mesh; a draw in progress keeps those that it uses.
   void forget(std::uint64_t mesh_id);
 
-  /// Gives the memory of chunks that were let go of back to the device.
+  /// Deletes the buffers and textures of chunks that were released.
   void delete_forgotten(const GlFunctions& gl);
 
  private:
-  // Names of chunks that nobody holds any more, until a thread with a context comes by.
-  struct Graveyard {
+  // GL names of chunks that are no longer in use, until a thread with a context deletes them.
+  struct Released {
     std::mutex mutex;
     std::vector<GLuint> buffers;
     std::vector<GLuint> textures;
@@ -64,7 +64,7 @@ class GlMeshStore {
   ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;
 
   std::uint32_t chunk_size_ = 0;
-  std::shared_ptr<Graveyard> graveyard_ = std::make_shared<Graveyard>();
+  std::shared_ptr<Released> released_ = std::make_shared<Released>();
   std::mutex mutex_;
   std::unordered_map<std::uint64_t, std::vector<ChunkPointer>> meshes_;  // by MeshView::id
 };

@@ -1,4 +1,4 @@
-// Programs of one compute shader.
+// Compiles GL programs of one compute shader.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace trapeze {
 
-/// Compiles and links; a context is current. Throws std::runtime_error, with what the device says,
-/// if it does not take the source.
+/// Compiles and links a program. A context is current. Throws std::runtime_error with the driver's
+/// message if that fails.
 GLuint make_compute_program(const GlFunctions& gl, const std::string& source);
 
 }  // namespace trapeze

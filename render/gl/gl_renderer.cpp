@@ -19,7 +19,7 @@ GLsizeiptr bytes_of(std::size_t elements) {
   return static_cast<GLsizeiptr>(elements * sizeof(Element));
 }
 
-// Adds what the shader summed up to wider sums, and leaves zeros behind.
+// Adds the sums of the shader to wider ones and sets them to 0.
 void take_units(std::span<std::int32_t> units, std::span<std::int64_t> sums) {
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::exchange(units[i], 0);
 }
@@ -142,8 +142,9 @@ void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
   }
 }
 
-// Adds to the pass what the band shows. A pass that is full is finished first; so is one as soon as
-// the band might have more trapezoids than its sums hold, and the band goes on in the next.
+// Adds the trapezoids of the band to the pass. A full pass is finished first; so is a pass in which
+// the band might have more trapezoids than its sums can hold, and the band continues in the next
+// one.
 void GlRenderer::draw_band(Band band, DrawTimes& times) {
   if (used_ + band.pixels() > room_) finish_pass(times);
   band.place = used_;
@@ -183,7 +184,7 @@ void GlRenderer::choose(const MeshView& mesh, std::uint32_t number, std::uint32_
   for (std::uint32_t i = first; i < first + count; ++i) indices_.push_back(i);
 }
 
-// Draws what was put together, and maps it.
+// Draws the batches of the pass and maps the buffer of differences.
 void GlRenderer::run_pass(DrawTimes& times) {
   {
     const Stopwatch stopwatch(times.draw_ms);
@@ -219,7 +220,7 @@ void GlRenderer::finish_pass(DrawTimes& times) {
   used_ = 0;
 }
 
-// Finishes the pass but for the last band, which goes on in a pass of its own.
+// Finishes the pass except for its last band, which continues in a pass of its own.
 void GlRenderer::set_last_band_aside(DrawTimes& times) {
   run_pass(times);
   const Stopwatch stopwatch(times.resolve_ms);

@@ -1,12 +1,13 @@
 // Draws masks with OpenGL: exact area, not multisampling. See gl_shader.h for how.
 //
-// A compute shader adds areas up as integers in a buffer, which is read back and summed up to 8
-// bits here. Rasterizing strips and points with additive blending gives the same pictures, but
-// costs a software device ten times as much for each trapezoid.
+// A compute shader adds up areas as integers in a buffer. The buffer is read back, and its rows are
+// summed and rounded to 8 bits on the CPU. Rasterizing strips and points with additive blending
+// gives the same masks, but takes a software device ten times as long for each trapezoid.
 //
-// On a GPU tasks that are drawn together share one buffer, one after the other: the fixed cost of a
-// pass, which is what a light tile costs, is paid once for all. A processor draws one task at a
-// time: it pays little for a pass, and the differences of one picture stay in its cache.
+// On a GPU, tasks are drawn in batches: they share one buffer, one after the other, so that the
+// fixed cost of a pass, which is most of the cost of a light tile, is paid once for all. A software
+// device draws one task a pass: a pass costs it little, and the differences of one picture stay in
+// the cache.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,12 @@
 
 namespace trapeze {
 
-/// The context is current only inside of draw, so the renderer may move between threads.
+/// The context is current only during draw(), so the renderer may be used by one thread after the
+/// other.
 class GlRenderer final : public MaskRenderer {
  public:
-  /// `store` is that of the context's share group. Throws std::runtime_error if the device cannot
-  /// do what is needed.
+  /// `store` is that of the context's share group. Throws std::runtime_error if the device
+  /// lacks what the renderer needs.
   GlRenderer(std::unique_ptr<GlContext> context, std::shared_ptr<GlMeshStore> store);
   ~GlRenderer() override;
   GlRenderer(const GlRenderer&) = delete;
@@ -34,7 +36,7 @@ class GlRenderer final : public MaskRenderer {
   using MaskRenderer::draw;
   DrawTimes draw(std::span<const MaskTask> tasks) override;
   bool gains_by_batching() const override { return gains_by_batching_; }
-  /// Has tasks drawn together, or one at a time, instead of as it suits the device.
+  /// Whether tasks are drawn in batches; the default depends on the device.
   void set_batching(bool gains) { gains_by_batching_ = gains; }
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
@@ -54,7 +56,7 @@ class GlRenderer final : public MaskRenderer {
     GLint place = -1;
   };
 
-  // Some rows of a picture; all of them if the buffer has room.
+  // Successive rows of a picture; all of them if the buffer has room.
   struct Band {
     const MaskTask* task = nullptr;
     int first_row = 0;
@@ -66,7 +68,7 @@ class GlRenderer final : public MaskRenderer {
     }
   };
 
-  // Some of indices_, drawn by one call: trapezoids of one chunk of a mesh.
+  // A range of indices_ that is drawn by one dispatch: trapezoids of one chunk of a mesh.
   struct Batch {
     std::size_t band = 0;
     std::uint64_t mesh_id = 0;
@@ -101,7 +103,7 @@ class GlRenderer final : public MaskRenderer {
   GLuint differences_buffer_ = 0;
   std::size_t differences_size_ = 0;  // pixels; all are zero between passes
 
-  // Of the pass being put together.
+  // Of the pass being prepared.
   std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Band> bands_;

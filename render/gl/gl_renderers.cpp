@@ -30,9 +30,10 @@ std::vector<std::unique_ptr<MaskRenderer>> renderers_of(std::unique_ptr<GlContex
   return renderers;
 }
 
-// Without threads of its own llvmpipe computes on those that ask it to, but on one of them at a
-// time. That is best for a few: a tile computes for a fifth of its time, and no thread has to wake
-// another. More would wait for each other. It reads this once, when the first context is made.
+// Without threads of its own, llvmpipe computes on the threads that call it, but on one of them at
+// a time. That is best for a few threads: a tile computes for a fifth of its time, and no thread
+// has to wake another. More would wait for each other. The variable is read once, when the first
+// context is made.
 void choose_llvmpipe_threads(int renderers) {
   constexpr int kFew = 4;
   if (renderers == 1) return;

@@ -1,4 +1,4 @@
-// Renderers by GL, if there is a context for them. Needs no OpenGL where this is included.
+// Makes renderers by GL, if a context works. This header includes none of OpenGL's.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,11 @@ namespace trapeze {
 
 struct GlRenderers {
   std::vector<std::unique_ptr<MaskRenderer>> renderers;  // none if no context works here
-  std::vector<ContextFailure> failures;                  // what was tried before
+  std::vector<ContextFailure> failures;                  // the contexts tried before
 };
 
-/// Makes `count` renderers with one store of meshes, one for each thread that draws. Never throws
-/// because of a context: the reasons are kept.
+/// Makes `count` renderers that share one store of meshes, one for each thread that draws. Contexts
+/// that do not work are listed with their reasons; nothing is thrown because of them.
 GlRenderers make_gl_renderers(const ContextRequest& request, int count);
 
 }  // namespace trapeze

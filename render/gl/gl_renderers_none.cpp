@@ -1,4 +1,4 @@
-// Instead of all else in this folder where there is neither EGL nor OSMesa.
+// Replaces all other sources of this folder in builds with neither EGL nor OSMesa.
 #include "render/gl/gl_renderers.h"
 
 namespace trapeze {

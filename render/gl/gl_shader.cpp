@@ -27,8 +27,8 @@ struct Side {
 };
 
 // A line that begins beyond the border of the picture is followed from where it enters the picture.
-// One that never enters is replaced by a vertical line beyond the border, which leaves the same area
-// to its east.
+// One that never enters is replaced by a vertical line beyond the border, with the same area to its
+// east.
 Side side_at(int ends, dvec2 span, double row) {
   dvec2 upper = dvec2(texelFetch(trapezoids, ends).xy);
   dvec2 along = dvec2(texelFetch(trapezoids, ends + 1).xy) - upper;

@@ -1,4 +1,4 @@
-// Instead of osmesa_context.cpp where there is no OSMesa.
+// Replaces osmesa_context.cpp in builds without OSMesa.
 #include <stdexcept>
 
 #include "render/gl/osmesa_context.h"

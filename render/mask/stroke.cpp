@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMiterLimit = 4;
 constexpr std::uint16_t kMostMet = 3;  // more are no different
-// Lines go on beyond their ends by so many pixels, so that joins that open less need not be drawn.
+// Lines extend beyond their ends by so many pixels, so that smaller openings at joins need no join.
 constexpr double kOverlap = 1.0 / 32;
 
 std::uint8_t to_value(float share) {
@@ -140,7 +140,7 @@ class Stroker::Pen {
     return (x * bisector_x + y * bisector_y) / length + half_ * (1 - half_cosine);
   }
 
-  // Of the stretch of a pixel at that distance from the middle of the line.
+  // The share of a pixel at that distance from the middle of the line that the line covers.
   float across(float distance) const {
     const float half = static_cast<float>(half_);
     const float covered = std::min(distance + 0.5f, half) - std::max(distance - 0.5f, -half);
@@ -237,7 +237,7 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
   }
 }
 
-// Two lines that meet are joined; where more do, rings touch.
+// Two lines that meet are joined; where more than two meet, rings touch.
 void Stroker::meet(std::uint32_t vertex, std::uint32_t line, bool is_end, Pen& pen) {
   std::size_t i = (vertex * 0x9e3779b1u) >> 7 & (meet_.size() - 1);
   while (meet_[i].count > 0 && meet_[i].vertex != vertex) i = (i + 1) & (meet_.size() - 1);
@@ -255,7 +255,7 @@ void Stroker::meet(std::uint32_t vertex, std::uint32_t line, bool is_end, Pen& p
   }
 }
 
-// As it goes away from its beginning, or from its end.
+// The line in the direction that leads away from its end or from its beginning.
 Stroker::Line Stroker::leaving(std::uint32_t line, bool is_end) const {
   return is_end ? lines_[line].turned() : lines_[line];
 }

@@ -20,11 +20,11 @@ struct Rgba {
 
 constexpr Rgba kTransparent{0, 0, 0, 0};
 
-/// Reads a colour; nothing if it is none. Letters may be of either case. Accepted are
+/// Reads a colour; nothing if the text is not one. Upper and lower case are equal. Accepted are
 ///   rgb, rgba, rrggbb, rrggbbaa   hexadecimal, with or without # in front;
 ///   the 148 names of CSS, and transparent, or none;
 ///   rgb(...) and rgba(...) of CSS: three numbers (0..255) or three percentages, then perhaps an
-///   opacity (0..1 or percent), parted by commas, or by blanks with a slash before the opacity.
+///   opacity (0..1 or percent), separated by commas, or by blanks with a slash before the opacity.
 /// As in CSS, numbers may have fractions and those out of range are brought into it.
 std::optional<Rgba> parse_colour(std::string_view text);
 

@@ -165,8 +165,8 @@ class NumberTable {
 }  // namespace
 
 // A picture being painted. Pixels that have met the same paints at the same values share a mixture,
-// so that colours are computed once a mixture and not once a pixel; and a block of pixels that are
-// all the same is looked at as one.
+// so that colours are computed once a mixture and not once a pixel; and a block of equal
+// pixels is treated as one.
 class Composer::Canvas {
  public:
   void begin(int width, int height, Rgba background) {
@@ -295,7 +295,7 @@ class Composer::Canvas {
     }
   }
 
-  // What becomes of a mixture at that value.
+  // The mixture that results from painting over a mixture at that value.
   template <typename Mix>
   std::uint32_t mixture_for(std::uint32_t below, std::uint8_t value, const Mix& mix) {
     std::uint32_t& row = row_of_[below];
@@ -412,13 +412,13 @@ void require_size(const PaintedLayer& layer, int width, int height) {
   require_size(layer.pattern, width, height);
 }
 
-/// How a colour is laid over what is there.
+/// The function that lays a colour over a mixture.
 auto laid_over(Rgba colour, double opacity = 1) {
   return [paints = paints_of(colour, static_cast<float>(opacity))](
              const Paint& below, std::uint8_t value) { return over(paints[value], below); };
 }
 
-/// How a colour with the layer's pattern in it is laid over what is there.
+/// The function that lays a colour, with the layer's pattern, over a mixture.
 auto patterned(Rgba colour, const PaintedLayer& layer) {
   return [fills = paints_of(colour), patterns = paints_of(layer.pattern_colour),
           opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t value,

@@ -27,15 +27,15 @@ struct Picture {
   Rgba at(int column, int row) const;
 };
 
-/// Polygons, or lines, of one colour. Looks at memory of the caller.
+/// Polygons or lines of one colour. A view of the caller's memory.
 struct PaintedClass {
   const Mask* mask = nullptr;  // null: every pixel is wholly covered
   Rgba colour;                 // its opacity included
 };
 
-/// A layer as it is put together: classes of polygons, whose colours mix by the area that each
-/// covers; the pattern over them; lines over that, the first one lowest; and of all this so much as
-/// the opacity says. Looks at memory of the caller.
+/// A layer to be painted: classes of polygons, whose colours mix by the area that each covers; the
+/// pattern over them; lines over that, the first one lowest; the opacity applies to the result. A
+/// view of the caller's memory.
 struct PaintedLayer {
   std::span<const PaintedClass> classes;
   const Mask* pattern = nullptr;  // null: none; counts where the classes cover
@@ -44,10 +44,10 @@ struct PaintedLayer {
   double opacity = 1;
 };
 
-/// Each class as a layer of its own, in this order; they look at the classes.
+/// Each class as a layer of its own, in this order; views of the classes.
 std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes);
 
-/// Paints pictures one after the other, in memory that it keeps.
+/// Paints pictures one after the other, with working memory for reuse.
 ///
 /// Thread-safety: one thread at a time.
 class Composer {
@@ -69,7 +69,7 @@ class Composer {
   void paint_together(const PaintedLayer& layer);
 
   std::unique_ptr<Canvas> canvas_;
-  std::unique_ptr<Canvas> layer_;  // for one that is put together before it is painted
+  std::unique_ptr<Canvas> layer_;  // for a layer that is composed before it is painted
 };
 
 }  // namespace trapeze

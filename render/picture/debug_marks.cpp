@@ -22,7 +22,7 @@ Position position_of(Point p, const View& view) {
           static_cast<double>(p.y - view.origin_y) / view.cells_per_pixel};
 }
 
-/// Cuts the part of the segment off that lies more than a pixel outside; false if nothing is left.
+/// Clips the segment to the picture and a pixel around it; false if nothing is left.
 bool clip(Position& a, Position& b, const Picture& picture) {
   double from = 0;
   double to = 1;
@@ -182,7 +182,7 @@ class TintSum {
   std::vector<Tinted> pixels_;
 };
 
-/// A number and something of it; in order, what belongs to one number is together.
+/// A key and one of its values; when sorted, the values of a key are consecutive.
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 void sort_and_unite(Pairs& pairs) {
@@ -279,10 +279,10 @@ void mark_faces(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
 }
 
 void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
-                    std::span<const TrapezoidRange> level_edges, const FeatureOf& feature_of,
+                    std::span<const TrapezoidRange> horizontal_edges, const FeatureOf& feature_of,
                     const View& view, Rgba colour, Picture& picture) {
   Pairs features_by_edge;
-  for (const auto some : {ranges, level_edges}) {
+  for (const auto some : {ranges, horizontal_edges}) {
     for_each_trapezoid(some, [&](std::uint32_t i) {
       for (const std::uint32_t edge : {mesh.trapezoids[i].left, mesh.trapezoids[i].right}) {
         features_by_edge.emplace_back(edge, feature_of(i));

@@ -1,5 +1,5 @@
-// Marks over a picture that show how it came about (paper, Figure 7 f to j): the trapezoids, the
-// vertices that are kept, the faces and their junctions, the border of a tile.
+// Marks drawn over a picture that show how it was made (paper, Figure 7 f to j): the trapezoids,
+// the vertices that are left, the faces and their junctions, the border of a tile.
 #pragma once
 
 #include <cstdint>
@@ -32,12 +32,12 @@ using FeatureOf = std::function<std::uint32_t(std::uint32_t trapezoid)>;
 void mark_faces(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
                 const FeatureOf& feature_of, const View& view, Picture& picture);
 
-/// Draws a dot at every junction: a vertex around which lie three or more features, what is outside
-/// of all counting as one. `level_edges` are trapezoids without height that stand for edges, as
-/// Layer::select_level_edges names them. A vertex is judged rightly if both name all that touches
-/// it; so they are to be selected from a little around the picture.
+/// Draws a dot at every junction: a vertex around which three or more features meet, the outside
+/// counting as one. `horizontal_edges` are trapezoids without height that stand for edges, as
+/// Layer::select_horizontal_edges finds them. A vertex is classified correctly if both include all
+/// that touches it; so they should be selected from a box a little larger than the picture.
 void mark_junctions(const MeshView& mesh, std::span<const TrapezoidRange> ranges,
-                    std::span<const TrapezoidRange> level_edges, const FeatureOf& feature_of,
+                    std::span<const TrapezoidRange> horizontal_edges, const FeatureOf& feature_of,
                     const View& view, Rgba colour, Picture& picture);
 
 /// Draws a line along the border of the picture.

@@ -8,8 +8,8 @@
 namespace trapeze {
 namespace {
 
-/// How much of the stretch of one pixel around a place is covered by bands of `width` that repeat
-/// after `period`, one of them around 0. Taken across the bands, whatever their direction.
+/// The share of a segment one pixel long, centred on `place`, that bands of `width` cover. The
+/// bands repeat after `period`, one of them around 0; the segment is across the bands.
 double band_value(double place, double period, double width) {
   if (width >= period) return 1;
   const double half = width / 2;

@@ -1,4 +1,4 @@
-// Patterns over the fill of polygons, made by rule and fixed to the ground.
+// Patterns over the fill of polygons, computed from parameters and fixed to the ground.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ enum class PatternKind : std::uint8_t { none, checker, crosshatch, dots, hatch, 
 struct Pattern {
   PatternKind kind = PatternKind::none;
   Rgba colour;
-  double size = 8;   // after which it repeats, > 0
+  double size = 8;   // period, > 0
   double angle = 0;  // degrees, anticlockwise from east
   double width = 1;  // of lines, or the diameter of dots; > 0
 

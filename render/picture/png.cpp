@@ -107,8 +107,8 @@ void pack_row(std::span<const std::uint8_t> indices, const StoredPalette& palett
 
 }  // namespace
 
-// Everything that libpng is to write, ready beforehand: between its jumps there must be nothing
-// with a destructor.
+// Everything that libpng is to write, prepared beforehand: no object with a destructor may be
+// created where libpng may jump out by longjmp.
 struct PngJob {
   int width = 0;
   int height = 0;
@@ -216,7 +216,7 @@ void on_write(png_structp png, png_bytep data, std::size_t size) {
 
 void on_flush(png_structp) {}
 
-// False if libpng jumped out. Has nothing to destroy, so jumping leaks nothing.
+// False if libpng jumped out by longjmp. Has no objects to destroy, so nothing leaks.
 bool write(png_structp png, png_infop info, PngJob& job) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, &job, on_write, on_flush);

@@ -12,7 +12,7 @@ namespace trapeze {
 
 struct PngJob;
 
-/// Encodes pictures one after the other, in memory that it keeps.
+/// Encodes pictures one after the other, with working memory for reuse.
 ///
 /// An indexed picture gets the smallest palette (1, 2, 4 or 8 bits a pixel, opacities in tRNS), any
 /// other is RGB if it is opaque and else RGBA. No pixel changes, except that wholly transparent

@@ -1,4 +1,4 @@
-// Pictures to lossless WebP, where libwebp was there when this was built.
+// Pictures to lossless WebP, if built with libwebp.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace trapeze {
 
-/// Whether encode_webp() can be called.
+/// Whether this was built with libwebp; only then may encode_webp() be called.
 bool has_webp();
 
 /// No pixel changes, hidden colours included. Throws std::runtime_error if the picture has no

@@ -1,4 +1,4 @@
-// Instead of webp.cpp where there is no libwebp.
+// Replaces webp.cpp in builds without libwebp.
 #include <stdexcept>
 
 #include "render/picture/webp.h"

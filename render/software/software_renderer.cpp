@@ -100,7 +100,7 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
   const Point left_lower = mesh.vertices[left.lower];
   const Point right_upper = mesh.vertices[right.upper];
   const Point right_lower = mesh.vertices[right.lower];
-  // Either side may be the western one: where they have changed places, the area is negative.
+  // Either side may be the western one: where they are swapped, the area is negative.
   if (frame.x(std::max({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) <= 0) return;
   if (frame.x(std::min({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) >= frame.width)
     return;
@@ -127,8 +127,8 @@ void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y
   }
 }
 
-// Off the picture an edge counts as if it ran along the border that it is beyond: what is right of
-// it is then the whole row, or nothing.
+// Where an edge is off the picture, it counts as if it ran along the border that it is beyond: the
+// whole row is to its right then, or nothing.
 void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
   const double width = width_;
   const Piece clamped{std::clamp(piece.x_top, 0.0, width), piece.y_top,
@@ -201,7 +201,7 @@ void SoftwareRenderer::add_row(int row, double x_from, double x_to, double heigh
   }
 }
 
-// Sums rows up and leaves the differences cleared for the next picture.
+// Sums the rows and clears the differences for the next picture.
 void SoftwareRenderer::resolve(Mask& out) {
   for (int row = 0; row < height_; ++row) {
     Touched& touched = touched_[static_cast<std::size_t>(row)];

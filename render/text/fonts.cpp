@@ -59,7 +59,7 @@ FontName parse_font_name(const std::string& name) {
   return is_number ? FontName{name.substr(0, sign), number} : FontName{name};
 }
 
-/// Null, or what keeps a font from being used.
+/// The reason why a font cannot be used; null if it can.
 const char* find_fault(FT_Face face) {
   if (FT_IS_SCALABLE(face) == 0) return "has no outlines, only pictures of fixed sizes";
   if (FT_Select_Charmap(face, FT_ENCODING_UNICODE) != 0) return "does not tell its characters";
@@ -152,7 +152,7 @@ class Fonts::Faces {
   }
   bool is_empty() const { return faces_.empty(); }
 
-  /// To be held as long as faces are used.
+  /// To be locked as long as faces are used.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
   ShapedLine shape(std::string_view line, int size) {
@@ -199,7 +199,7 @@ class Fonts::Faces {
     return layout;
   }
 
-  /// Of a character with all that belongs to it.
+  /// Of a character with its marks.
   static std::size_t end_of_cluster(const std::u32string& text, std::size_t begin) {
     std::size_t end = begin + 1;
     while (end < text.size() && following_of(text[end]) != Following::none) ++end;

@@ -1,16 +1,16 @@
-// Lines of text in a picture, in whatever script: brought in order by FriBidi, shaped by HarfBuzz
-// (both through Raqm) and drawn by FreeType.
+// Draws lines of text, in any script, into a picture: reordered by FriBidi, shaped by HarfBuzz
+// (both through Raqm) and rasterized by FreeType.
 //
-// Fonts are files, in the order in which they are asked: what is drawn then depends on nothing but
-// these files. By family names, fontconfig would answer with some font even to a name that is
-// wrong, by rules and caches that differ from machine to machine, which a container may not have.
+// Fonts are named by their files, in order of fallback, so that what is drawn depends on these
+// files only. For a family name, fontconfig would return some font even if the name is wrong, by
+// rules and caches that differ from machine to machine and that a container may lack.
 //
-// A character is drawn in the first font that has it together with the marks that follow it. One
-// that no font has is the first font's sign for that, mostly a box.
+// A character is drawn in the first font that has it together with the marks that follow it. A
+// character that no font has is drawn as the first font's missing glyph, usually a box.
 //
-// Thread-safety: const methods may be called from any thread. Faces of FreeType are for one thread
-// at a time, so callers take turns at a mutex, with kMostCharacters at most a turn. Fonts are added
-// before others use them.
+// Thread-safety: const methods may be called from any thread. A FreeType face may be used by one
+// thread at a time, so calls are serialized by a mutex, which is held for at most kMostCharacters
+// at a time. Fonts must be added before other threads use the object.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@
 namespace trapeze {
 
 struct TextStyle {
-  int size = 12;  // pixels of the em square, 1 to kMostTextSize; twice as many, twice as wide
+  int size = 12;  // side of the em square in pixels, 1 to kMostTextSize
   Rgba colour;
 };
 
@@ -31,30 +31,30 @@ constexpr int kMostTextSize = 256;
 
 class Fonts {
  public:
-  /// What is longer is cut off there: work is bounded, whatever the text.
+  /// Longer lines are truncated, so that the work is bounded for any text.
   static constexpr std::size_t kMostCharacters = 512;
 
-  /// There are none: every text is empty.
+  /// Without fonts; every text then has no width.
   Fonts();
   ~Fonts();
   Fonts(const Fonts&) = delete;
   Fonts& operator=(const Fonts&) = delete;
 
-  /// Adds a font behind the others: a file of outlines (TrueType, OpenType, Type 1 ...), and of
-  /// a collection "FILE#N", its font number N from 0. Throws std::runtime_error, which names
-  /// the file, if there is no such file or its font cannot be used.
+  /// Adds a font of the lowest priority so far: the name of a file of outlines (TrueType, OpenType,
+  /// Type 1 ...), or "FILE#N" for font N, from 0, of a collection. Throws std::runtime_error, which
+  /// names the file, if there is no such file or its font cannot be used.
   void add(const std::string& file);
   bool is_empty() const;
 
-  /// How wide a line is, in pixels, rounded up. `line` is UTF-8, read as characters_of_line() does.
+  /// The width of a line in pixels, rounded up. `line` is UTF-8, read as characters_of_line() does.
   int width_of(std::string_view line, int size) const;
 
-  /// The line, or so much of its beginning as with an ellipsis is no wider than `width` pixels; the
-  /// ellipsis alone may be wider.
+  /// The line if it is at most `width` pixels wide, or else the longest beginning of it that is
+  /// with an ellipsis; an ellipsis alone if none is.
   std::string fitted(std::string_view line, int size, int width) const;
 
-  /// Draws a line from the column `left` on, its base line being the upper side of row `base`.
-  /// What lies outside of the picture is left out. `picture` is not indexed.
+  /// Draws a line of text that begins at column `left`, its baseline being the upper side of row
+  /// `base`. It is clipped to the picture. `picture` is not indexed.
   void draw(std::string_view line, int left, int base, const TextStyle& style,
             Picture& picture) const;
 

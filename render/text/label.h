@@ -1,4 +1,4 @@
-// A line of text on a plate of its own.
+// A line of text on a white background.
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,9 @@
 
 namespace trapeze {
 
-/// Draws a line of text on a plate of white, to be read on any ground; `left` and `top` are those
-/// of the plate. Nothing is drawn if the text has no width. `picture` is not indexed.
+/// Draws a line of text on a white rectangle, so that it is legible on any picture. `left` and
+/// `top` are the column and the row of the rectangle's north-west pixel. Nothing is drawn if the
+/// text has no width. `picture` is not indexed.
 void draw_label(std::string_view line, int left, int top, const TextStyle& style,
                 const Fonts& fonts, Picture& picture);
 

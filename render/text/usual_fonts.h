@@ -1,4 +1,4 @@
-// The fonts that are taken where none are named.
+// The default fonts.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace trapeze {
 
-/// Of the fonts of Debian's packages fonts-dejavu-core (Latin, Greek, Cyrillic, Arabic, Hebrew and
-/// more), fonts-noto-core (most other scripts in use) and fonts-noto-cjk (Chinese, Japanese,
-/// Korean) the files that are there, as Fonts::add() takes them, in a good order of fallback.
+/// The font files that are installed, of those in Debian's packages fonts-dejavu-core (Latin,
+/// Greek, Cyrillic, Arabic, Hebrew and more), fonts-noto-core (most other scripts in use) and
+/// fonts-noto-cjk (Chinese, Japanese, Korean); as Fonts::add() takes them, in order of fallback.
 std::vector<std::string> usual_fonts();
 
 }  // namespace trapeze

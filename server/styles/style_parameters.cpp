@@ -195,7 +195,7 @@ constexpr std::array kParameters = {
                    .default_text = "each layer's own style",
                    .is_per_layer = false,
                    .description = "a style of the configuration, or one that was posted to "
-                                  "/styles; what the query sets beside it goes before it"},
+                                  "/styles; other parameters of the query override it"},
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
                    .type = Type::word,

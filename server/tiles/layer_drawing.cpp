@@ -146,7 +146,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const Featur
   for (const ClassDrawing* drawing : by_number_) {
     if (drawing != nullptr) add_edges(drawing->ranges, drawing->number);
   }
-  layer_->select_level_edges(selection.box, selection.level, tools.ranges);
+  layer_->select_horizontal_edges(selection.box, selection.level, tools.ranges);
   std::vector<std::vector<TrapezoidRange>> by_class(style().paints.size());
   for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
     const std::uint8_t number = classes == nullptr ? 0 : (*classes)[layer_->feature_of(i)];

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> edges_of(const Layer& layer, Level level, std::uint32
   std::vector<TrapezoidRange> ranges;
   layer.select({box, level, kLastLevel, SmallPolygons::drop}, ranges);
   add(ranges);
-  layer.select_level_edges(box, level, ranges);
+  layer.select_horizontal_edges(box, level, ranges);
   add(ranges);
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());

@@ -177,9 +177,10 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
     if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
     if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
     if (plan.debug.junctions) {
-      std::vector<TrapezoidRange> level_edges;
-      layer.select_level_edges(around.box(), paint.level, level_edges);
-      mark_junctions(layer.mesh(), ranges, level_edges, feature_of, view, kJunctionColour, picture);
+      std::vector<TrapezoidRange> horizontal_edges;
+      layer.select_horizontal_edges(around.box(), paint.level, horizontal_edges);
+      mark_junctions(layer.mesh(), ranges, horizontal_edges, feature_of, view, kJunctionColour,
+                     picture);
     }
   }
   if (!plan.debug.tile) return;

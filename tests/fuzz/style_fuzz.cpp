@@ -89,7 +89,7 @@ void check_defaults(const StyleQuery& style) {
       for (const StyleSetting& setting : style.settings()) {
         if (setting.layer != layer) continue;
         require(format_value(*full.find(layer, setting.parameter)) == format_value(setting.value),
-                "a default goes before what is set");
+                "a default overrides what is set");
       }
     }
   }

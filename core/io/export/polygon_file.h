@@ -16,7 +16,7 @@
 
 namespace trapeze {
 
-/// Belongs to one thread. What is not finished is removed.
+/// Belongs to one thread. An unfinished file is removed.
 class PolygonFile {
  public:
   /// Begins the file; see export_layer() for formats, fields and errors. `source` must outlive it.
@@ -34,7 +34,7 @@ class PolygonFile {
   void write(const OGRFeature& feature, std::size_t layer_index,
              std::unique_ptr<OGRGeometry> geometry);
 
-  /// Completes the file, reads it again to see that it is whole, and gives it its name.
+  /// Completes the file, reads it again to verify that it is complete, and renames it.
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-// Files that are there as a whole or not at all.
+// Files that are written completely or not at all.
 #pragma once
 
 #include <cstddef>

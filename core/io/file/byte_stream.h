@@ -37,7 +37,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Throws std::invalid_argument where the bytes end before what is asked for does.
+/// Throws std::invalid_argument if fewer bytes remain than are asked for.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -53,7 +53,7 @@ class ByteReader {
     const auto bytes = take_bytes(take<std::uint64_t>());
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
-  /// A number of things to follow, each of at least `least_bytes`.
+  /// The number of items that follow, each of at least `least_bytes`.
   std::size_t take_count(std::size_t least_bytes) {
     const auto count = take<std::uint64_t>();
     if (count > rest_.size() / least_bytes) fail();

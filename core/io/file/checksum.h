@@ -1,4 +1,5 @@
-// A fast 64-bit checksum (XXH3) against accidents; it does not hinder anybody who means it.
+// A fast 64-bit checksum (XXH3) against accidental damage; it is no protection against
+// intent.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,8 @@ namespace trapeze {
 
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
-/// Of all of a file. Throws std::runtime_error that names the path if it cannot be read.
+/// The checksum of a whole file. Throws std::runtime_error that names the path if it cannot be
+/// read.
 std::uint64_t checksum_of_file(const std::string& path);
 
 template <typename T>

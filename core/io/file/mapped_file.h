@@ -8,7 +8,7 @@
 namespace trapeze {
 
 /// Must not be written to while it is mapped; replacing it (by rename) or removing it does no harm.
-/// If it is cut off all the same, what is missing reads as zeros, and is_whole() is false.
+/// If it is truncated nevertheless, the missing bytes read as zeros, and is_whole() is false.
 /// Thread-safety: any number of threads may read.
 class MappedFile {
  public:
@@ -18,7 +18,7 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Begins at the border of a page.
+  /// Begins at a page boundary.
   std::span<const std::byte> bytes() const { return bytes_; }
   /// Whether the file is still as long as it was.
   bool is_whole() const;

@@ -3,9 +3,9 @@
 //
 //   header, directory, padding | section, padding | section, padding | ...
 //
-// Every section begins at a multiple of 64 bytes, at once after the one before: where it lies
-// follows from the counts before it and is not stored. Paddings are zero, and are looked at, so
-// that no byte may change unnoticed. Numbers have the byte order of the machine that wrote them.
+// Every section begins at the next multiple of 64 bytes after the previous one: its place follows
+// from the counts before it and is not stored. Padding is zero and is checked, so that no byte can
+// change unnoticed. Numbers have the byte order of the machine that wrote them.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@
 
 namespace trapeze {
 
-/// To be raised when header, directory, the sections or the description in them change.
+/// To be incremented when header, directory, the sections or the description in them change.
 constexpr std::uint32_t kPreparedVersion = 4;
 
-/// As in PNG, what text conversion would spoil.
+/// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
 constexpr std::uint32_t kByteOrderMark = 0x01020304;
 constexpr std::size_t kSectionAlignment = 64;
@@ -72,17 +72,17 @@ struct DirectoryEntry {
   std::uint64_t checksum = 0;
 };
 
-/// A file that is no prepared one, damaged, or of another version; the words do not name it yet.
+/// The file is not a prepared one, is damaged, or is of another version. The message does not
+/// contain its name.
 class PreparedFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Whether `path` is a file that begins as prepared ones do. Never throws.
+/// Whether `path` is a file that begins like a prepared file. Never throws.
 bool is_prepared_file(const std::string& path);
 
-/// Collects sections and puts the bytes of a file together from them; looks at memory of the
-/// caller until then.
+/// Collects sections and writes them as a file; until then it holds views of the caller's memory.
 class SectionWriter {
  public:
   template <typename T>
@@ -91,7 +91,7 @@ class SectionWriter {
     add_bytes({kind, sizeof(T), items.size(), 0}, std::as_bytes(items));
   }
 
-  /// Writes it all, see write_atomically.
+  /// Writes the file, see write_atomically.
   void write(const std::string& path, std::uint64_t fingerprint) const;
 
  private:
@@ -101,12 +101,12 @@ class SectionWriter {
   std::vector<std::span<const std::byte>> bytes_;
 };
 
-/// Hands out the sections of a file in their order. Trusts nothing: nothing is handed out that does
-/// not lie within the file. Throws PreparedFileError.
+/// Reads the sections of a file in their order. The file is not trusted: no section that is
+/// returned reaches beyond its end. Throws PreparedFileError.
 class SectionReader {
  public:
   /// Checks header, directory and, on all cores, the checksum of every section. `file` begins at a
-  /// multiple of 64 bytes and must outlive what is taken from it.
+  /// multiple of 64 bytes and must outlive the sections taken from it.
   explicit SectionReader(std::span<const std::byte> file);
 
   std::uint64_t fingerprint() const { return header_.fingerprint; }
@@ -118,7 +118,7 @@ class SectionReader {
     const std::span<const std::byte> bytes = take_bytes(kind, sizeof(T));
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
-  /// There must be no section left.
+  /// Checks that no section remains.
   void finish() const;
 
  private:

@@ -103,7 +103,7 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
       checksum_of(a.lifespans),
       checksum_of(a.feature_of),
       checksum_of(a.polygon_index),
-      checksum_of(a.level_edge_index),
+      checksum_of(a.horizontal_edge_index),
       checksum_of(a.mote_index),
       checksum_of(a.merged_mote_index),
       checksum_of(a.grains),

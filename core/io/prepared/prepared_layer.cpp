@@ -125,7 +125,7 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   for (const std::uint64_t sum : {size.vertices, size.trapezoids, size.edges, size.motes}) {
     out.add(sum);
   }
-  out.add(numbers.level_edges);
+  out.add(numbers.horizontal_edges);
   out.add(numbers.single_motes);
   write_fields(numbers.fields, out);
 }
@@ -144,7 +144,7 @@ LayerArrays read_numbers(ByteReader& in) {
   for (auto* sum : {&size.vertices, &size.trapezoids, &size.edges, &size.motes}) {
     *sum = in.take<std::uint64_t>();
   }
-  numbers.level_edges = in.take<std::uint64_t>();
+  numbers.horizontal_edges = in.take<std::uint64_t>();
   numbers.single_motes = in.take<std::uint64_t>();
   numbers.fields = read_fields(in);
   return numbers;
@@ -178,7 +178,7 @@ void add_arrays(const LayerArrays& a, SectionWriter& out) {
   out.add(SectionKind::lifespans, a.lifespans);
   out.add(SectionKind::feature_of, a.feature_of);
   out.add(SectionKind::polygon_index, a.polygon_index);
-  out.add(SectionKind::level_edge_index, a.level_edge_index);
+  out.add(SectionKind::level_edge_index, a.horizontal_edge_index);
   out.add(SectionKind::mote_index, a.mote_index);
   out.add(SectionKind::merged_mote_index, a.merged_mote_index);
   out.add(SectionKind::grains, a.grains);
@@ -202,7 +202,7 @@ void take_arrays(SectionReader& in, LayerArrays& a) {
   a.lifespans = in.take<Lifespan>(SectionKind::lifespans);
   a.feature_of = in.take<std::uint32_t>(SectionKind::feature_of);
   a.polygon_index = in.take<MeshIndex::Entry>(SectionKind::polygon_index);
-  a.level_edge_index = in.take<MeshIndex::Entry>(SectionKind::level_edge_index);
+  a.horizontal_edge_index = in.take<MeshIndex::Entry>(SectionKind::level_edge_index);
   a.mote_index = in.take<MeshIndex::Entry>(SectionKind::mote_index);
   a.merged_mote_index = in.take<MeshIndex::Entry>(SectionKind::merged_mote_index);
   a.grains = in.take<FeatureGrain>(SectionKind::grains);

@@ -18,7 +18,7 @@ namespace trapeze {
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
                          const SourceStamp& source);
 
-/// What a prepared layer is asked to be.
+/// The demands on a prepared layer.
 struct PreparedDemands {
   std::optional<WeightRule> weights;  // unset: any
   std::string source;  // what it must have been prepared from; empty: what it names itself
@@ -29,16 +29,15 @@ struct PreparedDemands {
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large
 /// arrays stay in the file, where all processes share them.
 ///
-/// Every byte is looked at, on all cores, before this returns (15 ms for 40 MB on two): checksums
-/// tell what is damaged by accident, and all that leads from one place to another is checked, so
-/// that even a file made to do harm is not read beyond its end. Throws std::runtime_error that
-/// names the path and says what to do if the file is damaged, of another version of Trapeze,
-/// prepared otherwise than demanded, or older than its source. A source that is not there is not
-/// missed.
+/// Every byte is checked, on all cores, before this returns (15 ms for 40 MB on two cores):
+/// checksums detect accidental damage, and every index is checked, so that even a malicious file is
+/// not read beyond its end. Throws std::runtime_error that names the path and says what to do if
+/// the file is damaged, of another version of Trapeze, prepared otherwise than demanded, or older
+/// than its source. The source itself need not exist.
 LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands = {});
 
 /// The same of a file in memory, kept by `memory` and beginning at a multiple of 64 bytes; its
-/// source and its fingerprint are not looked at. Throws std::exception.
+/// source and its fingerprint are not checked. Throws std::exception.
 LoadedLayer layer_of_prepared_bytes(std::span<const std::byte> bytes,
                                     std::shared_ptr<const void> memory);
 

@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// Fields are joined by name, in the order in which they are met; a field that is of different
+/// Fields are joined by name, in the order in which they first occur; a field that is of different
 /// types in different layers becomes text. Whole numbers, reals and text are kept as they are;
 /// dates become ISO 8601 text, lists JSON, binary hexadecimal. Text that is no UTF-8 is taken for
 /// ISO 8859-1.
@@ -35,7 +35,8 @@ class AttributeReader {
   const std::vector<std::size_t>& fields_of(std::size_t layer) const { return field_of_[layer]; }
 
   /// The values of one feature of a layer, one for each of fields(), null where the layer lacks
-  /// the field. They look at memory of the feature and of this reader, until the next call.
+  /// the field. They are views of memory of the feature and of this reader, valid until the next
+  /// call.
   const std::vector<Value>& read(const OGRFeature& feature, std::size_t layer);
 
  private:
@@ -49,7 +50,7 @@ class AttributeReader {
   std::vector<Field> fields_;
   std::vector<std::vector<std::size_t>> field_of_;  // by layer, by index in the layer
   std::vector<Value> values_;
-  std::vector<std::string> texts_;  // by field: words that were made for the row at hand
+  std::vector<std::string> texts_;  // by field: text made for the current row
 };
 
 }  // namespace trapeze

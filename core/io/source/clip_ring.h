@@ -1,6 +1,7 @@
 // Sutherland-Hodgman clipping of a closed ring against half-planes parallel to the axes.
 //
-// A clipped ring may run along the clip line back and forth; even-odd makes nothing of that.
+// A clipped ring may run along the clip line back and forth; such parts enclose no
+// area by even-odd.
 #pragma once
 
 #include <vector>
@@ -24,7 +25,7 @@ struct ClipWindow {
   double max_y = 0;
 };
 
-/// Cuts away what lies outside of `window`; every vertex that is left lies inside or on its border,
+/// Removes the parts outside `window`; every remaining vertex lies inside or on its border,
 /// exactly. The cut of an edge does not depend on the edge's direction, so neighbours that share it
 /// stay neighbours. `scratch` keeps its memory between calls.
 void clip_ring(PositionRing& ring, const ClipWindow& window, PositionRing& scratch);

@@ -32,13 +32,13 @@ struct SourceFeature {
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming the source, if it cannot be opened or has not what is
+  /// Throws std::runtime_error, naming the source, if it cannot be opened or lacks what is
   /// selected.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
   const std::vector<SourceLayer>& layers() const { return layers_; }
-  /// Features of layers that cannot hold polygons and are not given out by next().
+  /// The number of features in layers that cannot hold polygons; next() skips them.
   std::size_t passed_over() const { return passed_over_; }
 
   /// Reads the next feature; false at the end. Throws SourceError if the source breaks off.
@@ -58,7 +58,7 @@ class FeatureSource {
 
   ReadingSettings settings_;
   GDALDatasetUniquePtr dataset_;
-  // OSM mixes its layers in one stream, which can be read only as it comes.
+  // The layers of an OSM file are mixed in one stream, which can only be read in its own order.
   bool is_interleaved_ = false;
   std::vector<SourceLayer> layers_;
   std::size_t passed_over_ = 0;

@@ -1,4 +1,4 @@
-// What GDAL says on this thread, caught instead of printed.
+// GDAL's messages of this thread, caught instead of printed.
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ class GdalMessages {
   GdalMessages(const GdalMessages&) = delete;
   GdalMessages& operator=(const GdalMessages&) = delete;
 
-  /// Forgets what was said so far.
+  /// Forgets all messages so far.
   void clear() { state_ = {}; }
   bool has_failure() const { return state_.failed; }
-  /// The first failure; failing that, the first warning; empty if all was silent.
+  /// The first error; if there is none, the first warning; empty if there was neither.
   const std::string& text() const {
     return state_.failed ? state_.first_failure : state_.first_warning;
   }

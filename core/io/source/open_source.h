@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// Something is wrong with a source as a whole; the words do not name it yet.
+/// Something is wrong with a source as a whole. The message does not contain its name.
 class SourceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,9 +25,9 @@ GDALDatasetUniquePtr open_source(const std::string& path);
 /// find out, and whose outer rings run clockwise by definition of the format.
 bool has_clockwise_shells(const std::string& driver);
 
-/// While it lives, GDAL drivers on this thread hand out rings as they are stored instead of working
+/// While it lives, GDAL drivers on this thread return rings as they are stored instead of working
 /// out which ring lies in which (quadratic in the rings; even-odd makes it pointless), take GeoJSON
-/// features of any size, and put temporary files where the system wants them.
+/// features of any size, and put temporary files into the system's folder for them.
 class ReadingSettings {
  public:
   ReadingSettings();

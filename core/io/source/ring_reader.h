@@ -34,7 +34,7 @@ bool has_polygons(const OGRGeometry& geometry);
 /// Turns geometries of one CRS into rings: curves are linearised, collections taken apart, points
 /// and lines and the third dimension ignored; positions are projected, clipped to the Web Mercator
 /// square, and snapped to the nearest cell, without consecutive duplicates. What lies beyond the
-/// 180th meridian comes back in on the other side. Rings are neither sorted nor judged.
+/// 180th meridian comes back in on the other side. Rings are neither sorted nor validated.
 ///
 /// Belongs to the thread that made it.
 class RingReader {
@@ -64,12 +64,12 @@ class RingReader {
   Options options_;
   std::unique_ptr<LonLatTransform> transform_;  // for the kinds that need one
 
-  // Of the feature at hand, ring after ring: coordinates of the source, then degrees or metres.
+  // Of the current feature, ring after ring: coordinates of the source, then degrees or metres.
   std::vector<double> x_;
   std::vector<double> y_;
   std::vector<std::size_t> ends_;
   std::vector<double> source_x_;
-  // Of the ring at hand: degrees, then cells.
+  // Of the current ring: degrees, then cells.
   PositionRing ring_;
   PositionRing clipped_;
   PositionRing scratch_;

@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// How the coordinates of a layer are to be understood. Immutable; any number of threads may read.
+/// The meaning of the coordinates of a layer. Immutable; any number of threads may read.
 struct SourceCrs {
   enum class Kind {
     degrees,          // longitude, latitude on WGS 84

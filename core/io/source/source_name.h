@@ -1,4 +1,4 @@
-// What a source is called where people can read it.
+// The name of a source for messages and documents.
 #pragma once
 
 #include <string>

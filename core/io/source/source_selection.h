@@ -1,4 +1,4 @@
-// What of a source is taken.
+// The part of a source that is read.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace trapeze {
 struct SourceSelection {
   std::string layer = {};  // the only layer, or table, that is read; empty: all of the source
   /// A condition on features in SQL, as GDAL knows it; of a database, as the database does. It is
-  /// for the operator to write, never for those who ask for tiles. Empty: all features.
+  /// written by the operator and never comes from a request. Empty: all features.
   std::string where = {};
   std::optional<std::vector<std::string>> attributes = {};  // those that are kept; unset: all
 

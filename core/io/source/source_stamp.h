@@ -1,4 +1,4 @@
-// By what a source is known again: the files it consists of, with size, time and contents.
+// Identifies the state of a source: the files it consists of, with size, time and contents.
 #pragma once
 
 #include <cstdint>

@@ -67,17 +67,17 @@ std::set<Segment> boundary_at(const History& h, Level level) {
     add(h.trapezoids[i].left);
     add(h.trapezoids[i].right);
   }
-  for (const LevelEdge& level_edge : h.level_edges) {
-    if (!level_edge.lifespan.contains(level)) continue;
-    const MeshEdge& edge = h.edges[level_edge.edge];
+  for (const HorizontalEdge& horizontal_edge : h.horizontal_edges) {
+    if (!horizontal_edge.lifespan.contains(level)) continue;
+    const MeshEdge& edge = h.edges[horizontal_edge.edge];
     EXPECT_EQ(h.vertices[edge.upper].y, h.vertices[edge.lower].y);
-    add(level_edge.edge);
+    add(horizontal_edge.edge);
   }
   return segments;
 }
 
-TEST(History, SidesOfTrapezoidsAndLevelEdgesAreTheWholeBoundaryAtEveryLevel) {
-  std::size_t level_edges = 0;
+TEST(History, SidesOfTrapezoidsAndHorizontalEdgesAreTheWholeBoundaryAtEveryLevel) {
+  std::size_t horizontal_edges = 0;
   for (unsigned seed = 0; seed < 140; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     GraphBuilder builder;
@@ -87,14 +87,14 @@ TEST(History, SidesOfTrapezoidsAndLevelEdgesAreTheWholeBoundaryAtEveryLevel) {
     AdaptableGraph adaptable(graph, {});
     History history;
     HistoryRecorder().record(graph, {}, history);
-    level_edges += history.level_edges.size();
+    horizontal_edges += history.horizontal_edges.size();
     for (int level = 0; level <= kLastLevel; ++level) {
       adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
       ASSERT_EQ(boundary_at(history, static_cast<Level>(level)), boundary_of(adaptable.graph()))
           << "level " << level;
     }
   }
-  EXPECT_GT(level_edges, 100U);
+  EXPECT_GT(horizontal_edges, 100U);
 }
 
 TEST(History, NoVersionLivesForNoTime) {

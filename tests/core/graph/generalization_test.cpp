@@ -1,5 +1,5 @@
 // The generalization operators, one by one: every prototype of the paper's Figures 4 and 5, and the
-// cases that a map with an outside, level vertices and touching rings adds.
+// cases that a graph with an outside, vertices of the same y and touching rings adds.
 //
 // Trapezoids are written "A-B AC|DB": top and bottom vertex, left and right edge. The paper draws
 // trapezoids before and after; so do these tests, and each removal is checked for all that has to
@@ -67,7 +67,7 @@ class Editor : public NamedPolygon {
 
 // ---- Figure 4: vertical generalization ----
 
-// The tip of a polygon goes with its vertex V. What is below it keeps its levels: its top side,
+// The tip of a polygon goes with its vertex V. The trapezoid below keeps its height: its top side,
 // which had two vertices A and B, was that of the tip and is now the boundary.
 //
 //            V
@@ -83,7 +83,7 @@ TEST(Figure4, a_EliminationOfTheTipAtTheTop) {
   EXPECT_EQ(p.inside(), (Names{"A-B AD|AB", "B-D AD|BC", "D-C DC|BC"}));
 }
 
-// Two trapezoids that share the level of V, its only vertex, become one.
+// Two trapezoids that share the line through V, its only vertex, become one.
 //
 //      A---.                    A---.
 //      |    '-B                 |    '-B
@@ -127,8 +127,8 @@ TEST(Figure4, c_EliminationOfTheTipAtTheBottom) {
   EXPECT_EQ(p.inside(), (Names{"D-C DA|DC", "C-A DA|CB", "A-B AB|CB"}));
 }
 
-// The neighbours of V are not level: the tip goes, and the trapezoid below it, whose top side ran
-// from A to the edge VB, becomes a triangle with its tip at A.
+// The neighbours of V have different y: the tip goes, and the trapezoid below it, whose top side
+// ran from A to the edge VB, becomes a triangle with its tip at A.
 //
 //           V
 //          / \                                      .
@@ -146,7 +146,7 @@ TEST(Figure4, d_DegenerationUnderATipAtTheTop) {
 }
 
 // A side with two vertices, V and W, shared by the trapezoids above and below it; W is kept. Both
-// keep their levels and get the edge AD: an adjustment. V-W without height is no more.
+// keep their height and get the edge AD: an adjustment. V-W without height no longer exists.
 //
 //        A--B                     A--B
 //       / T1 \                    |T1 \              .
@@ -204,8 +204,8 @@ TEST(Figure4, h_EliminationAtATwoVertexSideOfWhichBothGo) {
 
 // ---- Figure 5: horizontal generalization ----
 
-// Below the division at V hang two triangles side by side, with level tips A and B. Without V they
-// are one trapezoid; as V's level goes as well, so does the border to the trapezoid above it.
+// Below the division at V hang two triangles side by side, with tips A and B of the same y. Without
+// V they are one trapezoid; as the line through V goes too, it merges with the one above.
 //
 //      C-----------D              C-----------D
 //       \    T1   /                \         /
@@ -268,8 +268,8 @@ TEST(Figure5, d_AdjustmentMovesAJoinToTheNearerNeighbour) {
 
 // ---- What a vertex has to do with the rest of the boundary ----
 
-// A hole H begins at V, where the shell turns inwards. V goes from the shell, but H still ends the
-// level there: the two trapezoids on the hole's side are linked to it and not merged with each
+// A hole H begins at V, where the shell turns inwards. V goes from the shell, but H still holds the
+// line there: the two trapezoids on the hole's side are linked to it and not merged with each
 // other.
 //
 //    A-----------C            A-----------C

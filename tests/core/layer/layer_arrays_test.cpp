@@ -40,7 +40,7 @@ struct Copies {
         lifespans(a.lifespans.begin(), a.lifespans.end()),
         feature_of(a.feature_of.begin(), a.feature_of.end()),
         polygon_index(a.polygon_index.begin(), a.polygon_index.end()),
-        level_edge_index(a.level_edge_index.begin(), a.level_edge_index.end()),
+        horizontal_edge_index(a.horizontal_edge_index.begin(), a.horizontal_edge_index.end()),
         mote_index(a.mote_index.begin(), a.mote_index.end()),
         grains(a.grains.begin(), a.grains.end()),
         outline_points(a.outline_points.begin(), a.outline_points.end()),
@@ -56,7 +56,7 @@ struct Copies {
     a.lifespans = lifespans;
     a.feature_of = feature_of;
     a.polygon_index = polygon_index;
-    a.level_edge_index = level_edge_index;
+    a.horizontal_edge_index = horizontal_edge_index;
     a.mote_index = mote_index;
     a.grains = grains;
     a.outline_points = outline_points;
@@ -71,7 +71,7 @@ struct Copies {
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
   std::vector<MeshIndex::Entry> polygon_index;
-  std::vector<MeshIndex::Entry> level_edge_index;
+  std::vector<MeshIndex::Entry> horizontal_edge_index;
   std::vector<MeshIndex::Entry> mote_index;
   std::vector<FeatureGrain> grains;
   std::vector<Point> outline_points;
@@ -170,8 +170,8 @@ TEST(LayerArrays, AreRefusedInWordsWhereSomethingLeadsNowhere) {
       {[](Copies& c) { c.feature_of.pop_back(); }, "sums"},
       {[](Copies& c) { c.polygon_index.pop_back(); }, "index"},
       {[](Copies& c) { c.mote_index.emplace_back(); }, "index"},
-      {[](Copies& c) { c.level_edge_index.emplace_back(); }, "index"},
-      {[&](Copies& c) { c.rest.level_edges = far; }, "sums"},
+      {[](Copies& c) { c.horizontal_edge_index.emplace_back(); }, "index"},
+      {[&](Copies& c) { c.rest.horizontal_edges = far; }, "sums"},
       {[](Copies& c) { c.grains[2].row = 80; }, "grain of dust"},
       {[](Copies& c) { c.grains[2].born = kLastLevel + 1; }, "grain of dust"},
       {[](Copies& c) { c.grains[2].to.y = kGridMax + 1; }, "grain of dust"},

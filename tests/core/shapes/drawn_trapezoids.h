@@ -12,7 +12,7 @@
 
 namespace trapeze {
 
-/// A row of features, the levels of a trapezoid, and the ends of its left and right edge.
+/// A row of features, the top and bottom y of a trapezoid, and the ends of its left and right edge.
 using Drawn = std::tuple<std::uint32_t, int, int, int, int, int, int, int, int, int, int>;
 
 inline Drawn drawn(std::uint32_t row, int top, int bottom, Point lu, Point ll, Point ru, Point rl) {
@@ -35,7 +35,7 @@ inline std::multiset<Drawn> inside_of(const TrapezoidalGraph& g,
   return found;
 }
 
-/// Those of the history that live at this level.
+/// The trapezoids of the history that are alive at this level.
 inline std::multiset<Drawn> alive_at(const History& h, Level level) {
   std::multiset<Drawn> found;
   for (std::size_t i = 0; i < h.trapezoids.size(); ++i) {

@@ -72,7 +72,7 @@ inline Rings random_shape(unsigned seed) {
       }
       break;
     }
-    case 5: {  // squares on a small lattice: level edges, touching corners, shared edges
+    case 5: {  // squares on a lattice: horizontal edges, touching corners, shared edges
       for (int i = between(2, 14); i > 0; --i) {
         const int x = between(0, 8) * 5;
         const int y = between(0, 8) * 5;

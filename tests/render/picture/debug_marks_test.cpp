@@ -285,14 +285,14 @@ class ThreeFields {
   /// `fields`.
   Rows junctions(const std::string& fields) const {
     std::vector<TrapezoidRange> ranges;
-    std::vector<TrapezoidRange> level_edges;
+    std::vector<TrapezoidRange> horizontal_edges;
     for (std::uint32_t i = 0; i < trapezoids_.size(); ++i) {
       if (fields.find(kFieldOf[i]) == std::string::npos) continue;
-      (trapezoids_[i].left == trapezoids_[i].right ? level_edges : ranges).push_back({i, 1});
+      (trapezoids_[i].left == trapezoids_[i].right ? horizontal_edges : ranges).push_back({i, 1});
     }
     Picture picture = white_picture(15, 11);
     const auto field_of = [](std::uint32_t i) { return static_cast<std::uint32_t>(kFieldOf[i]); };
-    mark_junctions(mesh(), ranges, level_edges, field_of, view_of(picture), kBlack, picture);
+    mark_junctions(mesh(), ranges, horizontal_edges, field_of, view_of(picture), kBlack, picture);
     return drawing(picture);
   }
 
