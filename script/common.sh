@@ -1,5 +1,17 @@
-# What the scripts share; to be sourced. The first comment of a script is its help.
+# What the scripts share; to be sourced. The first comment of a script is its help. Ctrl-C ends a script with status
+# 130 and says so; what a script removes at its end (trap ... EXIT) is removed then, too.
 # shellcheck shell=bash
+
+progress_reporter=
+
+# Reached when the command in the foreground, which got the signal as well, has ended.
+end_interrupted() {
+  trap '' INT
+  [[ -z $progress_reporter ]] || kill "$progress_reporter" 2>/dev/null || true
+  printf '%s: interrupted\n' "${0##*/}" >&2
+  exit 130
+}
+trap end_interrupted INT
 
 # Prints the help and ends, if the first argument asks for it.
 help_if_asked() {
@@ -8,26 +20,32 @@ help_if_asked() {
   exit 0
 }
 
+# The last line that counts steps, as ninja's "[3/120] ...": what a compiler says may come after it. Else the last.
+last_step() {
+  grep -aE '^\[[0-9]+/[0-9]+\]' "$1" 2>/dev/null | tail -n 1 | grep . || tail -n 1 "$1" 2>/dev/null || true
+}
+
 # Ends with the process of that number. The builtin read waits, so that nothing outlives this.
 report_progress() {
   local name=$1 log=$2 of=$3 seconds=0 waiting last
   exec {waiting}<> <(:)
   while ! read -r -t 10 -u "$waiting" && kill -0 "$of" 2>/dev/null; do
     ((seconds += 10))
-    last=$(tail -n 1 "$log" 2>/dev/null | tr -cd '[:print:]' | cut -c 1-90)
+    last=$(last_step "$log" | tr -cd '[:print:]' | cut -c 1-90)
     printf '%s: %d s; %s (log: %s)\n' "$name" "$seconds" "$last" "$log"
   done
 }
 
-# with_progress NAME LOG COMMAND...: what the command says goes to the log; its last line is shown every ten
+# with_progress NAME LOG COMMAND...: what the command says goes to the log; its last step is shown every ten
 # seconds. Returns the command's status.
 with_progress() {
-  local name=$1 log=$2 reporter status=0
+  local name=$1 log=$2 status=0
   shift 2
   report_progress "$name" "$log" $$ &
-  reporter=$!
+  progress_reporter=$!
   "$@" >"$log" 2>&1 || status=$?
-  kill "$reporter" 2>/dev/null || true
-  wait "$reporter" 2>/dev/null || true
+  kill "$progress_reporter" 2>/dev/null || true
+  wait "$progress_reporter" 2>/dev/null || true
+  progress_reporter=
   return "$status"
 }

@@ -1,37 +1,16 @@
 // The commands of the program, one function each. They return the exit status: 0 if all is done, 1
 // if something failed or was found wrong. For what main reports they throw UsageError, which ends
-// with 2, or another std::exception, a file, a port, a renderer that does not work, which ends
-// with 1.
+// with 2, or another std::exception, which ends with 1: a file, a port or a renderer that does not
+// work.
 #pragma once
 
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "core/borders/coverage_groups.h"
-#include "core/layer/layer_options.h"
+#include "server/cli/option_values.h"
 #include "server/config/load_config.h"
 
 namespace trapeze {
-
-/// The command line asks for what no run of the program can do.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// None if the name is empty. Throws UsageError that says what --coverage takes.
-std::optional<CoverageMode> coverage_or_throw(const std::string& name);
-
-/// What is done about polygons that share borders.
-struct CoverageArguments {
-  std::string
-      mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
-  std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
-};
-/// Sets what is to become of a source. Throws UsageError that says what is wrong.
-void apply(const CoverageArguments& arguments, LayerOptions& options);
 
 struct ServeArguments {
   std::string config;                    // may be empty
@@ -39,7 +18,8 @@ struct ServeArguments {
   std::vector<std::string> files;        // instead of the layers of the configuration
   bool is_verbose = false;               // whatever log.level says
 };
-/// What is configured by the file, the environment and the command line.
+/// What is configured by the file, the environment and the command line. Throws if anything is
+/// wrong with it: UsageError if that is only the command line.
 LoadedConfig load_serve_config(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 

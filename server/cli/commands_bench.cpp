@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 
 namespace trapeze {
@@ -43,9 +44,10 @@ std::vector<std::string> names() {
 }
 
 [[noreturn]] void throw_unknown(const std::string& name) {
-  std::string text = "there is no benchmark '" + name + "' beside this program";
-  for (const std::string& known : names()) text.append("; there is ").append(known);
-  throw UsageError(text + "; build the release preset for all of them");
+  const std::vector<std::string> known = names();
+  std::string text = "there is no benchmark \"" + name + "\" beside this program";
+  for (const std::string& each : known) text.append("; there is ").append(each);
+  throw UsageError(text + "; build the release preset for all of them" + did_you_mean(name, known));
 }
 
 }  // namespace

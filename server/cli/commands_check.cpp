@@ -87,24 +87,9 @@ bool check_file(const std::string& file, const OpenOptions& how) {
 
 }  // namespace
 
-std::optional<CoverageMode> coverage_or_throw(const std::string& name) {
-  if (name.empty()) return std::nullopt;
-  const auto coverage = coverage_from_name(name);
-  if (!coverage) throw UsageError("--coverage takes auto, on or off");
-  return coverage;
-}
-
-void apply(const CoverageArguments& arguments, LayerOptions& options) {
-  options.coverage = coverage_or_throw(arguments.mode).value_or(kUsualCoverage);
-  options.close_gaps = arguments.close_gaps.value_or(0);
-  if (options.close_gaps > 0 && options.coverage == CoverageMode::off) {
-    throw UsageError("--close-gaps needs --coverage auto or on");
-  }
-}
-
 int run_check(const CheckArguments& arguments) {
   OpenOptions how;
-  how.coverage = coverage_or_throw(arguments.coverage.mode);
+  how.coverage = coverage_or_throw(arguments.coverage);
   how.close_gaps = arguments.coverage.close_gaps;
   bool is_all_read = true;
   for (const std::string& file : arguments.files) {

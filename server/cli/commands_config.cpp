@@ -24,12 +24,7 @@ int run_config_check(const std::string& path) {
 }
 
 int run_config_print(const ServeArguments& arguments) {
-  const LoadedConfig loaded = load_serve_config(arguments);
-  if (!loaded.problems.empty()) {
-    std::cerr << problems_text(loaded.problems) << '\n';
-    return 1;
-  }
-  std::cout << print_config(loaded);
+  std::cout << print_config(load_serve_config(arguments));
   return 0;
 }
 

@@ -1,11 +1,16 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/grid/tolerance.h"
 #include "core/grid/web_mercator.h"
 #include "core/io/export/export_layer.h"
+#include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
 
@@ -20,34 +25,36 @@ double epsilon_of(int zoom, double pixels) {
   return epsilon_of_level(nearest_level(pixels * cells_per_pixel));
 }
 
-template <class T>
-T known(const std::optional<T>& value, const char* words) {
-  if (!value) throw UsageError(words);
-  return *value;
-}
-
-std::optional<Topology> topology_from_name(const std::string& name) {
+Topology topology_or_throw(const std::string& name) {
   if (name == "strict") return Topology::strict;
   if (name == "fast") return Topology::fast;
-  return std::nullopt;
+  throw_wrong_word("--topology", name, {"strict", "fast"});
+}
+
+ExportCrs crs_or_throw(const std::string& name) {
+  const auto crs = export_crs_from_name(name);
+  if (!crs) throw_wrong_word("--crs", name, {"EPSG:4326", "EPSG:3857"});
+  return *crs;
+}
+
+void check_ending(const std::string& output) {
+  const std::vector<std::string> endings = {".fgb", ".gpkg", ".geojson"};
+  std::string ending = std::filesystem::path(output).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::ranges::find(endings, ending) != endings.end()) return;
+  throw UsageError(
+      fmt::format("--output takes a name that ends in .fgb (FlatGeobuf), .gpkg "
+                  "(GeoPackage) or .geojson (GeoJSON), given was \"{}\"{}",
+                  output, did_you_mean(ending, endings)));
 }
 
 ExportOptions options_from(const ExportArguments& arguments) {
-  if (arguments.zoom < 0 || arguments.zoom > kMaxZoom) {
-    throw UsageError(fmt::format("--zoom takes a whole number from 0 to {}", kMaxZoom));
-  }
-  if (!std::isfinite(arguments.simplify) || arguments.simplify < 0) {
-    throw UsageError("--simplify takes a number of pixels, 0 or more");
-  }
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
-  options.generalization.topology =
-      known(topology_from_name(arguments.topology), "--topology takes strict or fast");
-  options.generalization.weights =
-      known(weight_rule_from_name(arguments.weights),
-            "--weights takes douglas-peucker, raised-parents or effective-area");
+  options.generalization.topology = topology_or_throw(arguments.topology);
+  options.generalization.weights = weights_or_throw(arguments.weights);
   apply(arguments.coverage, options.generalization);
-  options.crs = known(export_crs_from_name(arguments.crs), "--crs takes EPSG:4326 or EPSG:3857");
+  options.crs = crs_or_throw(arguments.crs);
   options.overwrite = arguments.overwrite;
   return options;
 }
@@ -77,6 +84,7 @@ void print_report(const ExportReport& report, const std::string& output) {
 }  // namespace
 
 int run_export(const ExportArguments& arguments) {
+  check_ending(arguments.output);
   ExportOptions options = options_from(arguments);
   ExportReport report;
   {

@@ -19,21 +19,15 @@ namespace {
 
 constexpr const char* kExtension = ".trapeze";
 
-WeightRule weights_or_throw(const std::string& name) {
-  const auto rule = weight_rule_from_name(name);
-  if (!rule) {
-    throw UsageError("--weights takes douglas-peucker, raised-parents or effective-area");
-  }
-  return *rule;
-}
-
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw std::runtime_error(fmt::format("--output takes a folder; {} cannot be one{}", folder,
-                                         error ? ": " + error.message() : ""));
+  if (std::filesystem::is_directory(folder)) return;
+  if (std::filesystem::exists(folder)) {
+    throw UsageError(fmt::format("--output takes a folder; {} is a file", folder));
   }
+  throw std::runtime_error(
+      fmt::format("the folder {} cannot be made: {}", folder, error.message()));
 }
 
 LoadedLayer load(const std::string& file, const LoadOptions& how) {
@@ -75,7 +69,7 @@ int run_prepare(const PrepareArguments& arguments) {
   how.generalization.weights = weights_or_throw(arguments.weights);
   apply(arguments.coverage, how.generalization);
   how.selection = arguments.selection;
-  const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
+  const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {

@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "render/picture/webp.h"
+#include "server/base/nearest_name.h"
 #include "server/base/url.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
@@ -18,27 +21,36 @@
 namespace trapeze {
 namespace {
 
-/// The value, or the problem thrown as a sentence for the command line.
+/// The value, or the problem with --style thrown as a sentence for the command line.
 template <typename T>
-T value_or_throw(Result<T> result) {
+T style_or_throw(Result<T> result) {
   if (!result) {
-    throw UsageError(
-        result.problem().value.empty()
-            ? result.problem().detail
-            : fmt::format("{} Given was \"{}\".", result.problem().detail, result.problem().value));
+    throw UsageError("--style: " +
+                     (result.problem().value.empty()
+                          ? result.problem().detail
+                          : fmt::format("{} Given was \"{}\".", result.problem().detail,
+                                        result.problem().value)));
   }
   return *std::move(result);
 }
 
-TileId tile_of_text(const std::string& text) {
+std::optional<TileId> tile_of_text(std::string_view text) {
   const std::size_t first = text.find('/');
   const std::size_t second = first == std::string::npos ? first : text.find('/', first + 1);
-  if (second == std::string::npos) {
-    throw UsageError(fmt::format("--tile takes Z/X/Y, given was \"{}\"", text));
-  }
-  const std::string_view view = text;
-  return value_or_throw(parse_tile_id(
-      view.substr(0, first), view.substr(first + 1, second - first - 1), view.substr(second + 1)));
+  if (second == std::string::npos) return std::nullopt;
+  auto tile = parse_tile_id(text.substr(0, first), text.substr(first + 1, second - first - 1),
+                            text.substr(second + 1));
+  if (!tile) return std::nullopt;
+  return *std::move(tile);
+}
+
+TileId tile_or_throw(const std::string& text) {
+  const auto tile = tile_of_text(text);
+  if (tile) return *tile;
+  throw UsageError(
+      fmt::format("--tile takes Z/X/Y, a zoom from 0 to {} and a column and a row from "
+                  "0 to 2^Z - 1, given was \"{}\"",
+                  kMaxZoom, text));
 }
 
 /// What the end of a file's name says.
@@ -47,22 +59,33 @@ TileFormat format_of(const std::string& path) {
   if (extension == ".png") return TileFormat::png;
   if (extension != ".webp") {
     throw UsageError(
-        fmt::format("--output takes a name that ends in .png or .webp, given was \"{}\"", path));
+        fmt::format("--output takes a name that ends in .png or .webp, given was \"{}\"{}", path,
+                    did_you_mean(extension, {".png", ".webp"})));
   }
   if (!has_webp()) throw UsageError("--output: this program was built without WebP; take .png");
   return TileFormat::webp;
 }
 
+/// A URL may carry names that mean nothing to a style; here they can only be mistakes.
+void check_names(const std::vector<QueryPair>& style, const std::vector<std::string>& layers) {
+  for (const auto& [name, value] : style) {
+    if (auto problem = unknown_parameter(name, layers)) {
+      throw UsageError("--style: " + problem->detail);
+    }
+  }
+}
+
 TileRequest make_request(const RenderArguments& arguments, const std::vector<LayerConfig>& layers) {
   TileRequest request;
   for (const LayerConfig& layer : layers) request.layers.push_back(layer.name);
-  request.tile = tile_of_text(arguments.tile);
+  request.tile = tile_or_throw(arguments.tile);
   request.scale = arguments.scale;
   request.format = format_of(arguments.output);
   const auto query = decode_query(arguments.style);
   if (!query) throw UsageError("--style takes a query string such as fill=red");
-  const auto expanded = value_or_throw(StyleBook().expand(*query));
-  request.style = value_or_throw(StyleQuery::parse(expanded, request.layers));
+  check_names(*query, request.layers);
+  const auto expanded = style_or_throw(StyleBook().expand(*query));
+  request.style = style_or_throw(StyleQuery::parse(expanded, request.layers));
   return request;
 }
 
@@ -76,13 +99,15 @@ void write_file(const std::string& path, const std::string& bytes) {
 }  // namespace
 
 int run_render(const RenderArguments& arguments) {
-  const std::vector<LayerConfig> layers = layers_of_files(arguments.files);
+  const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   const TileRequest request = make_request(arguments, layers);
   const auto kind = renderer_kind_from(arguments.renderer);
-  if (!kind) throw UsageError("--renderer takes auto, egl, osmesa or software");
+  if (!kind) {
+    throw_wrong_word("--renderer", arguments.renderer, {"auto", "egl", "osmesa", "software"});
+  }
   auto renderers = start_renderers({*kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
-  const TilePlan plan = value_or_throw(plan_tile(request, Dataset::load(layers)));
+  const TilePlan plan = style_or_throw(plan_tile(request, Dataset::load(layers)));
   const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();
   write_file(arguments.output, *tile.bytes);

@@ -29,13 +29,15 @@ bool is_of_command_line(const ConfigProblem& problem) {
   return problem.where.starts_with("--");
 }
 
+void throw_if_any(const std::vector<ConfigProblem>& problems) {
+  if (problems.empty()) return;
+  const std::string text = problems_text(problems);
+  if (std::ranges::all_of(problems, is_of_command_line)) throw UsageError(text);
+  throw std::runtime_error(text);
+}
+
 Config configure(const ServeArguments& arguments) {
   LoadedConfig loaded = load_serve_config(arguments);
-  if (!loaded.problems.empty()) {
-    const std::string text = problems_text(loaded.problems);
-    if (std::ranges::all_of(loaded.problems, is_of_command_line)) throw UsageError(text);
-    throw std::runtime_error(text);
-  }
   if (loaded.config.layers.empty()) {
     throw UsageError(arguments.config.empty()
                          ? "there is nothing to serve: name files, or a configuration with "
@@ -94,8 +96,9 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
   std::vector<ConfigOverride> overrides = environment_overrides(environ);
   overrides.insert(overrides.end(), arguments.settings.begin(), arguments.settings.end());
   LoadedConfig loaded = load_config(arguments.config, overrides);
+  throw_if_any(loaded.problems);
   if (arguments.files.empty()) return loaded;
-  loaded.config.layers = layers_of_files(arguments.files);
+  loaded.config.layers = layers_or_throw(arguments.files);
   for (const LayerConfig& layer : loaded.config.layers) {
     for (const char* key : {"name", "file", "title"}) {
       loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = "FILE";

@@ -5,13 +5,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/borders/gap_closing.h"
+#include "core/grid/web_mercator.h"
 #include "server/base/build_id.h"
 #include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
@@ -37,11 +40,10 @@ constexpr const char* kDescription =
     "file\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png\n"
     "  trapeze parameters                          what a style can say, as a table\n\n"
-    "The exit status is 0 if all is done, 1 if something failed or was found wrong, and 2 if the\n"
-    "command line is wrong. Results go to standard output; what goes wrong is told on standard\n"
-    "error. A command that SIGINT or SIGTERM interrupts leaves no half-written file, and ends "
-    "with\n"
-    "130 or 143; `serve` ends in order, with 0.";
+    "Exit status: 0 if all is done; 1 if something failed or was found wrong, such as a file that\n"
+    "cannot be read or a port in use; 2 if the command line is wrong; 130 or 143 if SIGINT or\n"
+    "SIGTERM interrupted a command, which leaves no half-written file (`serve` ends in order, with\n"
+    "0). Results go to standard output; errors and the log go to standard error.";
 
 constexpr const char* kServeFooter =
     "\nExamples:\n"
@@ -60,8 +62,9 @@ constexpr const char* kConfigFooter =
     "  trapeze config check trapeze.toml           every mistake with its line and column\n"
     "  trapeze config print --config trapeze.toml --port 9000\n"
     "  trapeze config schema                       for editors that complete and check\n\n"
-    "The command line goes before the environment (TRAPEZE_TABLE_KEY, TRAPEZE_SERVER_PORT for\n"
-    "server.port), and that before the file, in whose strings ${NAME} is a variable.";
+    "The command line overrides the environment (TRAPEZE_TABLE_KEY, TRAPEZE_SERVER_PORT for\n"
+    "server.port), which overrides the file; in strings of the file, ${NAME} stands for a "
+    "variable.";
 
 constexpr const char* kCheckFooter =
     "\nExample:\n"
@@ -112,10 +115,9 @@ trapeze::ConfigOverride parse_assignment(const std::string& text) {
   for (const auto& setting : trapeze::config_settings()) known.push_back(setting.name());
   const bool is_known = std::ranges::find(known, name) != known.end();
   if (equals == std::string::npos || !is_known) {
-    throw trapeze::UsageError(
-        "--set: " + text +
-        " is no TABLE.KEY=VALUE of a setting; `trapeze config print` shows them" +
-        (is_known ? "" : trapeze::did_you_mean(name, known)));
+    throw trapeze::UsageError("--set takes TABLE.KEY=VALUE of a setting, given was \"" + text +
+                              "\"; `trapeze config print` shows all settings" +
+                              (is_known ? "" : trapeze::did_you_mean(name, known)));
   }
   return {name, text.substr(equals + 1), "--set " + name};
 }
@@ -133,12 +135,22 @@ void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const st
       ->type_name(type);
 }
 
+/// An option that takes a number; `set` gets its name and its value as text.
+CLI::Option& add_number(CLI::App& command, const std::string& option, const char* type,
+                        const char* help,
+                        const std::function<void(const std::string&, const std::string&)>& set) {
+  return *command
+              .add_option_function<std::string>(
+                  option, [option, set](const std::string& text) { set(option, text); }, help)
+              ->type_name(type);
+}
+
 void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
                      "a layer named after it. Instead of the layers of the configuration.");
   command
-      .add_option("--config", arguments.config, "Configuration (TOML); options here go before it")
+      .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
   add_setting(command, arguments, "--port", "server.port", "N",
               "Port, 8080 if not set; 0 takes any free one");
@@ -193,13 +205,12 @@ void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage) {
           "Whether polygons that share borders keep them in common: auto, on or off; as the "
           "setting of layers")
       ->type_name("NAME");
-  command
-      .add_option(
-          "--close-gaps", coverage.close_gaps,
-          "With --coverage: close gaps and overlaps between polygons of up to so many metres "
-          "on the ground")
-      ->check(CLI::Range(0.0, trapeze::kWidestGap))
-      ->type_name("METRES");
+  add_number(command, "--close-gaps", "METRES",
+             "With --coverage: close gaps and overlaps between polygons of up to so many metres "
+             "on the ground",
+             [&coverage](const std::string& option, const std::string& text) {
+               coverage.close_gaps = trapeze::number_or_throw(option, text, 0, trapeze::kWidestGap);
+             });
 }
 
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
@@ -247,13 +258,17 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
       app.add_subcommand("export", "Write the polygons of a zoom into a file for other programs");
   command->footer(kExportFooter);
   command->add_option("FILE", arguments.file, "A file of polygons")->required();
-  command->add_option("--zoom", arguments.zoom, "The zoom whose tiles show these polygons, 0 to 24")
-      ->required()
-      ->type_name("Z");
-  command
-      ->add_option("--simplify", arguments.simplify,
-                   "Tolerance in pixels, 0.25 if not set, as tiles are drawn; 0 removes nothing")
-      ->type_name("PX");
+  add_number(*command, "--zoom", "Z", "The zoom whose tiles show these polygons, 0 to 24",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.zoom = trapeze::integer_or_throw(option, text, 0, trapeze::kMaxZoom);
+             })
+      .required();
+  add_number(*command, "--simplify", "PX",
+             "Tolerance in pixels, 0.25 if not set, as tiles are drawn; 0 removes nothing",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.simplify =
+                   trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
+             });
   command
       ->add_option("--topology", arguments.topology,
                    "strict (if not set) or fast: without the test that keeps polygons from "
@@ -286,9 +301,10 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
   render->add_option("--tile", arguments.tile, "Zoom, column and row of the tile")
       ->required()
       ->type_name("Z/X/Y");
-  render->add_option("--scale", arguments.scale, "Pixels in 256ths of a tile's side, 1 to 4")
-      ->check(CLI::Range(1, 4))
-      ->type_name("N");
+  add_number(*render, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
+             });
   render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
       ->type_name("QUERY");
   render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
@@ -323,15 +339,15 @@ const CLI::App& innermost(const CLI::App& app) {
   return chosen.empty() ? app : innermost(*chosen.front());
 }
 
-/// What could stand in the place of something unknown: options of the command and of the program,
-/// or commands.
-std::vector<std::string> known_names(const CLI::App& app, const CLI::App& command,
-                                     bool are_options) {
+std::vector<std::string> command_names(const CLI::App& command) {
   std::vector<std::string> names;
-  if (!are_options) {
-    for (const CLI::App* sub : command.get_subcommands({})) names.push_back(sub->get_name());
-    return names;
-  }
+  for (const CLI::App* sub : command.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+/// Of the command and of the program.
+std::vector<std::string> option_names(const CLI::App& app, const CLI::App& command) {
+  std::vector<std::string> names;
   for (const CLI::App* each : {&command, &app}) {
     for (const CLI::Option* option : each->get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -340,20 +356,58 @@ std::vector<std::string> known_names(const CLI::App& app, const CLI::App& comman
   return names;
 }
 
+/// "config print"; empty for the program itself.
+std::string command_path(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  if (parent == nullptr) return "";
+  const std::string above = command_path(*parent);
+  return above.empty() ? command.get_name() : above + ' ' + command.get_name();
+}
+
+/// What is left over when all that is known was read.
+std::string unknown_problem(const CLI::App& app, const CLI::App& command,
+                            const std::string& argument) {
+  const std::string name = argument.substr(0, argument.find('='));
+  if (name.starts_with('-')) {
+    return "there is no option " + name + trapeze::did_you_mean(name, option_names(app, command));
+  }
+  const std::vector<std::string> commands = command_names(command);
+  if (commands.empty()) return command_path(command) + " takes no further argument " + argument;
+  return "there is no command " + argument + trapeze::did_you_mean(argument, commands);
+}
+
+/// What is wrong with how the options that are known were given. The parser tells only in words of
+/// its own which option it is about; those words begin with or contain its name.
+std::string option_problem(const CLI::App& app, const CLI::App& command,
+                           const CLI::ParseError& error) {
+  const std::string words = error.what();
+  if (command.get_require_subcommand_min() > 0 && command.get_subcommands().empty()) {
+    return command_path(command) +
+           " needs a command: " + CLI::detail::join(command_names(command), ", ");
+  }
+  for (const CLI::App* each : {&command, &app}) {
+    for (const CLI::Option* option : each->get_options()) {
+      const std::string name = option->get_name();
+      if (words.starts_with(name + " is required")) return name + " is missing";
+      if (words.starts_with("Could not convert: " + name + ' ')) return name + " takes no value";
+      if (!words.starts_with(name + ':')) continue;
+      if (option->count() > 1) return name + " is given more than once";
+      return name + " needs a value, " + option->get_type_name();
+    }
+  }
+  return words;
+}
+
 /// Says what is wrong, what may have been meant, and where there is more to read.
 std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = innermost(app);
-  const std::string who = &command == &app ? "trapeze" : "trapeze " + command.get_name();
-  const std::string more = "; `" + who + " --help` tells more";
-  const std::vector<std::string> unknown = app.remaining(true);
-  if (unknown.empty()) return error.what() + more;
   // What is mistyped comes first: that a required option is missing may follow from it.
-  const std::string name = unknown.front().substr(0, unknown.front().find('='));
-  const bool is_option = name.starts_with('-');
-  const bool is_command = !is_option && !command.get_subcommands({}).empty();
-  const char* kind = is_option ? "no option " : is_command ? "no command " : "no place for ";
-  return "there is " + (kind + name) + more +
-         trapeze::did_you_mean(name, known_names(app, command, is_option));
+  const std::vector<std::string> unknown = app.remaining(true);
+  const std::string problem = unknown.empty() ? option_problem(app, command, error)
+                                              : unknown_problem(app, command, unknown.front());
+  const std::string path = command_path(command);
+  const std::string who = path.empty() ? "trapeze" : "trapeze " + path;
+  return problem + (problem.ends_with('?') ? " `" : "; `") + who + " --help` tells more";
 }
 
 int run(int argc, char** argv) {

@@ -423,7 +423,8 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
       const bool is_list = setting.type == SettingType::list || setting.type == SettingType::paths;
       loaded.problems.push_back(
           {change.origin,
-           fmt::format("takes {}{}", setting.takes, is_list ? ", with commas between them" : "")});
+           fmt::format("takes {}{}{}", setting.takes, is_list ? ", with commas between them" : "",
+                       is_list ? "" : did_you_mean(change.value, setting.choices))});
     }
   }
 }

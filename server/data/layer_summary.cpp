@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "server/base/nearest_name.h"
 
 namespace trapeze {
 namespace {
@@ -58,12 +61,16 @@ Result<LayerSummary> summarize_layers(std::span<const std::string> names, const 
 
 Problem unknown_layer(const std::string& name, const Dataset& dataset) {
   constexpr std::size_t kMaxNames = 20;
-  std::string names;
-  for (std::size_t i = 0; i < dataset.layers().size() && i < kMaxNames; ++i) {
-    names += (i == 0 ? "" : ", ") + dataset.layers()[i].config.name;
-  }
-  if (dataset.layers().size() > kMaxNames) names += ", ... (all are in /catalog)";
-  return {404, fmt::format("There is no layer \"{}\".", name), "layers", name, "one of " + names};
+  std::vector<std::string> known;
+  for (const ServedLayer& served : dataset.layers()) known.push_back(served.config.name);
+  const auto nearest = nearest_name(name, known);
+  const auto shown = std::span(known).first(std::min(known.size(), kMaxNames));
+  return {404,
+          fmt::format("There is no layer \"{}\"{}", name,
+                      nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+          "layers", name,
+          fmt::format("one of {}{}", fmt::join(shown, ", "),
+                      known.size() > kMaxNames ? ", ... (all are in /catalog)" : "")};
 }
 
 }  // namespace trapeze

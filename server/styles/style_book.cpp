@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "server/base/digest.h"
+#include "server/base/nearest_name.h"
 
 namespace trapeze {
 namespace {
@@ -67,10 +68,15 @@ Result<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) c
 Problem StyleBook::unknown(const std::string& name) const {
   std::string takes = "an id that POST /styles has given";
   if (!named_.empty()) takes = fmt::format("one of {}, or {}", fmt::join(names(), ", "), takes);
-  return {400,
-          "There is no style of that name. Posted styles are given up when others need "
-          "their place: post it again.",
-          "style", name, takes};
+  std::vector<std::string> known = names();
+  known.emplace_back(kDefaultName);
+  const auto nearest = nearest_name(name, known);
+  return {
+      400,
+      fmt::format("There is no style of that name{} Posted styles are given up when others need "
+                  "their place: post it again.",
+                  nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+      "style", name, takes};
 }
 
 Result<std::string> StyleBook::post(StyleQuery style) {

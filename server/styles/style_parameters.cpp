@@ -7,6 +7,7 @@
 #include <charconv>
 #include <tuple>
 
+#include "server/base/nearest_name.h"
 #include "server/styles/colour_ramps.h"
 
 namespace trapeze {
@@ -552,6 +553,25 @@ std::string describe_values(const StyleParameter& parameter) {
       return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
   }
   return {};
+}
+
+std::optional<Problem> unknown_parameter(std::string_view name,
+                                         std::span<const std::string> layers) {
+  if (resolve_name(name, layers).parameter != nullptr) return std::nullopt;
+  std::vector<std::string> known;
+  for (const StyleParameter& parameter : style_parameters()) {
+    known.emplace_back(parameter.name);
+    if (!parameter.is_per_layer) continue;
+    for (const std::string& layer : layers)
+      known.push_back(fmt::format("{}.{}", layer, parameter.name));
+  }
+  const auto nearest = nearest_name(name, known);
+  return Problem{400,
+                 fmt::format("There is no parameter \"{}\"{}", name,
+                             nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+                 std::string(name),
+                 {},
+                 fmt::format("one of {}", fmt::join(known, ", "))};
 }
 
 Result<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,

@@ -113,6 +113,11 @@ std::string format_value(const ParameterValue& value);
 /// "a number from 0 to 1".
 std::string describe_values(const StyleParameter& parameter);
 
+/// What is wrong with a name of a query, PARAMETER or LAYER.PARAMETER, that means nothing to these
+/// layers, with the nearest that does; nothing if it means something.
+std::optional<Problem> unknown_parameter(std::string_view name,
+                                         std::span<const std::string> layers);
+
 /// One parameter set by a request, for all layers (`layer` empty) or for one.
 struct StyleSetting {
   std::string layer;

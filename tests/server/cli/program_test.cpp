@@ -25,9 +25,12 @@ namespace {
 
 using namespace std::chrono_literals;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using testing::fixture;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::RawClient;
+using ::testing::StartsWith;
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -186,6 +189,15 @@ TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
                     HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
 }
 
+TEST(ProgramTest, EndsItsStartWithTheAddressToOpen) {
+  Program program(serve_arguments({fixture("rings.geojson")}));
+  const std::string address = "open http://127.0.0.1:" + std::to_string(program.port()) + "/\n";
+  for (int i = 0; i < 2000 && program.output().find(address) == std::string::npos; ++i) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_THAT(program.output(), AllOf(HasSubstr("ready: 1 layers"), EndsWith(address)));
+}
+
 TEST(ProgramTest, EndsInOrderOnSigint) {
   Program program(serve_arguments({fixture("rings.geojson")}));
   program.port();
@@ -333,10 +345,10 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"serve", "--set", "limits.scale=9", fixture("rings.geojson")}, "from 1 to 4"},
       {{"serve", "--set", "limits.nosuch=9", fixture("rings.geojson")}, "limits.nosuch=9"},
       {{"serve", "--set", "limits.scale", fixture("rings.geojson")}, "TABLE.KEY=VALUE"},
-      {{"config"}, "subcommand"},
+      {{"config"}, "config needs a command: check, print, schema"},
       {{"config", "check"}, "FILE"},
       {{"render", fixture("rings.geojson"), "--tile", "0/1/0", "--output", "x.png"},
-       "no such tile"},
+       "0 to 2^Z - 1, given was \"0/1/0\""},
       {{"render", fixture("rings.geojson"), "--tile", "0", "--output", "x.png"}, "Z/X/Y"},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--style", "fill=no", "--output",
         "x.png"},
@@ -355,8 +367,8 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
        ".png or .webp"},
       {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "png"}, ".png or .webp"},
       {{"bench"}, "NAME"},
-      {{"bench", "nosuch", "--help"}, "no benchmark 'nosuch'"},
-      {{"bench", "../trapeze"}, "no benchmark '../trapeze'"},
+      {{"bench", "nosuch", "--help"}, "no benchmark \"nosuch\""},
+      {{"bench", "../trapeze"}, "no benchmark \"../trapeze\""},
       {{"export", fixture("rings.geojson"), "--output", "x.fgb"}, "--zoom"},
       {{"export", fixture("rings.geojson"), "--zoom", "3"}, "--output"},
       {{"export", fixture("rings.geojson"), "--zoom", "25", "--output", "x.fgb"}, "0 to 24"},
@@ -375,30 +387,72 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
         "x.fgb"},
        "EPSG:4326 or EPSG:3857"},
       {{}, "Usage"},
-      {{"sevre"}, "there is no command sevre; `trapeze --help` tells more; did you mean serve?"},
+      {{"sevre"}, "there is no command sevre; did you mean serve? `trapeze --help` tells more"},
       {{"config", "chek"}, "did you mean check?"},
       {{"serve", "--prot", "9000", fixture("rings.geojson")}, "did you mean --port?"},
       {{"prepare", fixture("rings.geojson"), "--ouput=x"}, "did you mean --output?"},
-      {{"serve", "--set", "limits.zom=9", fixture("rings.geojson")}, "did you mean limits.zoom?"}};
+      {{"serve", "--set", "limits.zom=9", fixture("rings.geojson")}, "did you mean limits.zoom?"},
+      {{"serve", "--renderer", "sofware", fixture("rings.geojson")}, "did you mean software?"},
+      {{"serve", "--port"}, "--port needs a value, N; `trapeze serve --help` tells more"},
+      {{"serve", "--port", "1", "--port", "2", "x.fgb"}, "--port is given more than once"},
+      {{"serve", "--verbose=x", fixture("rings.geojson")}, "--verbose takes no value"},
+      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
+      {{"config", "print", "--port"}, "`trapeze config print --help` tells more"},
+      {{"config", "print", "--port", "x"}, "--port: takes an integer from 0"},
+      {{"config", "print", fixture("rings.geojson"), fixture("rings.geojson")},
+       "both be the layer"},
+      {{"config", "check", "a.toml", "b.toml"}, "config check takes no further argument b.toml"},
+      {{"check", fixture("rings.geojson"), "--close-gaps"}, "--close-gaps needs a value, METRES;"},
+      {{"check", fixture("rings.geojson"), "--close-gaps", "x"},
+       "--close-gaps takes a number from 0 to 1000, given was \"x\""},
+      {{"check", fixture("rings.geojson"), "--coverage", "off", "--close-gaps", "5"},
+       "--close-gaps needs --coverage auto or on"},
+      {{"check", fixture("rings.geojson"), "--coverage", "of"}, "did you mean o"},
+      {{"prepare", fixture("rings.geojson")}, "--output is missing"},
+      {{"prepare", fixture("rings.geojson"), fixture("rings.geojson"), "--output", "x"},
+       "both be the layer"},
+      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
+       "--output takes a folder"},
+      {{"export", fixture("rings.geojson"), "--zoom", "x", "--output", "x.fgb"},
+       "--zoom takes a whole number from 0 to 24, given was \"x\""},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
+      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.gpgk"},
+       "did you mean .gpkg?"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--scale", "9", "--output", "x.png"},
+       "--scale takes a whole number from 1 to 4, given was \"9\""},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.pgn"},
+       "did you mean .png?"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.png", "--style",
+        "fil=red"},
+       "--style: There is no parameter \"fil\"; did you mean \"fill\"?"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.png", "--style",
+        "rngs.fill=red"},
+       "did you mean \"rings.fill\"?"},
+      {{"render", fixture("rings.geojson"), "--tile", "0/0/0", "--output", "x.png", "--style",
+        "style=defualt"},
+       "did you mean \"default\"?"},
+      {{"render", fixture("rings.geojson"), fixture("rings.geojson"), "--tile", "0/0/0", "--output",
+        "x.png"},
+       "both be the layer"}};
   for (const auto& [arguments, says] : wrong) {
     Program program(arguments);
     EXPECT_EQ(program.wait(), 2) << says;
-    EXPECT_THAT(program.output(), HasSubstr(says));
+    EXPECT_THAT(program.output(), AllOf(HasSubstr(says), Not(HasSubstr("required"))));
+    EXPECT_THAT(program.output(), StartsWith(arguments.empty() ? "Trapeze" : "trapeze: "));
   }
 }
 
 TEST(ProgramTest, WhatFailsIsToldInOneStyleAndEndsWithOne) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> failing = {
       {{"serve", "--config", "/nosuch.toml"}, "/nosuch.toml"},
-      {{"serve", fixture("rings.geojson"), fixture("rings.geojson")}, "both be the layer"},
-      {{"prepare", fixture("rings.geojson"), "--output", fixture("rings.geojson")},
-       "--output takes a folder"},
-      {{"export", fixture("rings.geojson"), "--zoom", "3", "--output", "x.png"}, ".geojson"},
+      {{"config", "print", "--config", "/nosuch.toml"}, "/nosuch.toml"},
+      {{"prepare", fixture("rings.geojson"), "--output", "/proc/nosuch"}, "/proc/nosuch"},
+      {{"check", fixture("nosuch.fgb")}, "nosuch.fgb"},
       {{"export", fixture("nosuch.fgb"), "--zoom", "3", "--output", "x.fgb"}, "nosuch.fgb"}};
   for (const auto& [arguments, says] : failing) {
     Program program(arguments);
     EXPECT_EQ(program.wait(), 1) << says;
-    EXPECT_THAT(program.output(), AllOf(::testing::StartsWith("trapeze: "), HasSubstr(says)));
+    EXPECT_THAT(program.output(), AllOf(StartsWith("trapeze: "), HasSubstr(says)));
   }
 }
 

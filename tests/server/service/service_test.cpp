@@ -342,7 +342,9 @@ TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {
   const auto layers = []() -> std::vector<LayerConfig> {
     throw std::runtime_error("there is no map");
   };
-  Reloader reloader({layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; });
+  Reloader reloader(
+      {layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; },
+      [] { FAIL() << "nothing is loaded"; });
   EXPECT_TRUE(holds_within(5s, [&] { return has_given_up.load(); }));
   EXPECT_THROW(reloader.rethrow_failure(), std::runtime_error);
   EXPECT_FALSE(reloader.is_loading());

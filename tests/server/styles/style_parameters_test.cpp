@@ -60,6 +60,23 @@ TEST(StyleParametersTest, NamesThatMeanNothingAreIgnored) {
   }
 }
 
+TEST(StyleParametersTest, NamesThatMeanNothingAreToldWithTheNearestThatDoes) {
+  const std::vector<std::string> layers = {"land", "lakes"};
+  for (const char* name : {"fill", "lakes.fill", "background", "style"}) {
+    EXPECT_EQ(unknown_parameter(name, layers), std::nullopt) << name;
+  }
+  for (const auto& [name, nearest] :
+       std::vector<std::pair<const char*, const char*>>{{"fil", "\"fill\"?"},
+                                                        {"lake.fill", "\"lakes.fill\"?"},
+                                                        {"land.fil", "\"land.fill\"?"}}) {
+    const auto problem = unknown_parameter(name, layers);
+    ASSERT_TRUE(problem.has_value()) << name;
+    EXPECT_TRUE(problem->detail.ends_with(nearest)) << problem->detail;
+  }
+  EXPECT_TRUE(unknown_parameter("land.background", layers)) << "is of the whole tile";
+  EXPECT_TRUE(unknown_parameter("v", layers)->detail.ends_with("\"v\"."));
+}
+
 TEST(StyleParametersTest, ALayersOwnSettingGoesBeforeTheOneForAll) {
   const auto parsed = parse("fill=red&lakes.fill=blue");
   const auto& query = *parsed;

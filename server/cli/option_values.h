@@ -1,0 +1,48 @@
+// What the values of options mean. All functions throw UsageError for a value that an option does
+// not take: it says what the option takes, and what may have been meant.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/adapt/vertex_weight.h"
+#include "core/borders/coverage_groups.h"
+#include "core/layer/layer_options.h"
+#include "server/config/config.h"
+
+namespace trapeze {
+
+/// The command line asks for what no run of the program can do.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Refuses the value of an option that takes one of a few words: names, or endings of files.
+[[noreturn]] void throw_wrong_word(const std::string& option, const std::string& given,
+                                   const std::vector<std::string>& words);
+
+/// A whole number within the bounds, both included.
+int integer_or_throw(const std::string& option, const std::string& text, int min, int max);
+/// A number within the bounds, both included.
+double number_or_throw(const std::string& option, const std::string& text, double min, double max);
+
+WeightRule weights_or_throw(const std::string& name);
+
+/// What is done about polygons that share borders.
+struct CoverageArguments {
+  std::string
+      mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
+  std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
+};
+/// None if the name is empty, which leaves it to the file. Gaps are not closed without a coverage.
+std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments);
+/// Sets what is to become of a source.
+void apply(const CoverageArguments& arguments, LayerOptions& options);
+
+/// A layer of each file, named after it, each name once.
+std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files);
+
+}  // namespace trapeze
