@@ -61,8 +61,8 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   request.format = format_of(arguments.output);
   const auto query = decode_query(arguments.style);
   if (!query) throw UsageError("--style takes a query string such as fill=red");
-  const auto expanded = value_or_throw(StyleBook().expand(*query));
-  request.style = value_or_throw(StyleQuery::parse(expanded, request.layers));
+  request.style =
+      value_or_throw(value_or_throw(StyleBook().read(*query)).style_for(request.layers));
   return request;
 }
 
