@@ -1,5 +1,5 @@
 // What styles cost: a tile drawn in each, against the same tile in the layer's own; and the way
-// from a URL to the key under which its tile is cached.
+// from a URL to the key under which its tile is cached, the style written out or named.
 //
 //   TRAPEZE_DATA=folder style_bench
 //
@@ -9,7 +9,10 @@
 
 #include <cstdio>
 #include <exception>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/measure/trip.h"
@@ -78,9 +81,19 @@ std::string target_of(const TileId& tile, const std::string& query) {
          std::to_string(tile.y) + ".png?" + query;
 }
 
+const StyleBook& styles() {
+  static const auto book = [] {
+    std::map<std::string, StyleQuery> named;
+    for (const Style& style : kStyles) {
+      named.emplace(style.name, *StyleQuery::parse(decode_query(style.query).value(), {}));
+    }
+    return std::make_unique<StyleBook>(std::move(named));
+  }();
+  return *book;
+}
+
 TilePlan plan_of(const std::string& target) {
-  static const StyleBook styles;
-  auto parsed = parse_tiles_target(split_target(target).value(), styles);
+  auto parsed = parse_tiles_target(split_target(target).value(), styles());
   return *plan_tile(std::get<TileRequest>(*parsed), dataset());
 }
 
@@ -110,6 +123,8 @@ void register_all() {
   for (const Style& style : kStyles) {
     const std::string name = style.name;
     benchmark::RegisterBenchmark(("key/" + name).c_str(), make_key, style.query)
+        ->Unit(benchmark::kMicrosecond);
+    benchmark::RegisterBenchmark(("key_by_name/" + name).c_str(), make_key, "style=" + name)
         ->Unit(benchmark::kMicrosecond);
   }
 }

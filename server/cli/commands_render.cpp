@@ -84,8 +84,8 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   const auto query = decode_query(arguments.style);
   if (!query) throw UsageError("--style takes a query string such as fill=red");
   check_names(*query, request.layers);
-  const auto expanded = style_or_throw(StyleBook().expand(*query));
-  request.style = style_or_throw(StyleQuery::parse(expanded, request.layers));
+  request.style =
+      style_or_throw(style_or_throw(StyleBook().read(*query)).style_for(request.layers));
   return request;
 }
 

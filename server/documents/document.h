@@ -18,11 +18,11 @@ struct DocumentRequest {
   const Fonts& fonts;
   std::string base_url;           // how this server is reached, without a '/' at the end
   std::vector<std::string> path;  // decoded segments, hostile
-  std::vector<QueryPair> query;   // hostile; what its style says is in it
+  StyledQuery query;              // hostile
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {
-    for (const auto& [key, value] : query) {
+    for (const auto& [key, value] : query.pairs) {
       if (key == name) return &value;
     }
     return nullptr;

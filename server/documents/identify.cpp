@@ -78,18 +78,17 @@ Result<IdentifyRequest> parse_request(const DocumentRequest& request) {
   auto zoom = parse_zoom(request);
   if (!zoom) return std::move(zoom).problem();
   IdentifyRequest parsed{*std::move(layers), *place, *zoom, {}};
-  auto style = StyleQuery::parse(request.query, parsed.layers);
+  auto style = request.query.style_for(parsed.layers);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;
 }
 
-Level level_of(const IdentifyRequest& request, const LayerConfig& layer) {
+Level level_of(const IdentifyRequest& request, const StyleQuery& style, const std::string& layer) {
   if (!request.zoom) return 0;
   const double cells_per_pixel =
       static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
-  const StyleQuery query = request.style.with_defaults(layer.name, layer.style);
-  return nearest_level(tolerance_in_pixels(query, layer.name) * cells_per_pixel);
+  return nearest_level(tolerance_in_pixels(style, layer) * cells_per_pixel);
 }
 
 bool is_drawn(const IdentifyRequest& request, const LayerConfig& config) {
@@ -125,10 +124,13 @@ Json feature_json(const ServedLayer& served, std::uint32_t row) {
 /// The rows of the features that are found, or what is wrong with the style.
 Result<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
                                              const ServedLayer& served, std::size_t position) {
-  const auto style = layer_style(request.style, served, position);
+  const auto query = complete_style(request.style, served.config);
+  if (!query) return query.problem();
+  const auto style = layer_style(*query, served, position);
   if (!style) return style.problem();
   if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
-  auto rows = features_at(*served.layer, request.place, level_of(request, served.config));
+  auto rows =
+      features_at(*served.layer, request.place, level_of(request, *query, served.config.name));
   const FeatureClassifier classifier(style->classing, served.layer->features());
   std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });
   return rows;

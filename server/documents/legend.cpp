@@ -76,14 +76,16 @@ LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) 
 
 Result<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
                                            const DocumentRequest& request) {
-  const auto query = StyleQuery::parse(request.query, layers);
+  const auto query = request.query.style_for(layers);
   if (!query) return query.problem();
   std::vector<LayerLegend> legend;
   for (auto name = layers.rbegin(); name != layers.rend(); ++name) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
     const ServedLayer& served = request.dataset.layers()[*position];
-    const auto style = layer_style(*query, served, *position);
+    const auto complete = complete_style(*query, served.config);
+    if (!complete) return complete.problem();
+    const auto style = layer_style(*complete, served, *position);
     if (!style) return style.problem();
     legend.push_back(legend_of_layer(served.config, *style));
   }

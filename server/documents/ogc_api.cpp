@@ -97,7 +97,7 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
 
 /// What must follow the path of a link to keep the resource and its style.
 Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
-  const auto style = StyleQuery::parse(request.query, resource.layers);
+  const auto style = request.query.style_for(resource.layers);
   if (!style) return style.problem();
   const std::string text = style->canonical_text();
   std::string query = resource.selection;
@@ -355,7 +355,7 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
   const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2]);
   if (!tile) return tile.problem();
   TileRequest parsed{std::move(resource->layers), *tile, 1, {}};
-  auto style = StyleQuery::parse(request.query, parsed.layers);
+  auto style = request.query.style_for(parsed.layers);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;

@@ -208,9 +208,9 @@ Result<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styles)
   TileRequest request{*std::move(layers), *tile, 1, {}};
   std::vector<QueryPair> query = pairs.others;
   if (!pairs["style"].empty()) query.emplace_back("style", pairs["style"]);
-  const auto expanded = styles.expand(std::move(query));
-  if (!expanded) return expanded.problem();
-  auto style = StyleQuery::parse(*expanded, request.layers);
+  const auto styled = styles.read(std::move(query));
+  if (!styled) return styled.problem();
+  auto style = styled->style_for(request.layers);
   if (!style) return std::move(style).problem();
   request.style = *std::move(style);
   return request;
@@ -223,7 +223,7 @@ Result<Document> wmts_document(const DocumentRequest& request) {
     return Problem{404, "There is nothing here. The capabilities are at /wmts.xml."};
   }
   if (is_key_value_path(request)) {
-    const KeyValuePairs pairs = divide(request.query);
+    const KeyValuePairs pairs = divide(request.query.pairs);
     if (auto problem = check(pairs, "service", "WMTS")) return std::move(*problem);
     if (lower(pairs["request"]) != "getcapabilities") {
       return Problem{400, "request takes GetCapabilities or GetTile.", "request", pairs["request"],
@@ -235,7 +235,7 @@ Result<Document> wmts_document(const DocumentRequest& request) {
 
 std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
   if (!is_key_value_path(request)) return std::nullopt;
-  const KeyValuePairs pairs = divide(request.query);
+  const KeyValuePairs pairs = divide(request.query.pairs);
   if (lower(pairs["request"]) != "gettile") return std::nullopt;
   return tile_of(pairs, request.styles);
 }

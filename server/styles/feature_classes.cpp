@@ -56,9 +56,6 @@ std::string Classing::key() const {
 
 FeatureClassifier::FeatureClassifier(const Classing& classing, const FeatureTable& features)
     : classing_(classing), features_(features) {
-  if (classing.filter != nullptr) {
-    filter_ = *BoundFilter::bind(*classing.filter, features);
-  }
   for (std::size_t i = 0; i < classing.values.size(); ++i) {
     if (!classing.values[i]) continue;
     const auto* text = std::get_if<std::string>(&*classing.values[i]);
@@ -69,7 +66,7 @@ FeatureClassifier::FeatureClassifier(const Classing& classing, const FeatureTabl
 std::uint8_t FeatureClassifier::class_of(std::uint32_t row) const {
   const std::int64_t id = features_.id(row);
   if (!classing_.ids.empty() && !contains(classing_.ids, id)) return kNotDrawn;
-  if (filter_ && !filter_->passes(row)) return kNotDrawn;
+  if (classing_.filter != nullptr && !classing_.filter->passes(row)) return kNotDrawn;
   if (contains(classing_.highlighted_ids, id)) {
     return static_cast<std::uint8_t>(classing_.class_of_highlighted());
   }

@@ -19,7 +19,8 @@
 
 namespace trapeze {
 
-/// The rules. Its field, values and filter fit the features of the layer that it was made for.
+/// The rules. Its field, values and filter fit the features of the layer that it was made for; with
+/// a filter, these must outlive it.
 /// Classes are numbered: those of the values or between the breaks, then that of all others, then
 /// that of highlighted features.
 struct Classing {
@@ -27,7 +28,7 @@ struct Classing {
   /// Class i is that of the value; null: of the features that have none.
   std::vector<std::optional<FilterLiteral>> values;
   std::vector<double> breaks;  // ascending; class i is that of the numbers below breaks[i]
-  std::shared_ptr<const Filter> filter;       // null: all pass
+  std::shared_ptr<const BoundFilter> filter;  // null: all pass
   std::vector<std::int64_t> ids;              // ascending; the only ones drawn; empty: all
   std::vector<std::int64_t> highlighted_ids;  // ascending
 
@@ -52,7 +53,6 @@ class FeatureClassifier {
 
   const Classing& classing_;
   const FeatureTable& features_;
-  std::optional<BoundFilter> filter_;
   std::unordered_map<std::string_view, std::uint8_t> texts_;
 };
 

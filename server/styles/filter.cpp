@@ -556,10 +556,11 @@ std::variant<std::shared_ptr<const Filter>, Filter::Mistake> Filter::parse(std::
   }
 }
 
-Result<BoundFilter> BoundFilter::bind(const Filter& filter, const FeatureTable& features) {
-  auto root = bind_node(filter.root(), features);
+Result<BoundFilter> BoundFilter::bind(std::shared_ptr<const Filter> filter,
+                                      const FeatureTable& features) {
+  auto root = bind_node(filter->root(), features);
   if (!root) return std::move(root).problem();
-  return BoundFilter(features, *std::move(root));
+  return BoundFilter(std::move(filter), features, *std::move(root));
 }
 
 Result<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,

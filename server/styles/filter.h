@@ -71,14 +71,17 @@ class Filter {
   std::string text_;
 };
 
-/// A filter whose properties are fields of a table. Refers to both, which must outlive it.
+/// A filter whose properties are fields of a table. Refers to the table, which must outlive it.
 class BoundFilter {
  public:
   /// The problem, 400, names a property that there is not, with those there are, or one that is
   /// compared with what it cannot be.
-  static Result<BoundFilter> bind(const Filter& filter, const FeatureTable& features);
+  static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter,
+                                  const FeatureTable& features);
 
   bool passes(std::uint32_t row) const;
+  /// That of the filter.
+  const std::string& text() const { return filter_->text(); }
 
  private:
   enum class Truth : std::uint8_t { no, unknown, yes };
@@ -89,14 +92,15 @@ class BoundFilter {
     std::vector<Node> operands;
   };
 
-  BoundFilter(const FeatureTable& features, Node root)
-      : features_(&features), root_(std::move(root)) {}
+  BoundFilter(std::shared_ptr<const Filter> filter, const FeatureTable& features, Node root)
+      : filter_(std::move(filter)), features_(&features), root_(std::move(root)) {}
 
   static Result<Node> bind_node(const FilterNode& node, const FeatureTable& features);
   Truth evaluate(const Node& node, std::uint32_t row) const;
   Truth evaluate_all(const Node& node, std::uint32_t row) const;
   Truth evaluate_any(const Node& node, std::uint32_t row) const;
 
+  std::shared_ptr<const Filter> filter_;  // in which the nodes are
   const FeatureTable* features_;
   Node root_;
 };

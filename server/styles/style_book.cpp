@@ -19,50 +19,29 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
   return styles;
 }
 
-/// "water." of "water.fill".
-std::string_view layer_part(std::string_view name) {
-  return name.substr(0, name.find('.') + 1);
-}
-
-std::string_view parameter_part(std::string_view name) {
-  return name.substr(name.find('.') + 1);
-}
-
-bool is_about_classing(std::string_view name) {
-  const StyleParameter* parameter = find_style_parameter(parameter_part(name));
-  return parameter != nullptr && is_classing_parameter(parameter->id);
-}
-
-/// Whether the query sets what the name says, or, of the rules for classes, any for that layer.
-bool sets(const std::vector<QueryPair>& query, std::string_view name) {
-  return std::ranges::any_of(query, [name](const QueryPair& pair) {
-    return pair.first == name || (layer_part(pair.first) == layer_part(name) &&
-                                  is_about_classing(name) && is_about_classing(pair.first));
-  });
-}
-
 }  // namespace
+
+Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers) const {
+  auto style = StyleQuery::parse(pairs, layers);
+  if (!style || named == nullptr) return style;
+  return style->over(*named, layers);
+}
 
 StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
     : named_(shared(std::move(named))), posted_(budget) {}
 
-Result<std::vector<QueryPair>> StyleBook::expand(std::vector<QueryPair> query) const {
+Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
-  if (asked == query.end()) return query;
-  const std::string name = asked->second;
-  query.erase(asked);
-  if (std::ranges::any_of(query, is_style)) {
+  if (asked == query.end()) return StyledQuery{std::move(query), nullptr};
+  const std::string& name = asked->second;
+  if (std::any_of(asked + 1, query.end(), is_style)) {
     return Problem{400, "The parameter style is given twice.", "style", name, "one name, once"};
   }
-  if (name == kDefaultName) return query;
-  const auto style = find(name);
+  if (name == kDefaultName) return StyledQuery{std::move(query), nullptr};
+  auto style = find(name);
   if (style == nullptr) return unknown(name);
-  std::vector<QueryPair> expanded = query;
-  for (QueryPair& pair : style->pairs()) {
-    if (!sets(query, pair.first)) expanded.push_back(std::move(pair));
-  }
-  return expanded;
+  return StyledQuery{std::move(query), std::move(style)};
 }
 
 Problem StyleBook::unknown(const std::string& name) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,16 @@
 
 namespace trapeze {
 
+/// A query, and the style that it names.
+struct StyledQuery {
+  std::vector<QueryPair> pairs;
+  std::shared_ptr<const StyleQuery> named;  // null: none, or the one that sets nothing
+
+  /// What the pairs set and, where they are silent, the named style. Problems are those of
+  /// StyleQuery::parse().
+  Result<StyleQuery> style_for(std::span<const std::string> layers) const;
+};
+
 class StyleBook {
  public:
   /// `named` are kept as long as the book; `budget`, in bytes, is for those that are posted. Of
@@ -27,9 +38,9 @@ class StyleBook {
   explicit StyleBook(std::map<std::string, StyleQuery> named = {},
                      std::size_t budget = kDefaultBudget);
 
-  /// The query, and in place of its `style` what that style sets and the query does not. The
-  /// problem, 400, is a style that there is not.
-  Result<std::vector<QueryPair>> expand(std::vector<QueryPair> query) const;
+  /// The query with the style that its `style` names. The problem, 400, is a style that there is
+  /// not.
+  Result<StyledQuery> read(std::vector<QueryPair> query) const;
 
   /// Keeps the style under an id made from what it says: equal styles have equal ids, on every
   /// server. The problem is a style that is too long, or larger than the budget.

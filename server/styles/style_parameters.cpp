@@ -614,6 +614,25 @@ StyleQuery StyleQuery::with_defaults(const std::string& layer, const StyleQuery&
   return style;
 }
 
+StyleQuery StyleQuery::over(const StyleQuery& style, std::span<const std::string> layers) const {
+  StyleQuery both = *this;
+  for (const StyleSetting& setting : style.settings_) {
+    const bool is_asked_for =
+        setting.layer.empty() || std::ranges::find(layers, setting.layer) != layers.end();
+    if (is_asked_for && !sets(setting)) both.settings_.push_back(setting);
+  }
+  std::ranges::sort(both.settings_, {}, order_of);
+  return both;
+}
+
+bool StyleQuery::sets(const StyleSetting& setting) const {
+  return std::ranges::any_of(settings_, [&setting](const StyleSetting& own) {
+    return own.layer == setting.layer &&
+           (own.parameter == setting.parameter ||
+            (is_classing_parameter(own.parameter) && is_classing_parameter(setting.parameter)));
+  });
+}
+
 std::vector<QueryPair> StyleQuery::pairs() const {
   std::vector<QueryPair> pairs;
   for (const StyleSetting& setting : settings_) {

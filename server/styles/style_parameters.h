@@ -126,7 +126,7 @@ struct StyleSetting {
 };
 
 /// The style that a query asks for: settings in the order (layer, parameter), each at most once.
-/// Named styles have been put in place of their names before (see style_book.h).
+/// Styles that are named come from a StyleBook, and are put under a query by over().
 class StyleQuery {
  public:
   StyleQuery() = default;
@@ -143,6 +143,10 @@ class StyleQuery {
   /// This style for one layer, and, where it says nothing, `defaults`, which are for all layers.
   /// Rules that put features into classes are taken as a whole or not at all.
   StyleQuery with_defaults(const std::string& layer, const StyleQuery& defaults) const;
+  /// This style and, where it is silent, what `style` sets for all layers or for one of `layers`. A
+  /// setting for one layer is not silenced by one for all. Rules that put features into classes are
+  /// taken as a whole or not at all.
+  StyleQuery over(const StyleQuery& style, std::span<const std::string> layers) const;
   /// The settings as a query has them, not encoded.
   std::vector<QueryPair> pairs() const;
   /// The canonical query string: equal styles written differently give the same text.
@@ -150,6 +154,8 @@ class StyleQuery {
 
  private:
   const StyleSetting* find_setting(std::string_view layer, ParameterId parameter) const;
+  /// Whether it holds that setting, or, of the rules for classes, any for that layer.
+  bool sets(const StyleSetting& setting) const;
 
   std::vector<StyleSetting> settings_;
 };

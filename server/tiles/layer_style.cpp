@@ -244,9 +244,9 @@ std::optional<Problem> make_selection(Making& making) {
   classing.highlighted_ids = making.settings.value_or(ParameterId::highlight, Ids());
   const auto* filter = making.settings.find<std::shared_ptr<const Filter>>(ParameterId::filter);
   if (filter == nullptr) return std::nullopt;
-  const auto bound = BoundFilter::bind(**filter, making.features);
-  if (!bound) return bound.problem();
-  classing.filter = *filter;
+  auto bound = BoundFilter::bind(*filter, making.features);
+  if (!bound) return std::move(bound).problem();
+  classing.filter = std::make_shared<const BoundFilter>(*std::move(bound));
   return std::nullopt;
 }
 
@@ -291,11 +291,14 @@ std::string LayerStyle::key() const {
   return text + fmt::format("{}", opacity);
 }
 
-Result<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
+Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& config) {
+  if (auto problem = find_locked(query, config)) return std::move(*problem);
+  return query.with_defaults(config.name, config.style);
+}
+
+Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
                                std::size_t position) {
   const LayerConfig& config = served.config;
-  if (auto problem = find_locked(query, config)) return std::move(*problem);
-  const StyleQuery style = query.with_defaults(config.name, config.style);
   Making making{LayerSettings(style, config.name), served.layer->features()};
   making.fill_opacity = making.settings.value_or(ParameterId::fill_opacity, 1.0);
   making.others = with_opacity(fill_of(making.settings, config, position), making.fill_opacity);

@@ -43,9 +43,13 @@ struct LayerStyle {
   friend bool operator==(const LayerStyle& a, const LayerStyle& b) { return a.key() == b.key(); }
 };
 
-/// `position` is that of the layer in the dataset. The problem, 400, is a parameter that does not
-/// fit the layer, contradicts another, or is locked.
-Result<LayerStyle> layer_style(const StyleQuery& query, const ServedLayer& served,
+/// What a request says about a layer, with the layer's own defaults where it is silent. The
+/// problem, 400, is a parameter that is locked.
+Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& config);
+
+/// `style` is complete, and `position` that of the layer in the dataset. The problem, 400, is a
+/// parameter that does not fit the layer, or contradicts another.
+Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
                                std::size_t position);
 
 /// What fills the layer at `position` of the dataset if a request does not say.

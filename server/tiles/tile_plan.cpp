@@ -86,8 +86,8 @@ std::string entity_tag_of(std::string_view key) {
   return fmt::format("\"{}\"", hash.hex());
 }
 
-double tolerance_in_pixels(const StyleQuery& query, const std::string& layer) {
-  const auto value = query.value_for(layer, ParameterId::simplify);
+double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {
+  const auto value = style.value_for(layer, ParameterId::simplify);
   return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
@@ -103,14 +103,15 @@ Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dat
     const auto layer = dataset->find(name);
     if (!layer) return unknown_layer(name, *dataset);
     const ServedLayer& served = dataset->layers()[*layer];
-    auto style = layer_style(request.style, served, *layer);
-    if (!style) return style.problem();
     const LayerConfig& config = served.config;
+    const auto query = complete_style(request.style, config);
+    if (!query) return query.problem();
+    auto style = layer_style(*query, served, *layer);
+    if (!style) return std::move(style).problem();
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
     if (!style->is_visible() && !plan.debug.any()) continue;
-    const StyleQuery query = request.style.with_defaults(name, config.style);
-    plan.layers.push_back({*layer, *std::move(style), level_of_layer(request, query, name),
-                           topology_of_layer(query, name), small_of_layer(query, name)});
+    plan.layers.push_back({*layer, *std::move(style), level_of_layer(request, *query, name),
+                           topology_of_layer(*query, name), small_of_layer(*query, name)});
   }
   return plan;
 }

@@ -71,8 +71,8 @@ std::string entity_tag_of(std::string_view key);
 /// The problem is 404 for a layer that is not in the dataset.
 Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
-/// How far the drawn boundary of the layer may be from the true one. The query has the layer's own
-/// defaults in it.
-double tolerance_in_pixels(const StyleQuery& query, const std::string& layer);
+/// How far the drawn boundary of the layer may be from the true one. `style` is
+/// complete, see complete_style().
+double tolerance_in_pixels(const StyleQuery& style, const std::string& layer);
 
 }  // namespace trapeze

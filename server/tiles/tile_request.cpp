@@ -37,8 +37,7 @@ std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
   return number;
 }
 
-Result<TilesRequest> parse_tile(const std::vector<std::string>& path,
-                                std::span<const QueryPair> query) {
+Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const StyledQuery& query) {
   auto layers = parse_layer_list(path[1]);
   if (!layers) return std::move(layers).problem();
   auto file = parse_picture_name(path[4]);
@@ -46,18 +45,18 @@ Result<TilesRequest> parse_tile(const std::vector<std::string>& path,
   auto tile = parse_tile_id(path[2], path[3], file->stem);
   if (!tile) return std::move(tile).problem();
   TileRequest request{*std::move(layers), *tile, file->scale, {}, file->format};
-  auto style = StyleQuery::parse(query, request.layers);
+  auto style = query.style_for(request.layers);
   if (!style) return std::move(style).problem();
   request.style = *std::move(style);
   return TilesRequest(std::move(request));
 }
 
-Result<TilesRequest> parse_tile_json(std::string_view file, std::span<const QueryPair> query) {
+Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& query) {
   file.remove_suffix(kJson.size());
   auto layers = parse_layer_list(file);
   if (!layers) return std::move(layers).problem();
   TileJsonRequest request{*std::move(layers), {}};
-  auto style = StyleQuery::parse(query, request.layers);
+  auto style = query.style_for(request.layers);
   if (!style) return std::move(style).problem();
   request.style = *std::move(style);
   return TilesRequest(std::move(request));
@@ -151,14 +150,14 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
   }
   const bool has_style = path->size() == 7 && (*path)[2] == "s";
   if (has_style) take_style(*path, *query);
-  auto expanded = styles.expand(std::move(*query));
-  if (!expanded) {
-    if (has_style) expanded.problem().status = 404;
-    return std::move(expanded).problem();
+  auto styled = styles.read(std::move(*query));
+  if (!styled) {
+    if (has_style) styled.problem().status = 404;
+    return std::move(styled).problem();
   }
-  if (path->size() == 5) return parse_tile(*path, *expanded);
+  if (path->size() == 5) return parse_tile(*path, *styled);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
-    return parse_tile_json(path->back(), *expanded);
+    return parse_tile_json(path->back(), *styled);
   }
   return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
                                   "/tiles/{{layers}}.json.",

@@ -37,10 +37,13 @@ const FeatureTable& features() {
   return features;
 }
 
-void check_same(const Filter& filter, const Filter& again) {
+using SharedFilter = std::shared_ptr<const Filter>;
+
+void check_same(const SharedFilter& filter, const SharedFilter& again) {
   const auto bound = BoundFilter::bind(filter, features());
   const auto bound_again = BoundFilter::bind(again, features());
-  require(bool{bound} == bool{bound_again}, "a filter fits, but not its own text");
+  require(static_cast<bool>(bound) == static_cast<bool>(bound_again),
+          "a filter fits, but not its own text");
   if (!bound) {
     require(bound.problem().status == 400 && !bound.problem().takes.empty(),
             "a filter is refused without words");
@@ -52,17 +55,18 @@ void check_same(const Filter& filter, const Filter& again) {
   }
 }
 
-void check_filter(const Filter& filter) {
-  require(filter.text().size() <= kMaxFilterLength, "a filter has a text that is too long");
-  const auto again = Filter::parse(filter.text());
+void check_filter(const SharedFilter& filter) {
+  require(filter->text().size() <= kMaxFilterLength, "a filter has a text that is too long");
+  const auto again = Filter::parse(filter->text());
   require(again.index() == 0, "the text of a filter is no filter");
-  check_same(filter, *std::get<0>(again));
+  check_same(filter, std::get<0>(again));
   // What it does not let pass, and does not call unknown, its negation does.
-  const auto negated = Filter::parse("NOT (" + filter.text() + ")");
+  const auto negated = Filter::parse("NOT (" + filter->text() + ")");
   if (negated.index() != 0) return;  // nested too deep, or too long
   const auto bound = BoundFilter::bind(filter, features());
-  const auto bound_negated = BoundFilter::bind(*std::get<0>(negated), features());
-  require(bool{bound} == bool{bound_negated}, "a filter fits, but not its negation");
+  const auto bound_negated = BoundFilter::bind(std::get<0>(negated), features());
+  require(static_cast<bool>(bound) == static_cast<bool>(bound_negated),
+          "a filter fits, but not its negation");
   if (!bound) return;
   for (std::uint32_t row = 0; row < features().size(); ++row) {
     require(!bound->passes(row) || !bound_negated->passes(row),
@@ -81,7 +85,7 @@ void check(const StyleParameter& parameter, std::string_view text) {
   require(again.has_value(), "the text of a value is refused");
   require(format_value(*again) == formatted, "the text of a value has another text");
   if (const auto* filter = std::get_if<std::shared_ptr<const Filter>>(&*value)) {
-    check_filter(**filter);
+    check_filter(*filter);
   } else {
     require(*again == *value, "the text of a value is another value");
   }

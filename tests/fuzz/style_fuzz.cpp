@@ -63,9 +63,10 @@ void check_id(const StyleQuery& style) {
     require(id.problem().status == 400, "a style is refused, but not with 400");
     return;
   }
-  const auto expanded = book.expand({{"style", *id}});
-  require(bool{expanded}, "a posted style is unknown");
-  require(*expanded == style.pairs(), "a posted style differs");
+  const auto styled = book.read({{"style", *id}});
+  require(static_cast<bool>(styled), "a posted style is unknown");
+  const auto named = styled->style_for(layers_of(style));
+  require(named && named->pairs() == style.pairs(), "a posted style differs");
 }
 
 /// The settings of one layer as a configuration has them: for all layers, without its name.

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> rows(std::string_view text) {
     ADD_FAILURE() << text << ": " << std::get<1>(parsed).what;
     return {};
   }
-  const auto bound = BoundFilter::bind(*std::get<0>(parsed), table);
+  const auto bound = BoundFilter::bind(std::get<0>(parsed), table);
   if (!bound) {
     ADD_FAILURE() << text << ": " << bound.problem().detail;
     return {};
@@ -203,7 +203,7 @@ TEST(FilterTest, PropertiesThatAreNotThereOrDoNotFitAreProblems) {
       {"name IN ('a', 1)", "single quotes"}};
   for (const auto& [text, takes] : wrong) {
     const auto filter = std::get<0>(Filter::parse(text));
-    const auto bound = BoundFilter::bind(*filter, table);
+    const auto bound = BoundFilter::bind(filter, table);
     ASSERT_FALSE(bound) << text;
     EXPECT_EQ(bound.problem().status, 400);
     EXPECT_EQ(bound.problem().parameter, "filter");

@@ -8,44 +8,55 @@
 namespace trapeze {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Pair;
-using ::testing::UnorderedElementsAre;
 
-std::vector<QueryPair> expand(const StyleBook& book, std::vector<QueryPair> query) {
-  auto expanded = book.expand(std::move(query));
-  if (!expanded) return {{"problem", expanded.problem().detail}};
-  return *expanded;
+/// The style of a query about the layers "land" and "water".
+std::string style_text(const StyleBook& book, std::vector<QueryPair> query) {
+  static const std::vector<std::string> layers = {"land", "water"};
+  const auto styled = book.read(std::move(query));
+  if (!styled) return "problem: " + styled.problem().detail;
+  const auto style = styled->style_for(layers);
+  return style ? style->canonical_text() : "problem: " + style.problem().detail;
+}
+
+StyleQuery layered_style(const std::string& json) {
+  return *parse_style_document(json);
 }
 
 TEST(StyleBookTest, AStyleFillsInWhatTheQueryDoesNotSet) {
   const StyleBook book({{"night", testing::style_of("fill=000080&stroke=ffffff")}});
-  EXPECT_THAT(expand(book, {{"style", "night"}}),
-              UnorderedElementsAre(Pair("fill", "000080ff"), Pair("stroke", "ffffffff")));
-  EXPECT_THAT(
-      expand(book, {{"stroke", "red"}, {"style", "night"}, {"x", "1"}}),
-      UnorderedElementsAre(Pair("fill", "000080ff"), Pair("stroke", "red"), Pair("x", "1")));
-  EXPECT_THAT(expand(book, {{"style", "default"}, {"fill", "red"}}),
-              ElementsAre(Pair("fill", "red")));
-  EXPECT_THAT(expand(book, {{"fill", "red"}}), ElementsAre(Pair("fill", "red")));
+  EXPECT_EQ(style_text(book, {{"style", "night"}}), "fill=000080ff&stroke=ffffffff");
+  EXPECT_EQ(style_text(book, {{"stroke", "red"}, {"style", "night"}, {"x", "1"}}),
+            "fill=000080ff&stroke=ff0000ff");
+  EXPECT_EQ(style_text(book, {{"style", "default"}, {"fill", "red"}}), "fill=ff0000ff");
+  EXPECT_EQ(style_text(book, {{"fill", "red"}}), "fill=ff0000ff");
+}
+
+TEST(StyleBookTest, AStyleSaysMoreOfOneLayerThanTheQueryOfAll) {
+  const StyleBook book(
+      {{"night",
+        layered_style(R"({"layers": {"water": {"fill": "navy"}, "sky": {"fill": "red"}}})")}});
+  EXPECT_EQ(style_text(book, {{"style", "night"}, {"fill", "lime"}}),
+            "fill=00ff00ff&water.fill=000080ff");
+  EXPECT_EQ(style_text(book, {{"style", "night"}, {"water.fill", "lime"}}), "water.fill=00ff00ff");
 }
 
 TEST(StyleBookTest, RulesForClassesGoTogether) {
   const StyleBook book({{"a", testing::style_of("color-by=kind&classes=x:red&fill=lime")}});
-  EXPECT_THAT(expand(book, {{"style", "a"}, {"color-by", "people"}, {"breaks", "1"}}),
-              UnorderedElementsAre(Pair("color-by", "people"), Pair("breaks", "1"),
-                                   Pair("fill", "00ff00ff")));
+  EXPECT_EQ(style_text(book, {{"style", "a"}, {"color-by", "people"}, {"breaks", "1"}}),
+            "breaks=1&color-by=people&fill=00ff00ff");
+  EXPECT_EQ(style_text(book, {{"style", "a"}, {"water.color-by", "people"}}),
+            "classes=x%3Aff0000ff&color-by=kind&fill=00ff00ff&water.color-by=people");
 }
 
 TEST(StyleBookTest, UnknownStylesAreAProblem) {
   const StyleBook book({{"night", testing::style_of("fill=navy")}});
-  const auto answer = book.expand({{"style", "day"}});
+  const auto answer = book.read({{"style", "day"}});
   const auto& problem = answer.problem();
   EXPECT_EQ(problem.status, 400);
   EXPECT_EQ(problem.parameter, "style");
   EXPECT_THAT(problem.takes, HasSubstr("night"));
-  EXPECT_FALSE(book.expand({{"style", "night"}, {"style", "night"}}));
+  EXPECT_FALSE(book.read({{"style", "night"}, {"style", "night"}}));
 }
 
 TEST(StyleBookTest, EqualStylesHaveOneIdEverywhere) {

@@ -46,7 +46,8 @@ class LayerStyleTest : public ::testing::Test {
     const std::vector<std::string> layers = {"towns", "lakes"};
     const auto parsed = StyleQuery::parse(decode_query(query).value(), layers);
     if (!parsed) return parsed.problem();
-    return layer_style(*parsed, served_, 0);
+    const auto complete = complete_style(*parsed, served_.config);
+    return complete ? layer_style(*complete, served_, 0) : complete.problem();
   }
   LayerStyle style(std::string_view query) {
     auto resolved = resolve(query);
