@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "core/adapt/vertex_weight.h"
 #include "core/borders/coverage_groups.h"
 #include "core/layer/layer_options.h"
 #include "server/config/load_config.h"
+#include "server/tiles/tile_plan.h"
 
 namespace trapeze {
 
@@ -23,6 +25,11 @@ class UsageError : public std::runtime_error {
 
 /// None if the name is empty. Throws UsageError that says what --coverage takes.
 std::optional<CoverageMode> coverage_or_throw(const std::string& name);
+
+/// What --weights takes, in words.
+std::string weight_names();
+/// Throws UsageError that says what --weights takes.
+WeightRule weights_or_throw(const std::string& name);
 
 /// What is done about polygons that share borders.
 struct CoverageArguments {
@@ -58,7 +65,7 @@ int run_check(const CheckArguments& arguments);
 struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
-  std::string weights = "douglas-peucker";
+  std::string weights{name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
 };
@@ -67,9 +74,9 @@ int run_prepare(const PrepareArguments& arguments);
 struct ExportArguments {
   std::string file;
   int zoom = 0;
-  double simplify = 0.25;  // pixels, as tiles are drawn
+  double simplify = tolerance_in_pixels({}, {});  // pixels, as tiles are drawn
   std::string topology = "strict";
-  std::string weights = "douglas-peucker";
+  std::string weights{name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   std::string crs = "EPSG:4326";
   bool overwrite = false;

@@ -43,9 +43,7 @@ ExportOptions options_from(const ExportArguments& arguments) {
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
   options.generalization.topology =
       known(topology_from_name(arguments.topology), "--topology takes strict or fast");
-  options.generalization.weights =
-      known(weight_rule_from_name(arguments.weights),
-            "--weights takes douglas-peucker, raised-parents or effective-area");
+  options.generalization.weights = weights_or_throw(arguments.weights);
   apply(arguments.coverage, options.generalization);
   options.crs = known(export_crs_from_name(arguments.crs), "--crs takes EPSG:4326 or EPSG:3857");
   options.overwrite = arguments.overwrite;

@@ -19,14 +19,6 @@ namespace {
 
 constexpr const char* kExtension = ".trapeze";
 
-WeightRule weights_or_throw(const std::string& name) {
-  const auto rule = weight_rule_from_name(name);
-  if (!rule) {
-    throw UsageError("--weights takes douglas-peucker, raised-parents or effective-area");
-  }
-  return *rule;
-}
-
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -69,6 +61,17 @@ void prepare(const std::string& file, const LoadOptions& how, const std::string&
 }
 
 }  // namespace
+
+std::string weight_names() {
+  return fmt::format("{}, {} or {}", name_of(WeightRule::douglas_peucker),
+                     name_of(WeightRule::raised_parents), name_of(WeightRule::effective_area));
+}
+
+WeightRule weights_or_throw(const std::string& name) {
+  const auto rule = weight_rule_from_name(name);
+  if (!rule) throw UsageError("--weights takes " + weight_names());
+  return *rule;
+}
 
 int run_prepare(const PrepareArguments& arguments) {
   LoadOptions how;

@@ -225,10 +225,9 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads")
       ->required();
   prepare
-      ->add_option(
-          "--weights", arguments.weights,
-          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
-          "effective-area")
+      ->add_option("--weights", arguments.weights,
+                   fmt::format("What decides which vertices go: {}; {} if not set",
+                               trapeze::weight_names(), arguments.weights))
       ->type_name("NAME");
   add_coverage(*prepare, arguments.coverage);
   prepare
@@ -271,10 +270,9 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                    "crossing themselves; what crosses is noded")
       ->type_name("NAME");
   command
-      ->add_option(
-          "--weights", arguments.weights,
-          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
-          "effective-area")
+      ->add_option("--weights", arguments.weights,
+                   fmt::format("What decides which vertices go: {}; {} if not set",
+                               trapeze::weight_names(), arguments.weights))
       ->type_name("NAME");
   add_coverage(*command, arguments.coverage);
   command
