@@ -9,6 +9,7 @@
 
 #include "server/cli/option_values.h"
 #include "server/config/load_config.h"
+#include "server/tiles/tile_plan.h"
 
 namespace trapeze {
 
@@ -38,7 +39,7 @@ int run_check(const CheckArguments& arguments);
 struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
-  std::string weights = "douglas-peucker";
+  std::string weights{name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
 };
@@ -47,9 +48,9 @@ int run_prepare(const PrepareArguments& arguments);
 struct ExportArguments {
   std::string file;
   int zoom = 0;
-  double simplify = 0.25;  // pixels, as tiles are drawn
+  double simplify = tolerance_in_pixels({}, {});  // pixels, as tiles are drawn
   std::string topology = "strict";
-  std::string weights = "douglas-peucker";
+  std::string weights{name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   std::string crs = "EPSG:4326";
   bool overwrite = false;

@@ -1,9 +1,12 @@
 // The command line: reads it, calls the command, reports what went wrong.
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -11,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/borders/gap_closing.h"
@@ -104,9 +108,22 @@ constexpr const char* kBenchFooter =
     "Benchmarks are programs of their own, trapeze-NAME in the folder bench beside this program:\n"
     "they need libraries that this one does not. They are built with the release preset.";
 
-constexpr const char* kRendererHelp =
-    "What draws: auto, egl, osmesa or software (auto tries them in this order)";
-constexpr const char* kDeviceHelp = "The EGL device to prefer: its index, or a part of its name";
+/// What the setting is for, what it takes where that is one of a few words, and what it is if it is
+/// not set.
+std::string help_of(const std::string& name) {
+  const auto& settings = trapeze::config_settings();
+  const auto setting =
+      std::ranges::find_if(settings, [&name](const auto& each) { return each.name() == name; });
+  std::string help = setting->help;
+  help.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(help.front())));
+  if (!setting->choices.empty()) help += ". Takes " + setting->takes;
+  const trapeze::SettingValue value = setting->get(trapeze::Config());
+  if (const auto* number = std::get_if<std::int64_t>(&value)) {
+    return help + ". If not set: " + std::to_string(*number);
+  }
+  const std::string& text = std::get<std::string>(value);
+  return text.empty() ? help : help + ". If not set: " + text;
+}
 
 trapeze::ConfigOverride parse_assignment(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -122,16 +139,16 @@ trapeze::ConfigOverride parse_assignment(const std::string& text) {
   return {name, text.substr(equals + 1), "--set " + name};
 }
 
-/// An option that is a setting of the configuration.
+/// An option that is a setting of the configuration, which is text or an integer.
 void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const std::string& option,
-                 const std::string& setting, const char* type, const char* help) {
+                 const std::string& setting, const char* type) {
   command
       .add_option_function<std::string>(
           option,
           [&arguments, option, setting](const std::string& value) {
             arguments.settings.push_back({setting, value, option});
           },
-          help)
+          help_of(setting))
       ->type_name(type);
 }
 
@@ -152,18 +169,13 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command
       .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
-  add_setting(command, arguments, "--port", "server.port", "N",
-              "Port, 8080 if not set; 0 takes any free one");
-  add_setting(command, arguments, "--address", "server.address", "IP",
-              "Address to listen on, 0.0.0.0 if not set");
-  add_setting(command, arguments, "--threads", "server.threads", "N",
-              "Threads for connections, 2 if not set");
-  add_setting(command, arguments, "--workers", "server.workers", "N",
-              "Threads that draw, one a core if not set");
-  add_setting(command, arguments, "--renderer", "server.renderer", "NAME", kRendererHelp);
-  add_setting(command, arguments, "--device", "server.device", "DEVICE", kDeviceHelp);
-  add_setting(command, arguments, "--web-root", "server.web_root", "DIR",
-              "Folder of the viewer, served at /");
+  add_setting(command, arguments, "--port", "server.port", "N");
+  add_setting(command, arguments, "--address", "server.address", "IP");
+  add_setting(command, arguments, "--threads", "server.threads", "N");
+  add_setting(command, arguments, "--workers", "server.workers", "N");
+  add_setting(command, arguments, "--renderer", "server.renderer", "NAME");
+  add_setting(command, arguments, "--device", "server.device", "DEVICE");
+  add_setting(command, arguments, "--web-root", "server.web_root", "DIR");
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -227,10 +239,9 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads")
       ->required();
   prepare
-      ->add_option(
-          "--weights", arguments.weights,
-          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
-          "effective-area")
+      ->add_option("--weights", arguments.weights,
+                   fmt::format("What decides which vertices go: {}; {} if not set",
+                               trapeze::weight_names(), arguments.weights))
       ->type_name("NAME");
   add_coverage(*prepare, arguments.coverage);
   prepare
@@ -264,7 +275,8 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
              })
       .required();
   add_number(*command, "--simplify", "PX",
-             "Tolerance in pixels, 0.25 if not set, as tiles are drawn; 0 removes nothing",
+             fmt::format("Tolerance in pixels, {} if not set, as tiles are drawn; 0 removes nothing",
+                         arguments.simplify),
              [&arguments](const std::string& option, const std::string& text) {
                arguments.simplify =
                    trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
@@ -275,10 +287,9 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                    "crossing themselves; what crosses is noded")
       ->type_name("NAME");
   command
-      ->add_option(
-          "--weights", arguments.weights,
-          "What decides which vertices go: douglas-peucker (if not set), raised-parents or "
-          "effective-area")
+      ->add_option("--weights", arguments.weights,
+                   fmt::format("What decides which vertices go: {}; {} if not set",
+                               trapeze::weight_names(), arguments.weights))
       ->type_name("NAME");
   add_coverage(*command, arguments.coverage);
   command
@@ -307,8 +318,9 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
              });
   render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
       ->type_name("QUERY");
-  render->add_option("--renderer", arguments.renderer, kRendererHelp)->type_name("NAME");
-  render->add_option("--device", arguments.device, kDeviceHelp)->type_name("DEVICE");
+  render->add_option("--renderer", arguments.renderer, help_of("server.renderer"))
+      ->type_name("NAME");
+  render->add_option("--device", arguments.device, help_of("server.device"))->type_name("DEVICE");
   render->add_option("--output", arguments.output, "The picture to write: .png or .webp")
       ->required()
       ->type_name("F");

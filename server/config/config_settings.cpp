@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -212,17 +213,22 @@ const Words<LogFormat>& format_words() {
   return words;
 }
 
+/// Under the names that they have everywhere.
+template <typename Value>
+Words<std::optional<Value>> named(std::initializer_list<Value> values) {
+  Words<std::optional<Value>> words;
+  for (const Value value : values) words.emplace_back(name_of(value), value);
+  return words;
+}
+
 const Words<std::optional<WeightRule>>& weight_words() {
-  static const Words<std::optional<WeightRule>> words = {
-      {"douglas-peucker", WeightRule::douglas_peucker},
-      {"raised-parents", WeightRule::raised_parents},
-      {"effective-area", WeightRule::effective_area}};
+  static const auto words =
+      named({WeightRule::douglas_peucker, WeightRule::raised_parents, WeightRule::effective_area});
   return words;
 }
 
 const Words<std::optional<CoverageMode>>& coverage_words() {
-  static const Words<std::optional<CoverageMode>> words = {
-      {"auto", CoverageMode::automatic}, {"on", CoverageMode::on}, {"off", CoverageMode::off}};
+  static const auto words = named({CoverageMode::automatic, CoverageMode::on, CoverageMode::off});
   return words;
 }
 
@@ -230,7 +236,8 @@ const Words<std::optional<CoverageMode>>& coverage_words() {
 Setting<LayerConfig> weights_setting() {
   auto setting = choice<std::optional<WeightRule>, LayerConfig>(
       "weights", [](auto& layer) -> auto& { return layer.weights; }, weight_words(),
-      "what makes a vertex matter; not set: as a file was prepared, else \"douglas-peucker\"");
+      "what makes a vertex matter; not set: as a file was prepared, else \"" +
+          std::string(name_of(WeightRule::douglas_peucker)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.weights ? words(layer) : SettingValue(std::string());
   };

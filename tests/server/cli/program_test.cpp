@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "render/picture/png.h"
+#include "server/config/config.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
 
@@ -571,6 +572,18 @@ TEST(ProgramTest, HelpShowsExamples) {
   Program version({"--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_THAT(version.output(), ::testing::StartsWith("trapeze 0."));
+}
+
+TEST(ProgramTest, HelpTellsTheDefaultsOfSettings) {
+  Program program({"serve", "--help"});
+  EXPECT_EQ(program.wait(), 0);
+  const ServerConfig defaults;
+  const std::string port = std::to_string(defaults.port);
+  EXPECT_THAT(
+      program.output(),
+      AllOf(::testing::ContainsRegex("--port N +The port.*If not set: " + port),
+            ::testing::ContainsRegex("--address IP +The.*If not set: " + defaults.address),
+            ::testing::ContainsRegex("--renderer NAME .*\"software\"[.] If not set: auto")));
 }
 
 }  // namespace

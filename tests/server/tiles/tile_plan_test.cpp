@@ -42,6 +42,11 @@ class TilePlanTest : public ::testing::Test {
   const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
 };
 
+TEST_F(TilePlanTest, TheDefaultToleranceIsTheOneThatParametersTell) {
+  EXPECT_EQ(format_value(tolerance_in_pixels({}, {})),
+            style_parameter(ParameterId::simplify).default_text);
+}
+
 TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
   const TilePlan plan = this->plan("rings,west/0/0/0.png");
   EXPECT_THAT(plan.layers,
