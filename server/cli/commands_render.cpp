@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -53,9 +54,10 @@ TileId tile_or_throw(const std::string& text) {
                   kMaxZoom, text));
 }
 
-/// What the end of a file's name says.
+/// What the end of a file's name says, whatever its case.
 TileFormat format_of(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".png") return TileFormat::png;
   if (extension != ".webp") {
     throw UsageError(

@@ -472,15 +472,17 @@ TEST(ProgramTest, RendersOneTileIntoAFile) {
   EXPECT_EQ(picture.at(500, 10).a, 0);
 }
 
-TEST(ProgramTest, RendersWhatTheNameOfTheOutputSays) {
-  const std::string path = scratch_path("tile.webp");
-  Program program({"render", fixture("rings.geojson"), "--tile", "0/0/0", "--renderer", "software",
-                   "--output", path});
-  ASSERT_EQ(program.wait(), 0) << program.output();
-  const std::string bytes = read_file(path);
-  std::filesystem::remove(path);
-  EXPECT_EQ(bytes.substr(0, 4), "RIFF");
-  EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+TEST(ProgramTest, RendersWhatTheNameOfTheOutputSaysWhateverItsCase) {
+  for (const std::string name : {"tile.webp", "tile.WEBP"}) {
+    const std::string path = scratch_path(name);
+    Program program({"render", fixture("rings.geojson"), "--tile", "0/0/0", "--renderer",
+                     "software", "--output", path});
+    ASSERT_EQ(program.wait(), 0) << program.output();
+    const std::string bytes = read_file(path);
+    std::filesystem::remove(path);
+    EXPECT_EQ(bytes.substr(0, 4), "RIFF");
+    EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+  }
 }
 
 TEST(ProgramTest, PrintsTheTableOfParametersAndSaysSoInItsHelp) {
