@@ -114,8 +114,8 @@ trapeze::ConfigOverride parse_assignment(const std::string& text) {
   const bool is_known = std::ranges::find(known, name) != known.end();
   if (equals == std::string::npos || !is_known) {
     throw trapeze::UsageError("--set takes TABLE.KEY=VALUE of a setting, given was \"" + text +
-                              "\"" + (is_known ? "" : trapeze::did_you_mean(name, known)) +
-                              "; `trapeze config print` shows all settings");
+                              "\"; `trapeze config print` shows all settings" +
+                              (is_known ? "" : trapeze::did_you_mean(name, known)));
   }
   return {name, text.substr(equals + 1), "--set " + name};
 }
@@ -354,10 +354,12 @@ std::vector<std::string> option_names(const CLI::App& app, const CLI::App& comma
   return names;
 }
 
-/// "trapeze config print".
-std::string whole_name(const CLI::App& command) {
+/// "config print"; empty for the program itself.
+std::string command_path(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
-  return parent == nullptr ? command.get_name() : whole_name(*parent) + ' ' + command.get_name();
+  if (parent == nullptr) return "";
+  const std::string above = command_path(*parent);
+  return above.empty() ? command.get_name() : above + ' ' + command.get_name();
 }
 
 /// What is left over when all that is known was read.
@@ -368,7 +370,7 @@ std::string unknown_problem(const CLI::App& app, const CLI::App& command,
     return "there is no option " + name + trapeze::did_you_mean(name, option_names(app, command));
   }
   const std::vector<std::string> commands = command_names(command);
-  if (commands.empty()) return whole_name(command) + " takes no further argument " + argument;
+  if (commands.empty()) return command_path(command) + " takes no further argument " + argument;
   return "there is no command " + argument + trapeze::did_you_mean(argument, commands);
 }
 
@@ -378,14 +380,14 @@ std::string option_problem(const CLI::App& app, const CLI::App& command,
                            const CLI::ParseError& error) {
   const std::string words = error.what();
   if (command.get_require_subcommand_min() > 0 && command.get_subcommands().empty()) {
-    return whole_name(command) +
+    return command_path(command) +
            " needs a command: " + CLI::detail::join(command_names(command), ", ");
   }
   for (const CLI::App* each : {&command, &app}) {
     for (const CLI::Option* option : each->get_options()) {
       const std::string name = option->get_name();
       if (words.starts_with(name + " is required")) return name + " is missing";
-      if (words.find("Could not convert: " + name + ' ') == 0) return name + " takes no value";
+      if (words.starts_with("Could not convert: " + name + ' ')) return name + " takes no value";
       if (!words.starts_with(name + ':')) continue;
       if (option->count() > 1) return name + " is given more than once";
       return name + " needs a value, " + option->get_type_name();
@@ -401,8 +403,9 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const std::string problem = unknown.empty() ? option_problem(app, command, error)
                                               : unknown_problem(app, command, unknown.front());
-  return problem + (problem.ends_with('?') ? " `" : "; `") + whole_name(command) +
-         " --help` tells more";
+  const std::string path = command_path(command);
+  const std::string who = path.empty() ? "trapeze" : "trapeze " + path;
+  return problem + (problem.ends_with('?') ? " `" : "; `") + who + " --help` tells more";
 }
 
 int run(int argc, char** argv) {

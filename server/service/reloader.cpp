@@ -52,13 +52,15 @@ struct Reloader::Retired {
 };
 
 Reloader::Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-                   TileService& tiles, Metrics& metrics, std::function<void()> give_up)
+                   TileService& tiles, Metrics& metrics, std::function<void()> give_up,
+                   std::function<void()> is_loaded)
     : source_(std::move(source)),
       watch_(watch),
       data_(data),
       tiles_(tiles),
       metrics_(metrics),
       give_up_(std::move(give_up)),
+      is_loaded_(std::move(is_loaded)),
       retired_(std::make_shared<Retired>()),
       thread_([this] { work(); }) {}
 
@@ -91,6 +93,7 @@ std::string Reloader::last_problem() const {
 
 void Reloader::work() {
   if (!load_first()) return give_up_();
+  is_loaded_();
   while (wait_for_a_reason()) load_again();
 }
 

@@ -39,10 +39,11 @@ class Reloader {
  public:
   /// Begins to read the layers in a thread of its own. `watch` is the time between looks at the
   /// files, 0 for none: a change is taken up when two looks in a row see the same. If the layers
-  /// cannot be read the first time, calls `give_up` from that thread, and does no more. All
-  /// references outlive the reloader.
+  /// cannot be read the first time, calls `give_up` from that thread, and does no more; else it
+  /// calls `is_loaded` from there once. All references outlive the reloader.
   Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-           TileService& tiles, Metrics& metrics, std::function<void()> give_up);
+           TileService& tiles, Metrics& metrics, std::function<void()> give_up,
+           std::function<void()> is_loaded);
   /// Waits for the end of what is being read.
   ~Reloader();
   Reloader(const Reloader&) = delete;
@@ -78,6 +79,7 @@ class Reloader {
   TileService& tiles_;
   Metrics& metrics_;
   const std::function<void()> give_up_;
+  const std::function<void()> is_loaded_;
   const std::shared_ptr<Retired> retired_;
 
   // Of the thread.

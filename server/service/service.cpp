@@ -45,6 +45,15 @@ SiteOptions site_options(const Config& config) {
   return options;
 }
 
+/// An address that listens on all interfaces cannot be opened; the loopback address can.
+std::string address_to_open(const std::string& listening, std::uint16_t port) {
+  if (listening == "0.0.0.0") return fmt::format("http://127.0.0.1:{}/", port);
+  if (listening == "::") return fmt::format("http://[::1]:{}/", port);
+  if (listening.find(':') != std::string::npos)
+    return fmt::format("http://[{}]:{}/", listening, port);
+  return fmt::format("http://{}:{}/", listening, port);
+}
+
 HttpServerOptions server_options(const Config& config) {
   HttpServerOptions options;
   options.address = config.server.address;
@@ -95,8 +104,9 @@ Service::Service(const Config& config, LayerSource source)
   site_ = std::make_unique<Site>(std::move(options), std::move(files), data_, *tiles_, cache_);
   open_server(config);
   if (config.admin.port != 0) open_admin(config);
-  reloader_ = std::make_unique<Reloader>(std::move(source), milliseconds(config.server.watch_ms),
-                                         data_, *tiles_, metrics_, [this] { server_->stop(); });
+  reloader_ = std::make_unique<Reloader>(
+      std::move(source), milliseconds(config.server.watch_ms), data_, *tiles_, metrics_,
+      [this] { server_->stop(); }, [this] { tell_address_when_started(); });
 }
 
 Service::~Service() = default;
@@ -110,6 +120,7 @@ void Service::open_server(const Config& config) {
       [this](const Answered& answered) { observe(answered); });
   where_.push_back(fmt::format("listening on {} port {}, {} I/O threads", config.server.address,
                                server_->port(), config.server.threads));
+  address_to_open_ = address_to_open(config.server.address, server_->port());
 }
 
 void Service::open_admin(const Config& config) {
@@ -140,6 +151,7 @@ void Service::act_on_signals() {
 // Told only now, as who reads it may send a signal at once.
 void Service::run() {
   for (const std::string& line : where_) spdlog::info("{}", line);
+  tell_address_when_started();
   // As long as the other, to be watched while it ends.
   std::thread admin;
   if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });
@@ -149,6 +161,10 @@ void Service::run() {
     admin.join();
   }
   reloader_->rethrow_failure();
+}
+
+void Service::tell_address_when_started() {
+  if (--steps_to_start_ == 0) spdlog::info("open {}", address_to_open_);
 }
 
 void Service::reload() {

@@ -1,6 +1,7 @@
 // A whole server: layers, workers, cache, sites and sockets, put together as configured.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -52,6 +53,8 @@ class Service {
   void observe(const Answered& answered);
   void open_server(const Config& config);
   void open_admin(const Config& config);
+  /// The last line of the log of starting, from whichever thread takes the last step.
+  void tell_address_when_started();
 
   const std::size_t cache_budget_;
   const std::size_t queue_limit_;
@@ -65,6 +68,8 @@ class Service {
   std::unique_ptr<HttpServer> server_;
   std::unique_ptr<AdminSite> admin_site_;  // these two are null if there is no admin address
   std::unique_ptr<HttpServer> admin_;
+  std::string address_to_open_;
+  std::atomic<int> steps_to_start_ = 2;  // listening is logged, the layers are loaded; in any order
   std::unique_ptr<Reloader> reloader_;
 };
 

@@ -25,6 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using testing::fixture;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -139,6 +140,15 @@ TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   EXPECT_THAT(program.output(),
               AllOf(HasSubstr("drawing by software"), HasSubstr("rings.geojson: 1 of 1 features"),
                     HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
+}
+
+TEST(ProgramTest, EndsItsStartWithTheAddressToOpen) {
+  Program program(serve_arguments({fixture("rings.geojson")}));
+  const std::string address = "open http://127.0.0.1:" + std::to_string(program.port()) + "/\n";
+  for (int i = 0; i < 2000 && program.output().find(address) == std::string::npos; ++i) {
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_THAT(program.output(), AllOf(HasSubstr("ready: 1 layers"), EndsWith(address)));
 }
 
 TEST(ProgramTest, EndsInOrderOnSigint) {
@@ -371,7 +381,7 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
     Program program(arguments);
     EXPECT_EQ(program.wait(), 2) << says;
     EXPECT_THAT(program.output(), AllOf(HasSubstr(says), Not(HasSubstr("required"))));
-    if (!arguments.empty()) EXPECT_THAT(program.output(), StartsWith("trapeze: "));
+    EXPECT_THAT(program.output(), StartsWith(arguments.empty() ? "Trapeze" : "trapeze: "));
   }
 }
 

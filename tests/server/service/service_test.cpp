@@ -307,7 +307,8 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   const auto layers = [] { return layers_of_files({fixture("rings.geojson")}); };
   // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
   // up.
-  Reloader reloader({layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); });
+  Reloader reloader(
+      {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto draw = [&](const char* query) {
     std::atomic<int> status = 0;
@@ -342,7 +343,9 @@ TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {
   const auto layers = []() -> std::vector<LayerConfig> {
     throw std::runtime_error("there is no map");
   };
-  Reloader reloader({layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; });
+  Reloader reloader(
+      {layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; },
+      [] { FAIL() << "nothing is loaded"; });
   EXPECT_TRUE(holds_within(5s, [&] { return has_given_up.load(); }));
   EXPECT_THROW(reloader.rethrow_failure(), std::runtime_error);
   EXPECT_FALSE(reloader.is_loading());
