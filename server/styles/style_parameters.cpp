@@ -196,7 +196,7 @@ constexpr std::array kParameters = {
                    .default_text = "each layer's own style",
                    .is_per_layer = false,
                    .description = "a style of the configuration, or one that was posted to "
-                                  "/styles; what the query sets beside it goes before it"},
+                                  "/styles; what else the query sets overrides it"},
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
                    .type = Type::word,
