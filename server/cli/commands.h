@@ -15,7 +15,7 @@ namespace trapeze {
 
 struct ServeArguments {
   std::string config;                    // may be empty
-  std::vector<ConfigOverride> settings;  // what the command line says, which goes before all else
+  std::vector<ConfigOverride> settings;  // of the command line; they override all others
   std::vector<std::string> files;        // instead of the layers of the configuration
   bool is_verbose = false;               // whatever log.level says
 };

@@ -84,7 +84,7 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
 }
 
 [[noreturn]] void end_now() {
-  // Reading a large file cannot be interrupted, and nobody waits for its result any more. The
+  // Reading a large file cannot be interrupted, and its result is not needed any more. The
   // thread that reads must not meet objects that are being destroyed: so none are.
   spdlog::info("stopped while loading");
   std::quick_exit(0);

@@ -332,7 +332,7 @@ std::optional<trapeze::BenchArguments> bench_arguments(int argc, char** argv) {
   return trapeze::BenchArguments{argv[2], {argv + 3, argv + argc}};
 }
 
-/// For help, and for want of a name.
+/// For its help, and to report that the name is missing.
 void add_bench(CLI::App& app, std::string& name) {
   CLI::App* bench =
       app.add_subcommand("bench", "Run a benchmark: trapeze bench NAME [OPTION OF NAME ...]");

@@ -33,9 +33,9 @@ WeightRule weights_or_throw(const std::string& name);
 
 /// What is done about polygons that share borders.
 struct CoverageArguments {
-  std::string
-      mode;  // a name of coverage_from_name(); empty: as a file was prepared, else the usual
-  std::optional<double> close_gaps;  // metres; unset: as a file was prepared, else 0
+  /// A name of coverage_from_name(); empty: as the file was prepared, or the default.
+  std::string mode;
+  std::optional<double> close_gaps;  // metres; unset: as the file was prepared, or 0
 };
 /// None if the name is empty, which leaves it to the file. Gaps are not closed without a coverage.
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments);

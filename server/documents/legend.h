@@ -8,8 +8,8 @@ namespace trapeze {
 
 /// /legend/{layers}.json, or /legend/{layers}[@2x].png, in the style of the query: for each layer,
 /// the topmost first, its title and one entry for each way in which its polygons are drawn. The
-/// picture shows a small polygon for each, with pattern and outline as in the
-/// map, but no outline wider than 4 pixels.
+/// picture shows a small polygon for each, with pattern and outline as in the map, but
+/// no outline wider than 4 pixels.
 Result<Document> legend_document(const DocumentRequest& request);
 
 }  // namespace trapeze

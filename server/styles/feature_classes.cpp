@@ -22,7 +22,8 @@ bool is_equal(const Value& value, const FilterLiteral& literal) {
   return real != nullptr && other != nullptr && *real == *other;
 }
 
-// The length goes before a text: so none can be taken for the end of it and the beginning of more.
+// The length precedes a text, so that no text can be taken for the end of one and the start of
+// another.
 std::string key_of(const std::optional<FilterLiteral>& value) {
   if (!value) return "null;";
   if (const auto* integer = std::get_if<std::int64_t>(&*value)) return fmt::format("{};", *integer);

@@ -307,7 +307,8 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   const auto layers = [] { return layers_of_files({fixture("rings.geojson")}); };
   // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
   // up.
-  Reloader reloader({layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+  Reloader reloader(
+      {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto draw = [&](const char* query) {
     std::atomic<int> status = 0;
