@@ -43,8 +43,7 @@ struct Assembly {
 
 /// Makes `graph` the graph of those features of a group that can share one, see CoverageBuilder:
 /// features that overlap by too much stay apart, and so do all if fewer than two remain or if they
-/// cannot be noded.
-/// Gaps of up to `widest_gap` metres are filled.
+/// cannot be noded. Gaps of up to `widest_gap` metres are filled.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph);
 
