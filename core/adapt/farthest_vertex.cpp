@@ -20,7 +20,7 @@ struct FarthestVertex::Search {
 
 void FarthestVertex::assign(std::span<const Point> ring) {
   ring_ = ring;
-  looked_at_ = 0;
+  visits_ = 0;
   has_tree_ = false;
 }
 
@@ -77,8 +77,8 @@ void FarthestVertex::append_hull(Row& row) {
 
 FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   Search search{SegmentDistance(at(begin), at(end)), begin, end, {begin + 1, -1}};
-  if (end - begin <= kFew || looked_at_ < kPatience * ring_.size()) {
-    looked_at_ += end - begin;
+  if (end - begin <= kMostWithoutTree || visits_ < kVisitsBeforeTree * ring_.size()) {
+    visits_ += end - begin;
     examine_all(begin + 1, end, search);
     return search.best;
   }

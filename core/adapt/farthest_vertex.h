@@ -67,11 +67,11 @@ class FarthestVertex {
   Found find(std::size_t begin, std::size_t end);
 
  private:
-  static constexpr std::size_t kLeaf = 64;  // vertices in a hull of the lowest row
-  static constexpr std::size_t kFew = 512;  // too few vertices for a tree
+  static constexpr std::size_t kLeaf = 64;              // vertices in a hull of the lowest row
+  static constexpr std::size_t kMostWithoutTree = 512;  // too few vertices for a tree
   // How often each vertex of a ring is examined before a tree is built: more often than is usual
   // even for a ring of millions of vertices, whose pieces are roughly halved each time.
-  static constexpr std::size_t kPatience = 48;
+  static constexpr std::size_t kVisitsBeforeTree = 48;
 
   /// Convex hulls one after another.
   struct Row {
@@ -96,7 +96,7 @@ class FarthestVertex {
   double bound_of(std::size_t row, std::size_t index, const Search& search) const;
 
   std::span<const Point> ring_;
-  std::size_t looked_at_ = 0;  // vertices, since the ring was assigned
+  std::size_t visits_ = 0;  // vertices examined since the ring was assigned
   bool has_tree_ = false;
   std::vector<Row> rows_;  // [0]: around kLeaf vertices each; each next around pairs
   std::vector<Point> points_;

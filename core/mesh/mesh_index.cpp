@@ -129,7 +129,8 @@ MeshIndex::MeshIndex(TrapezoidRange range, std::span<const Entry> entries)
       entries_(StoredArray<Entry>::looking_at(entries)),
       heights_(heights_over(range.count, kFanout)) {
   if (entries.size() != heights_.back()) {
-    throw std::invalid_argument("an index is not one over its trapezoids");
+    throw std::invalid_argument(
+        "the number of entries of an index does not fit that of its trapezoids");
   }
 }
 

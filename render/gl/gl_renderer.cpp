@@ -199,14 +199,15 @@ void GlRenderer::run_pass(DrawTimes& times) {
       gl_.MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, bytes_of<std::int32_t>(used_),
                          GL_MAP_READ_BIT | GL_MAP_WRITE_BIT));
   throw_on_gl_error(gl_, "drawing");
-  if (differences == nullptr) throw std::runtime_error("OpenGL: what was drawn cannot be read");
+  if (differences == nullptr)
+    throw std::runtime_error("OpenGL: the buffer of areas cannot be mapped");
   differences_ = {differences, used_};
 }
 
 void GlRenderer::unmap() {
   differences_ = {};
   if (gl_.UnmapBuffer(GL_SHADER_STORAGE_BUFFER) != GL_TRUE) {
-    throw std::runtime_error("OpenGL: what was drawn was lost while it was read");
+    throw std::runtime_error("OpenGL: the buffer of areas was lost while it was mapped");
   }
 }
 

@@ -39,7 +39,7 @@ using Layout = std::unique_ptr<raqm_t, DestroyLayout>;
 
 Library open_library() {
   FT_Library library = nullptr;
-  if (FT_Init_FreeType(&library) != 0) throw std::runtime_error("FreeType does not start");
+  if (FT_Init_FreeType(&library) != 0) throw std::runtime_error("FreeType cannot be initialized");
   return Library(library);
 }
 
