@@ -29,14 +29,6 @@ std::string join(const std::vector<RendererFailure>& failures) {
 
 }  // namespace
 
-std::optional<RendererKind> renderer_kind_from(std::string_view word) {
-  if (word == "auto") return RendererKind::automatic;
-  if (word == "egl") return RendererKind::egl;
-  if (word == "osmesa") return RendererKind::osmesa;
-  if (word == "software") return RendererKind::software;
-  return std::nullopt;
-}
-
 MadeRenderers make_renderers(const RendererOptions& options, int count) {
   if (count < 1) throw std::invalid_argument("at least one renderer is needed");
   MadeRenderers made;

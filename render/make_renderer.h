@@ -2,19 +2,23 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/grid/name_table.h"
 #include "render/mask/mask.h"
 
 namespace trapeze {
 
 enum class RendererKind { automatic, egl, osmesa, software };
 
-/// "auto", "egl", "osmesa" or "software"; nothing for other words.
-std::optional<RendererKind> renderer_kind_from(std::string_view word);
+inline constexpr NameTable<RendererKind, 4> kRendererNames({
+    {"auto", RendererKind::automatic},
+    {"egl", RendererKind::egl},
+    {"osmesa", RendererKind::osmesa},
+    {"software", RendererKind::software},
+});
 
 struct RendererOptions {
   RendererKind kind = RendererKind::automatic;

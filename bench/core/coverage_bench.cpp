@@ -170,7 +170,7 @@ void report_build(const std::string& layer, const std::string& path, const Pair&
                   std::vector<Figure>& figures) {
   const std::vector<Rings> rings = read_source_rings(path);
   for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
-    Figure figure("coverage/" + layer + "/" + std::string(name_of(kModes[mode])));
+    Figure figure("coverage/" + layer + "/" + std::string(kCoverageNames.name_of(kModes[mode])));
     figure.set("built on one core, cpu s", pair.one_core[mode].cpu);
     figure.set("built on one core, wall s", pair.one_core[mode].wall);
     figure.set("built on all cores, cpu s", pair.all_cores[mode].cpu);
@@ -248,7 +248,7 @@ void measure(const Options& options, const std::string& layer, std::vector<Figur
   std::unique_ptr<Mapshaper> mapshaper;
   if (Mapshaper::is_installed()) mapshaper = std::make_unique<Mapshaper>(options.program, path);
   for (const WeightRule rule : {WeightRule::douglas_peucker, WeightRule::effective_area}) {
-    report_vertices("coverage/" + layer + "/" + std::string(name_of(rule)),
+    report_vertices("coverage/" + layer + "/" + std::string(kWeightNames.name_of(rule)),
                     *load(path, CoverageMode::automatic, 0, rule),
                     *load(path, CoverageMode::off, 0, rule), rule, mapshaper.get(), figures);
   }

@@ -14,28 +14,11 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-constexpr std::array<std::pair<std::string_view, WeightRule>, 3> kNames{{
-    {"douglas-peucker", WeightRule::douglas_peucker},
-    {"raised-parents", WeightRule::raised_parents},
-    {"effective-area", WeightRule::effective_area},
-}};
-
 double triangle_area(Point a, Point b, Point c) {
   return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
 }
 
 }  // namespace
-
-std::optional<WeightRule> weight_rule_from_name(std::string_view name) {
-  for (const auto& [known, rule] : kNames) {
-    if (known == name) return rule;
-  }
-  return std::nullopt;
-}
-
-std::string_view name_of(WeightRule rule) {
-  return kNames[static_cast<std::size_t>(rule)].first;
-}
 
 double squared_distance(Point p, Point a, Point b) {
   return SegmentDistance(a, b).squared(p);

@@ -15,6 +15,7 @@
 
 #include "core/adapt/farthest_vertex.h"
 #include "core/grid/grid.h"
+#include "core/grid/name_table.h"
 
 namespace trapeze {
 
@@ -31,8 +32,11 @@ enum class WeightRule : std::uint8_t {
   effective_area,
 };
 
-std::optional<WeightRule> weight_rule_from_name(std::string_view name);
-std::string_view name_of(WeightRule rule);
+inline constexpr NameTable<WeightRule, 3> kWeightNames({
+    {"douglas-peucker", WeightRule::douglas_peucker},
+    {"raised-parents", WeightRule::raised_parents},
+    {"effective-area", WeightRule::effective_area},
+});
 
 /// Reusable memory for weighing rings.
 class VertexWeights {

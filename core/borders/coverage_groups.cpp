@@ -12,12 +12,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, CoverageMode>, 3> kNames{{
-    {"off", CoverageMode::off},
-    {"auto", CoverageMode::automatic},
-    {"on", CoverageMode::on},
-}};
-
 /// Disjoint sets of features (union-find); the smallest number of a set represents it.
 class Ties {
  public:
@@ -91,17 +85,6 @@ double most_overlap(CoverageMode coverage) {
 }
 
 }  // namespace
-
-std::optional<CoverageMode> coverage_from_name(std::string_view name) {
-  for (const auto& [known, coverage] : kNames) {
-    if (known == name) return coverage;
-  }
-  return std::nullopt;
-}
-
-std::string_view name_of(CoverageMode coverage) {
-  return kNames[static_cast<std::size_t>(coverage)].first;
-}
 
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
                                                        CoverageMode coverage) {

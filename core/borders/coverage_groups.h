@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/borders/coverage_builder.h"
+#include "core/grid/name_table.h"
 #include "core/grid/rings.h"
 
 namespace trapeze {
@@ -22,9 +23,11 @@ enum class CoverageMode : std::uint8_t {
 /// The default.
 constexpr CoverageMode kUsualCoverage = CoverageMode::off;
 
-/// "off", "auto", "on".
-std::optional<CoverageMode> coverage_from_name(std::string_view name);
-std::string_view name_of(CoverageMode coverage);
+inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
+    {"auto", CoverageMode::automatic},
+    {"on", CoverageMode::on},
+    {"off", CoverageMode::off},
+});
 
 /// Groups of two or more features, each feature by its position in `features`, in ascending order;
 /// the groups are in order of their first features. With `automatic`, two features are in the same

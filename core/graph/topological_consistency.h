@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "core/graph/trapezoidal_graph.h"
+#include "core/grid/name_table.h"
 
 namespace trapeze {
 
@@ -20,6 +21,11 @@ enum class Topology : std::uint8_t {
   fast,    // only the preconditions of the operators are tested, as in the paper's runs without the
            // test: the boundary may come to cross itself
 };
+
+inline constexpr NameTable<Topology, 2> kTopologyNames({
+    {"fast", Topology::fast},
+    {"strict", Topology::strict},
+});
 
 /// The kind of a removal.
 enum class Removal : std::uint8_t {

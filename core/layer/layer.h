@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/grid/grid.h"
+#include "core/grid/name_table.h"
 #include "core/grid/rings.h"
 #include "core/grid/tolerance.h"
 #include "core/layer/feature_table.h"
@@ -26,6 +27,12 @@ enum class SmallPolygons : std::uint8_t {
   keep,  // the caller draws them large enough to be seen, see Layer::small_polygons
   drop,  // they are left out
 };
+
+inline constexpr NameTable<SmallPolygons, 3> kSmallPolygonsNames({
+    {"drop", SmallPolygons::drop},
+    {"dust", SmallPolygons::dust},
+    {"keep", SmallPolygons::keep},
+});
 
 class Layer {
  public:

@@ -12,11 +12,18 @@
 #include <vector>
 
 #include "core/grid/grid.h"
+#include "core/grid/name_table.h"
 #include "render/mask/mask.h"
 
 namespace trapeze {
 
 enum class LineJoin : std::uint8_t { bevel, miter, round };
+
+inline constexpr NameTable<LineJoin, 3> kLineJoinNames({
+    {"bevel", LineJoin::bevel},
+    {"miter", LineJoin::miter},
+    {"round", LineJoin::round},
+});
 
 /// Lengths are in pixels of a picture of scale 1.
 struct Stroke {

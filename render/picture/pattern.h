@@ -3,12 +3,22 @@
 
 #include <cstdint>
 
+#include "core/grid/name_table.h"
 #include "render/mask/mask.h"
 #include "render/picture/colour.h"
 
 namespace trapeze {
 
 enum class PatternKind : std::uint8_t { none, checker, crosshatch, dots, hatch, stripes };
+
+inline constexpr NameTable<PatternKind, 6> kPatternNames({
+    {"checker", PatternKind::checker},
+    {"crosshatch", PatternKind::crosshatch},
+    {"dots", PatternKind::dots},
+    {"hatch", PatternKind::hatch},
+    {"none", PatternKind::none},
+    {"stripes", PatternKind::stripes},
+});
 
 /// Lengths are in pixels of a picture of scale 1.
 struct Pattern {

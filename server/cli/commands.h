@@ -39,7 +39,7 @@ int run_check(const CheckArguments& arguments);
 struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
-  std::string weights{name_of(WeightRule::douglas_peucker)};
+  std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
 };
@@ -49,8 +49,8 @@ struct ExportArguments {
   std::string file;
   int zoom = 0;
   double simplify = tolerance_in_pixels({}, {});  // pixels, as tiles are drawn
-  std::string topology = "strict";
-  std::string weights{name_of(WeightRule::douglas_peucker)};
+  std::string topology{kTopologyNames.name_of(Topology::strict)};
+  std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   std::string crs = "EPSG:4326";
   bool overwrite = false;

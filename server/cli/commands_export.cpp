@@ -25,18 +25,6 @@ double epsilon_of(int zoom, double pixels) {
   return epsilon_of_level(nearest_level(pixels * cells_per_pixel));
 }
 
-Topology topology_or_throw(const std::string& name) {
-  if (name == "strict") return Topology::strict;
-  if (name == "fast") return Topology::fast;
-  throw_wrong_word("--topology", name, {"strict", "fast"});
-}
-
-ExportCrs crs_or_throw(const std::string& name) {
-  const auto crs = export_crs_from_name(name);
-  if (!crs) throw_wrong_word("--crs", name, {"EPSG:4326", "EPSG:3857"});
-  return *crs;
-}
-
 void check_ending(const std::string& output) {
   const std::vector<std::string> endings = {".fgb", ".gpkg", ".geojson"};
   std::string ending = std::filesystem::path(output).extension().string();
@@ -51,10 +39,10 @@ void check_ending(const std::string& output) {
 ExportOptions options_from(const ExportArguments& arguments) {
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
-  options.generalization.topology = topology_or_throw(arguments.topology);
-  options.generalization.weights = weights_or_throw(arguments.weights);
+  options.generalization.topology = word_or_throw("--topology", arguments.topology, kTopologyNames);
+  options.generalization.weights = word_or_throw("--weights", arguments.weights, kWeightNames);
   apply(arguments.coverage, options.generalization);
-  options.crs = crs_or_throw(arguments.crs);
+  options.crs = word_or_throw("--crs", arguments.crs, kExportCrsNames);
   options.overwrite = arguments.overwrite;
   return options;
 }

@@ -66,7 +66,7 @@ void prepare(const std::string& file, const LoadOptions& how, const std::string&
 
 int run_prepare(const PrepareArguments& arguments) {
   LoadOptions how;
-  how.generalization.weights = weights_or_throw(arguments.weights);
+  how.generalization.weights = word_or_throw("--weights", arguments.weights, kWeightNames);
   apply(arguments.coverage, how.generalization);
   how.selection = arguments.selection;
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);

@@ -103,11 +103,8 @@ void write_file(const std::string& path, const std::string& bytes) {
 int run_render(const RenderArguments& arguments) {
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   const TileRequest request = make_request(arguments, layers);
-  const auto kind = renderer_kind_from(arguments.renderer);
-  if (!kind) {
-    throw_wrong_word("--renderer", arguments.renderer, {"auto", "egl", "osmesa", "software"});
-  }
-  auto renderers = start_renderers({*kind, arguments.device}, 1);
+  const RendererKind kind = word_or_throw("--renderer", arguments.renderer, kRendererNames);
+  auto renderers = start_renderers({kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
   const TilePlan plan = style_or_throw(plan_tile(request, Dataset::load(layers)));
   const TilePainter::Job job{&plan, TilePainter::Deadline::max()};

@@ -46,7 +46,8 @@ constexpr const char* kDescription =
     "  trapeze parameters                          what a style can say, as a table\n\n"
     "Exit status: 0 if all is done; 1 if something failed or was found wrong, such as a file that\n"
     "cannot be read or a port in use; 2 if the command line is wrong; 130 or 143 if SIGINT or\n"
-    "SIGTERM interrupted a command, which leaves no half-written file (`serve` ends in order, with\n"
+    "SIGTERM interrupted a command, which leaves no half-written file (`serve` ends in order, "
+    "with\n"
     "0). Results go to standard output; errors and the log go to standard error.";
 
 constexpr const char* kServeFooter =
@@ -154,7 +155,7 @@ void add_setting(CLI::App& command, trapeze::ServeArguments& arguments, const st
 
 /// An option that takes a number; `set` gets its name and its value as text.
 CLI::Option& add_number(CLI::App& command, const std::string& option, const char* type,
-                        const char* help,
+                        const std::string& help,
                         const std::function<void(const std::string&, const std::string&)>& set) {
   return *command
               .add_option_function<std::string>(
@@ -241,7 +242,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   prepare
       ->add_option("--weights", arguments.weights,
                    fmt::format("What decides which vertices go: {}; {} if not set",
-                               trapeze::weight_names(), arguments.weights))
+                               trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
   add_coverage(*prepare, arguments.coverage);
   prepare
@@ -274,22 +275,25 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                arguments.zoom = trapeze::integer_or_throw(option, text, 0, trapeze::kMaxZoom);
              })
       .required();
-  add_number(*command, "--simplify", "PX",
-             fmt::format("Tolerance in pixels, {} if not set, as tiles are drawn; 0 removes nothing",
-                         arguments.simplify),
-             [&arguments](const std::string& option, const std::string& text) {
-               arguments.simplify =
-                   trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
-             });
+  add_number(
+      *command, "--simplify", "PX",
+      fmt::format("Tolerance in pixels, {} if not set, as tiles are drawn; 0 removes nothing",
+                  arguments.simplify),
+      [&arguments](const std::string& option, const std::string& text) {
+        arguments.simplify =
+            trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
+      });
   command
-      ->add_option("--topology", arguments.topology,
-                   "strict (if not set) or fast: without the test that keeps polygons from "
-                   "crossing themselves; what crosses is noded")
+      ->add_option(
+          "--topology", arguments.topology,
+          fmt::format("{} ({} if not set); fast: without the test that keeps polygons "
+                      "from crossing themselves; what crosses is noded",
+                      trapeze::listed(trapeze::kTopologyNames.names()), arguments.topology))
       ->type_name("NAME");
   command
       ->add_option("--weights", arguments.weights,
                    fmt::format("What decides which vertices go: {}; {} if not set",
-                               trapeze::weight_names(), arguments.weights))
+                               trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
   add_coverage(*command, arguments.coverage);
   command

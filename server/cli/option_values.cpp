@@ -21,15 +21,6 @@ std::optional<Number> number_in(const std::string& text, Number min, Number max)
   return number;
 }
 
-/// "a, b or c".
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  }
-  return text;
-}
-
 [[noreturn]] void throw_wrong_number(const std::string& option, const std::string& takes,
                                      const std::string& given) {
   throw UsageError(fmt::format("{} takes {}, given was \"{}\"", option, takes, given));
@@ -38,9 +29,17 @@ std::string listed(const std::vector<std::string>& words) {
 }  // namespace
 
 void throw_wrong_word(const std::string& option, const std::string& given,
-                      const std::vector<std::string>& words) {
+                      std::span<const std::string_view> words) {
   throw UsageError(fmt::format("{} takes {}, given was \"{}\"{}", option, listed(words), given,
-                               did_you_mean(given, words)));
+                               did_you_mean(given, {words.begin(), words.end()})));
+}
+
+std::string listed(std::span<const std::string_view> words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text.append(i == 0 ? "" : i + 1 == words.size() ? " or " : ", ").append(words[i]);
+  }
+  return text;
 }
 
 int integer_or_throw(const std::string& option, const std::string& text, int min, int max) {
@@ -61,16 +60,10 @@ double number_or_throw(const std::string& option, const std::string& text, doubl
                      text);
 }
 
-WeightRule weights_or_throw(const std::string& name) {
-  const auto rule = weight_rule_from_name(name);
-  if (rule) return *rule;
-  throw_wrong_word("--weights", name, {"douglas-peucker", "raised-parents", "effective-area"});
-}
-
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments) {
-  const auto coverage = coverage_from_name(arguments.mode);
-  if (!arguments.mode.empty() && !coverage) {
-    throw_wrong_word("--coverage", arguments.mode, {"auto", "on", "off"});
+  std::optional<CoverageMode> coverage;
+  if (!arguments.mode.empty()) {
+    coverage = word_or_throw("--coverage", arguments.mode, kCoverageNames);
   }
   if (arguments.close_gaps.value_or(0) > 0 && coverage == CoverageMode::off) {
     throw UsageError("--close-gaps needs --coverage auto or on");

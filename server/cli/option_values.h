@@ -2,13 +2,16 @@
 // not take: it says what the option takes, and what may have been meant.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/adapt/vertex_weight.h"
 #include "core/borders/coverage_groups.h"
+#include "core/grid/name_table.h"
 #include "core/layer/layer_options.h"
 #include "server/config/config.h"
 
@@ -22,18 +25,25 @@ class UsageError : public std::runtime_error {
 
 /// Refuses the value of an option that takes one of a few words: names, or endings of files.
 [[noreturn]] void throw_wrong_word(const std::string& option, const std::string& given,
-                                   const std::vector<std::string>& words);
+                                   std::span<const std::string_view> words);
+/// What a word of the table stands for.
+template <typename Value, std::size_t count>
+Value word_or_throw(const std::string& option, const std::string& given,
+                    const NameTable<Value, count>& names) {
+  if (const auto value = names.find(given)) return *value;
+  throw_wrong_word(option, given, names.names());
+}
+/// "a, b or c".
+std::string listed(std::span<const std::string_view> words);
 
 /// A whole number within the bounds, both included.
 int integer_or_throw(const std::string& option, const std::string& text, int min, int max);
 /// A number within the bounds, both included.
 double number_or_throw(const std::string& option, const std::string& text, double min, double max);
 
-WeightRule weights_or_throw(const std::string& name);
-
 /// What is done about polygons that share borders.
 struct CoverageArguments {
-  /// A name of coverage_from_name(); empty: as the file was prepared, or the default.
+  /// A name of kCoverageNames; empty: as the file was prepared, or the default.
   std::string mode;
   std::optional<double> close_gaps;  // metres; unset: as the file was prepared, or 0
 };

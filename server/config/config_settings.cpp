@@ -193,11 +193,16 @@ std::string range_text(const AddressRange& range) {
   return fmt::format("{}/{}", address_text(range.first), is_ipv4 ? range.bits - 96 : range.bits);
 }
 
+/// The names that they have everywhere.
+template <typename Value, typename Names>
+Words<Value> words_of(const Names& names) {
+  Words<Value> words;
+  for (const std::string_view name : names.names()) words.emplace_back(name, *names.find(name));
+  return words;
+}
+
 const Words<RendererKind>& renderer_words() {
-  static const Words<RendererKind> words = {{"auto", RendererKind::automatic},
-                                            {"egl", RendererKind::egl},
-                                            {"osmesa", RendererKind::osmesa},
-                                            {"software", RendererKind::software}};
+  static const auto words = words_of<RendererKind>(kRendererNames);
   return words;
 }
 
@@ -213,22 +218,13 @@ const Words<LogFormat>& format_words() {
   return words;
 }
 
-/// Under the names that they have everywhere.
-template <typename Value>
-Words<std::optional<Value>> named(std::initializer_list<Value> values) {
-  Words<std::optional<Value>> words;
-  for (const Value value : values) words.emplace_back(name_of(value), value);
-  return words;
-}
-
 const Words<std::optional<WeightRule>>& weight_words() {
-  static const auto words =
-      named({WeightRule::douglas_peucker, WeightRule::raised_parents, WeightRule::effective_area});
+  static const auto words = words_of<std::optional<WeightRule>>(kWeightNames);
   return words;
 }
 
 const Words<std::optional<CoverageMode>>& coverage_words() {
-  static const auto words = named({CoverageMode::automatic, CoverageMode::on, CoverageMode::off});
+  static const auto words = words_of<std::optional<CoverageMode>>(kCoverageNames);
   return words;
 }
 
@@ -237,7 +233,7 @@ Setting<LayerConfig> weights_setting() {
   auto setting = choice<std::optional<WeightRule>, LayerConfig>(
       "weights", [](auto& layer) -> auto& { return layer.weights; }, weight_words(),
       "what makes a vertex matter; not set: as a file was prepared, else \"" +
-          std::string(name_of(WeightRule::douglas_peucker)) + "\"");
+          std::string(kWeightNames.name_of(WeightRule::douglas_peucker)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.weights ? words(layer) : SettingValue(std::string());
   };
@@ -252,7 +248,7 @@ Setting<LayerConfig> coverage_setting() {
       "in common and do not overlap by more than 1 %; \"on\", all that lie near each other, the "
       "last one drawn where they overlap; \"off\", each by itself; not set: as a file was "
       "prepared, else \"" +
-          std::string(name_of(kUsualCoverage)) + "\"");
+          std::string(kCoverageNames.name_of(kUsualCoverage)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.coverage ? words(layer) : SettingValue(std::string());
   };

@@ -16,16 +16,6 @@
 namespace trapeze {
 namespace {
 
-Json words_json(std::string_view words) {
-  Json list = Json::array();
-  while (!words.empty()) {
-    const std::size_t end = std::min(words.find(' '), words.size());
-    list.push_back(words.substr(0, end));
-    words.remove_prefix(std::min(end + 1, words.size()));
-  }
-  return list;
-}
-
 Json list_schema(Json items, std::size_t max_items) {
   return {{"type", "array"}, {"items", std::move(items)}, {"maxItems", max_items}};
 }
@@ -42,10 +32,10 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::ascending:
       return list_schema(number_schema(parameter), parameter.max_items);
     case ParameterType::word:
-      return {{"type", "string"}, {"enum", words_json(parameter.words)}};
+      return {{"type", "string"}, {"enum", Json(parameter.words)}};
     case ParameterType::words:
-      return list_schema({{"type", "string"}, {"enum", words_json(parameter.words)}},
-                         words_json(parameter.words).size());
+      return list_schema({{"type", "string"}, {"enum", Json(parameter.words)}},
+                         parameter.words.size());
     case ParameterType::ids:
       return list_schema({{"type", "integer"}, {"format", "int64"}}, parameter.max_items);
     case ParameterType::filter:

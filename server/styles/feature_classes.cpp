@@ -108,40 +108,27 @@ std::shared_ptr<const FeatureClasses> FeatureClassCache::find(std::uint64_t revi
                                                               const Classing& classing,
                                                               const FeatureTable& features) {
   constexpr std::size_t kOverhead = 256;  // of an entry, about
-  std::string key = fmt::format("{:016x} {}", revision, classing.key());
+  const std::string key = fmt::format("{:016x} {}", revision, classing.key());
   const std::size_t bytes = features.size() + 2 * key.size() + kOverhead;
-  const auto entry = take_entry(std::move(key), bytes);
+  const auto entry = find_or_insert(key, bytes);
   std::call_once(entry->once, [&] {
     entry->classes = std::make_shared<const FeatureClasses>(classify(classing, features));
   });
   return entry->classes;
 }
 
-std::shared_ptr<FeatureClassCache::Entry> FeatureClassCache::take_entry(std::string key,
-                                                                        std::size_t bytes) {
+std::shared_ptr<FeatureClassCache::Entry> FeatureClassCache::find_or_insert(const std::string& key,
+                                                                            std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  if (const auto found = by_key_.find(key); found != by_key_.end()) {
-    entries_.splice(entries_.begin(), entries_, found->second);
-    return entries_.front();
-  }
+  if (const auto* entry = entries_.find(key)) return *entry;
   auto entry = std::make_shared<Entry>();
-  entry->key = std::move(key);
-  entry->bytes = bytes;
-  if (bytes > budget_) return entry;
-  while (bytes_ + bytes > budget_) {
-    bytes_ -= entries_.back()->bytes;
-    by_key_.erase(entries_.back()->key);
-    entries_.pop_back();
-  }
-  entries_.push_front(entry);
-  by_key_.emplace(entry->key, entries_.begin());
-  bytes_ += bytes;
-  return entry;
+  if (bytes > entries_.budget()) return entry;
+  return entries_.insert(key, std::move(entry), bytes);
 }
 
 std::size_t FeatureClassCache::memory() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
+  return entries_.bytes();
 }
 
 }  // namespace trapeze

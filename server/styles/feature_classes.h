@@ -15,6 +15,7 @@
 
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_table.h"
+#include "server/base/lru_map.h"
 #include "server/styles/filter.h"
 
 namespace trapeze {
@@ -66,7 +67,7 @@ FeatureClasses classify(const Classing& classing, const FeatureTable& features);
 class FeatureClassCache {
  public:
   /// `budget` in bytes; what alone is larger is made every time.
-  explicit FeatureClassCache(std::size_t budget) : budget_(budget) {}
+  explicit FeatureClassCache(std::size_t budget) : entries_(budget) {}
 
   /// `revision` tells the features of one layer from those of another, and from changed ones.
   std::shared_ptr<const FeatureClasses> find(std::uint64_t revision, const Classing& classing,
@@ -76,19 +77,14 @@ class FeatureClassCache {
 
  private:
   struct Entry {
-    std::string key;
     std::once_flag once;
     std::shared_ptr<const FeatureClasses> classes;
-    std::size_t bytes = 0;
   };
 
-  std::shared_ptr<Entry> take_entry(std::string key, std::size_t bytes);
+  std::shared_ptr<Entry> find_or_insert(const std::string& key, std::size_t bytes);
 
-  const std::size_t budget_;
-  mutable std::mutex mutex_;                   // guards all below
-  std::list<std::shared_ptr<Entry>> entries_;  // the last used first
-  std::unordered_map<std::string, std::list<std::shared_ptr<Entry>>::iterator> by_key_;
-  std::size_t bytes_ = 0;
+  mutable std::mutex mutex_;  // guards all below
+  LruMap<std::string, std::shared_ptr<Entry>> entries_;
 };
 
 }  // namespace trapeze

@@ -7,8 +7,13 @@
 #include <charconv>
 #include <tuple>
 
+#include "core/graph/topological_consistency.h"
+#include "core/layer/layer.h"
+#include "render/mask/stroke.h"
+#include "render/picture/pattern.h"
 #include "server/base/nearest_name.h"
 #include "server/styles/colour_ramps.h"
+#include "server/styles/debug_marks.h"
 
 namespace trapeze {
 namespace {
@@ -57,7 +62,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::debug,
                    .name = "debug",
                    .type = Type::words,
-                   .words = "faces junctions mesh tile vertices",
+                   .words = kDebugMarkNames.names(),
                    .default_text = "nothing",
                    .is_per_layer = false,
                    .description = "what to draw over the tile: each feature in a colour of its "
@@ -111,7 +116,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::pattern,
                    .name = "pattern",
                    .type = Type::word,
-                   .words = "checker crosshatch dots hatch none stripes",
+                   .words = kPatternNames.names(),
                    .default_text = "none",
                    .description = "pattern over the fill, fixed to the ground"},
     StyleParameter{.id = ParameterId::pattern_angle,
@@ -155,7 +160,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::small,
                    .name = "small",
                    .type = Type::word,
-                   .words = "drop dust keep",
+                   .words = kSmallPolygonsNames.names(),
                    .default_text = "dust",
                    .description =
                        "polygons too small for the tolerance: dust keeps their area as a tint, "
@@ -175,7 +180,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::stroke_linejoin,
                    .name = "stroke-linejoin",
                    .type = Type::word,
-                   .words = "bevel miter round",
+                   .words = kLineJoinNames.names(),
                    .default_text = "round",
                    .description = "corners of the outline"},
     StyleParameter{.id = ParameterId::stroke_opacity,
@@ -200,7 +205,7 @@ constexpr std::array kParameters = {
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
                    .type = Type::word,
-                   .words = "fast strict",
+                   .words = kTopologyNames.names(),
                    .default_text = "strict",
                    .description = "strict keeps boundaries from crossing each other, fast "
                                   "simplifies without that test"},
@@ -271,15 +276,15 @@ std::optional<ParameterValue> parse_ids(const StyleParameter& parameter, std::st
   return ids;
 }
 
-std::optional<ParameterValue> parse_word(std::string_view text, std::string_view words) {
-  const auto known = split(words, ' ');
+using KnownWords = std::span<const std::string_view>;
+
+std::optional<ParameterValue> parse_word(std::string_view text, KnownWords known) {
   if (std::ranges::find(known, text) == known.end()) return std::nullopt;
   return std::string(text);
 }
 
 /// The canonical form has each word once, in the order of the table.
-std::optional<ParameterValue> parse_words(std::string_view text, std::string_view words) {
-  const auto known = split(words, ' ');
+std::optional<ParameterValue> parse_words(std::string_view text, KnownWords known) {
   const auto given = split(text, ',');
   for (const std::string_view word : given) {
     if (std::ranges::find(known, word) == known.end()) return std::nullopt;
@@ -528,10 +533,9 @@ std::string describe_values(const StyleParameter& parameter) {
       return fmt::format("1 to {} numbers, each greater than the one before, separated by commas",
                          parameter.max_items);
     case Type::word:
-      return fmt::format("one of {}", fmt::join(split(parameter.words, ' '), ", "));
+      return fmt::format("one of {}", fmt::join(parameter.words, ", "));
     case Type::words:
-      return fmt::format("some of {}, separated by commas",
-                         fmt::join(split(parameter.words, ' '), ", "));
+      return fmt::format("some of {}, separated by commas", fmt::join(parameter.words, ", "));
     case Type::name:
       return "the name of a property of the layer";
     case Type::ramp:

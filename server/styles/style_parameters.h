@@ -71,10 +71,10 @@ struct StyleParameter {
   ParameterType type;
   double min = 0;  // of a number, or of each of several
   double max = 0;
-  std::size_t max_items = 0;           // of a list
-  std::string_view words = {};         // separated by spaces, in alphabetical order
-  std::string_view default_text = {};  // in words
-  bool is_per_layer = true;            // may be written layer.name= too
+  std::size_t max_items = 0;                     // of a list
+  std::span<const std::string_view> words = {};  // in alphabetical order
+  std::string_view default_text = {};            // in words
+  bool is_per_layer = true;                      // may be written layer.name= too
   std::string_view description = {};
 };
 

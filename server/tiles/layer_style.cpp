@@ -78,16 +78,8 @@ Stroke stroke_of(const LayerSettings& settings) {
     stroke.dashes.insert(stroke.dashes.end(), once.begin(), once.end());
   }
   const auto* join = settings.find<std::string>(ParameterId::stroke_linejoin);
-  if (join != nullptr && *join == "bevel") stroke.join = LineJoin::bevel;
-  if (join != nullptr && *join == "miter") stroke.join = LineJoin::miter;
+  if (join != nullptr) stroke.join = kLineJoinNames.find(*join).value();
   return stroke;
-}
-
-PatternKind pattern_kind(const std::string& word) {
-  // In the order of PatternKind.
-  constexpr std::array<std::string_view, 6> kWords = {"none", "checker", "crosshatch",
-                                                      "dots", "hatch",   "stripes"};
-  return static_cast<PatternKind>(std::ranges::find(kWords, word) - kWords.begin());
 }
 
 double default_width(PatternKind kind, double size) {
@@ -98,8 +90,8 @@ double default_width(PatternKind kind, double size) {
 Pattern pattern_of(const LayerSettings& settings) {
   Pattern pattern;
   const auto* kind = settings.find<std::string>(ParameterId::pattern);
-  if (kind == nullptr || *kind == "none") return pattern;
-  pattern.kind = pattern_kind(*kind);
+  if (kind != nullptr) pattern.kind = kPatternNames.find(*kind).value();
+  if (pattern.kind == PatternKind::none) return pattern;
   pattern.colour = settings.value_or(ParameterId::pattern_color, kBlack);
   pattern.size = settings.value_or(ParameterId::pattern_size, 8.0);
   const bool is_upright = pattern.kind == PatternKind::dots || pattern.kind == PatternKind::checker;

@@ -25,23 +25,24 @@ Level level_of_layer(const TileRequest& request, const StyleQuery& query,
 
 Topology topology_of_layer(const StyleQuery& query, const std::string& layer) {
   const auto value = query.value_for(layer, ParameterId::topology);
-  return value && std::get<std::string>(*value) == "fast" ? Topology::fast : Topology::strict;
+  return value ? kTopologyNames.find(std::get<std::string>(*value)).value() : Topology::strict;
 }
 
 SmallPolygons small_of_layer(const StyleQuery& query, const std::string& layer) {
   const auto value = query.value_for(layer, ParameterId::small);
-  if (!value || std::get<std::string>(*value) == "dust") return SmallPolygons::dust;
-  return std::get<std::string>(*value) == "keep" ? SmallPolygons::keep : SmallPolygons::drop;
+  return value ? kSmallPolygonsNames.find(std::get<std::string>(*value)).value()
+               : SmallPolygons::dust;
 }
 
 DebugMarks debug_marks(const StyleQuery& query) {
   const auto value = query.value_for({}, ParameterId::debug);
   if (!value) return {};
   const std::string& words = std::get<std::string>(*value);
-  const auto has = [&words](std::string_view word) {
-    return words.find(word) != std::string::npos;
-  };
-  return {has("faces"), has("mesh"), has("vertices"), has("junctions"), has("tile")};
+  DebugMarks marks;
+  for (const std::string_view name : kDebugMarkNames.names()) {
+    marks.*kDebugMarkNames.find(name).value() = words.find(name) != std::string::npos;
+  }
+  return marks;
 }
 
 }  // namespace

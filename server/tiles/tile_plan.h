@@ -14,6 +14,7 @@
 #include "render/picture/colour.h"
 #include "server/base/result.h"
 #include "server/data/dataset.h"
+#include "server/styles/debug_marks.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_request.h"
 
@@ -27,18 +28,6 @@ struct LayerPaint {
   SmallPolygons small = SmallPolygons::dust;
 
   friend bool operator==(const LayerPaint&, const LayerPaint&) = default;
-};
-
-/// What is drawn over the tile to look into it (paper, Figure 7 f to j).
-struct DebugMarks {
-  bool faces = false;      // each feature in a colour of its own
-  bool mesh = false;       // the sides of the trapezoids
-  bool vertices = false;   // the vertices that are kept
-  bool junctions = false;  // those of them around which lie three or more features
-  bool tile = false;       // the border of the tile, with its numbers
-
-  bool any() const { return faces || mesh || vertices || junctions || tile; }
-  friend bool operator==(const DebugMarks&, const DebugMarks&) = default;
 };
 
 /// Layers that cannot be seen, being transparent or outside of their zooms, are left out.

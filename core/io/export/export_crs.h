@@ -1,8 +1,7 @@
 // The reference systems that polygons are written in.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "core/grid/name_table.h"
 
 namespace trapeze {
 
@@ -11,7 +10,9 @@ enum class ExportCrs {
   web_mercator  // EPSG:3857, metres
 };
 
-/// By its EPSG name; none if it is another.
-std::optional<ExportCrs> export_crs_from_name(std::string_view name);
+inline constexpr NameTable<ExportCrs, 2> kExportCrsNames({
+    {"EPSG:4326", ExportCrs::degrees},
+    {"EPSG:3857", ExportCrs::web_mercator},
+});
 
 }  // namespace trapeze

@@ -253,12 +253,6 @@ class Export {
 
 }  // namespace
 
-std::optional<ExportCrs> export_crs_from_name(std::string_view name) {
-  if (name == "EPSG:4326") return ExportCrs::degrees;
-  if (name == "EPSG:3857") return ExportCrs::web_mercator;
-  return std::nullopt;
-}
-
 ExportReport export_layer(const std::string& source, const std::string& output,
                           const ExportOptions& options) {
   PolygonFile::check_path(output, source, options.overwrite);

@@ -228,13 +228,14 @@ std::string text_of(double number) {
 
 void check_options(const LayerOptions& options, const PreparedDemands& demands) {
   if (demands.weights && *demands.weights != options.weights) {
-    throw PreparedFileError("was prepared with the weights " +
-                            std::string(name_of(options.weights)) + ", and " +
-                            std::string(name_of(*demands.weights)) + " are configured");
+    throw PreparedFileError(
+        "was prepared with the weights " + std::string(kWeightNames.name_of(options.weights)) +
+        ", and " + std::string(kWeightNames.name_of(*demands.weights)) + " are configured");
   }
   if (demands.coverage && *demands.coverage != options.coverage) {
-    throw PreparedFileError("was prepared with coverage " + std::string(name_of(options.coverage)) +
-                            ", and " + std::string(name_of(*demands.coverage)) + " is configured");
+    throw PreparedFileError(
+        "was prepared with coverage " + std::string(kCoverageNames.name_of(options.coverage)) +
+        ", and " + std::string(kCoverageNames.name_of(*demands.coverage)) + " is configured");
   }
   if (demands.close_gaps && *demands.close_gaps != options.close_gaps) {
     throw PreparedFileError("was prepared with gaps closed up to " + text_of(options.close_gaps) +

@@ -228,7 +228,7 @@ TEST(VertexWeights, AreTheSameWhereverTheRingStartsAndWhicheverWayItRuns) {
     std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(start), turned.end());
     Ring reversed(ring.rbegin(), ring.rend());
     for (const WeightRule rule : kAllRules) {
-      SCOPED_TRACE(std::string(name_of(rule)));
+      SCOPED_TRACE(std::string(kWeightNames.name_of(rule)));
       const auto plain = weigh(ring, rule);
       const auto of_turned = weigh(turned, rule);
       const auto of_reversed = weigh(reversed, rule);
@@ -250,9 +250,10 @@ TEST(VertexWeights, TwoCornersOfEveryRingAreNeverWeighed) {
 }
 
 TEST(VertexWeights, RulesAreFoundByTheirNames) {
-  for (const WeightRule rule : kAllRules) EXPECT_EQ(weight_rule_from_name(name_of(rule)), rule);
-  EXPECT_EQ(weight_rule_from_name("douglas"), std::nullopt);
-  EXPECT_EQ(weight_rule_from_name(""), std::nullopt);
+  for (const WeightRule rule : kAllRules)
+    EXPECT_EQ(kWeightNames.find(kWeightNames.name_of(rule)), rule);
+  EXPECT_EQ(kWeightNames.find("douglas"), std::nullopt);
+  EXPECT_EQ(kWeightNames.find(""), std::nullopt);
 }
 
 }  // namespace

@@ -49,9 +49,9 @@ std::string rectangle(int x, int y, int width, int height) {
 
 TEST(CoverageGroups, ModesAreFoundByTheirNames) {
   for (const CoverageMode mode : {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
-    EXPECT_EQ(coverage_from_name(name_of(mode)), mode);
+    EXPECT_EQ(kCoverageNames.find(kCoverageNames.name_of(mode)), mode);
   }
-  EXPECT_EQ(coverage_from_name("automatic"), std::nullopt);
+  EXPECT_EQ(kCoverageNames.find("automatic"), std::nullopt);
 }
 
 TEST(CoverageGroups, AnEdgeInCommonTiesWhateverItsDirection) {

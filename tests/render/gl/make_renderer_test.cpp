@@ -63,10 +63,10 @@ TEST(MakeRendererTest, RefusesToMakeNone) {
 }
 
 TEST(MakeRendererTest, ReadsTheWordsOfTheConfiguration) {
-  EXPECT_EQ(renderer_kind_from("auto"), RendererKind::automatic);
-  EXPECT_EQ(renderer_kind_from("osmesa"), RendererKind::osmesa);
-  EXPECT_EQ(renderer_kind_from("EGL"), std::nullopt);
-  EXPECT_EQ(renderer_kind_from(""), std::nullopt);
+  EXPECT_EQ(kRendererNames.find("auto"), RendererKind::automatic);
+  EXPECT_EQ(kRendererNames.find("osmesa"), RendererKind::osmesa);
+  EXPECT_EQ(kRendererNames.find("EGL"), std::nullopt);
+  EXPECT_EQ(kRendererNames.find(""), std::nullopt);
 }
 
 }  // namespace
