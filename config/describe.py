@@ -93,9 +93,9 @@ def choices_of(entry):
     """What an option takes that takes one of a few words; its text lists them."""
     if entry.operand != "NAME":
         return []
-    plain = re.sub(r"\s*\([^)]*\)", "", entry.text)
+    plain = re.sub(r"\s*\([^)]*\)", "", entry.text).replace('"', "")
     word = r"[\w-]+(?::\w+)?"
-    match = re.search(rf"(?:^|: )({word}(?:, {word})* or {word})", plain)
+    match = re.search(rf"(?:^|: |Takes )({word}(?:, {word})* or {word})", plain)
     return re.split(r", | or ", match[1]) if match else []
 
 

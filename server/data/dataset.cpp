@@ -11,6 +11,7 @@
 #include "core/layer/layer_arrays.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
+#include "server/data/note_summary.h"
 
 namespace trapeze {
 namespace {
@@ -29,12 +30,12 @@ void add_value(ContentHash& hash, const Value& value) {
 }
 
 void log_notes(const LoadReport& report) {
-  for (std::size_t i = 0; i < report.notes.size() && i < kMaxLoggedNotes; ++i) {
-    spdlog::warn("{}: feature {}: {}", report.path, report.notes[i].id, report.notes[i].reason);
+  const std::vector<std::string> lines = summarize_notes(report.notes);
+  for (std::size_t i = 0; i < lines.size() && i < kMaxLoggedNotes; ++i) {
+    spdlog::warn("{}: {}", report.path, lines[i]);
   }
-  if (report.notes.size() > kMaxLoggedNotes) {
-    spdlog::warn("{}: {} more notes; `trapeze check` shows them all", report.path,
-                 report.notes.size() - kMaxLoggedNotes);
+  if (lines.size() < report.notes.size()) {
+    spdlog::warn("{}: `trapeze check` lists all notes", report.path);
   }
 }
 
@@ -54,11 +55,11 @@ void log_report(const LoadReport& report, const Layer& layer) {
     spdlog::info("{}: {} polygons are smaller than the grid, or outside of the world", report.path,
                  report.empty);
   }
-  if (report.repaired > 0 || report.skipped > 0) {
-    spdlog::warn("{}: {} features repaired, {} skipped", report.path, report.repaired,
-                 report.skipped);
-    log_notes(report);
+  if (report.repaired > 0 || report.skipped > 0 || report.coverage.overlaps > 0) {
+    spdlog::warn("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
+                 report.repaired, report.skipped, report.coverage.overlaps);
   }
+  log_notes(report);
   if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
 }
 

@@ -40,6 +40,10 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
   }
   const Assembly assembly = builder_.add_coverage(rows, rings);
   tally_.coverage.apart += assembly.apart.size();
+  if (!assembly.outcome.failure.empty()) {
+    tally_.remark(features.front()->key, "built apart from " + std::to_string(features.size() - 1) +
+                                             " neighbours: " + assembly.outcome.failure);
+  }
   for (const std::uint32_t i : assembly.apart) build_apart(features[i]->key, features[i]->rings);
   if (!assembly.together.empty()) count(features, assembly);
 }
@@ -60,7 +64,7 @@ void FeatureBuilder::count(std::span<WaitingFeature* const> features, const Asse
   for (const Overlap& overlap : outcome.overlaps) {
     const double share = overlap.area / outcome.areas[overlap.lower];
     tally_.remark(features[overlap.lower]->key,
-                  percent_text(share) + " of it lies under feature " +
+                  "overlapped: " + percent_text(share) + " of it lies under feature " +
                       std::to_string(features[overlap.upper]->key.id));
   }
 }

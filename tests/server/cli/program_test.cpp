@@ -380,7 +380,7 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
        "--simplify"},
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--topology", "lax", "--output",
         "x.fgb"},
-       "strict or fast"},
+       "fast or strict"},
       {{"export", fixture("rings.geojson"), "--zoom", "3", "--weights", "none", "--output",
         "x.fgb"},
        "effective-area"},
