@@ -168,7 +168,7 @@ def program_page(program):
     yield from [".SH EXIT STATUS", filled(status)]
     yield from [".SH ENVIRONMENT", ".TP", "\\fBTRAPEZE_\\fITABLE\\fB_\\fIKEY\\fR",
                 "The setting \\fITABLE\\fR.\\fIKEY\\fR of",
-                ".BR trapeze.toml (5);", "it goes before the file, and the command line before both."]
+                ".BR trapeze.toml (5);", "it overrides the file, and the command line overrides both."]
     yield from [".SH EXAMPLES", *notes_in_roff(examples.split("\n")[1:])]
     yield from [".SH SEE ALSO", ".BR trapeze.toml (5)"]
 

@@ -48,7 +48,7 @@ std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, Wei
 
 /// The uppermost vertex and the one farthest from it: a choice that does not depend on the first
 /// point of the ring or on its direction.
-VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) const {
+VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
     if (is_above(ring[i], ring[anchors.first])) anchors.first = i;

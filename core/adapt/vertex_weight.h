@@ -58,7 +58,7 @@ class VertexWeights {
     std::size_t first;
     std::size_t second;
   };
-  Anchors anchors_of(std::span<const Point> ring) const;
+  static Anchors anchors_of(std::span<const Point> ring);
 
   // A piece of the ring between two kept vertices, its ends included; indices run past the end of
   // the ring and are taken modulo its length. `parent` is the split above it.

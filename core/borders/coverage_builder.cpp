@@ -253,6 +253,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
     overlapping[overlap.upper].push_back(overlap.lower);
   }
   std::vector<std::size_t> count;  // of the overlaps with features that are still there
+  count.reserve(overlapping.size());
   for (const auto& others : overlapping) count.push_back(others.size());
   const auto goes_first = [&](std::uint32_t a, std::uint32_t b) {
     return std::tuple(common_edges[a], count[b], b) < std::tuple(common_edges[b], count[a], a);

@@ -1,4 +1,4 @@
-// Names for contents that come from strangers.
+// Digests of contents that come from clients.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A map with a budget, from which the entries that were not used for longest go.
+// A map with a budget of memory: the least recently used entries are evicted.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -26,8 +26,8 @@ class LruMap {
     return &found->second->value;
   }
 
-  /// Adds an entry that is not there yet; it stays until others are used, even if it is larger than
-  /// the budget. References to other values are invalid afterwards.
+  /// Adds an entry that is not there yet, and evicts others until it fits; it is kept even if it is
+  /// larger than the budget. References to other values are invalid afterwards.
   Value& insert(const Key& key, Value value, std::size_t bytes) {
     assert(!by_key_.contains(key));
     entries_.push_front({key, std::move(value), bytes});

@@ -1,4 +1,4 @@
-// What somebody meant who mistyped a name.
+// Suggestions for mistyped names.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace trapeze {
 
-/// The name that the fewest slips lead to: a letter missing, added or changed, or two neighbours in
-/// each other's place. The first of equals; none if all would take more than a slip in three
-/// letters. Case does not count. Bytes are compared, which is enough for names of ours.
+/// The name at the smallest edit distance: a letter missing, added or changed, or two neighbours
+/// swapped. The first of equals; none if all are farther than one edit in three letters. Case does
+/// not count. Bytes are compared, which is enough for names of ours.
 std::optional<std::string> nearest_name(std::string_view mistyped,
                                         const std::vector<std::string>& names);
 

@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// Looks at the memory of the target it was split from.
+/// Views into the target that it was split from, which must outlive it.
 struct Target {
   std::string_view path;   // still encoded; begins with '/'
   std::string_view query;  // still encoded, without '?'

@@ -1,4 +1,4 @@
-// Text on its way into an XML document.
+// Text escaped for XML documents.
 #pragma once
 
 #include <string>

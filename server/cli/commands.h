@@ -24,7 +24,7 @@ struct ServeArguments {
 LoadedConfig load_serve_config(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 
-/// Tells all that is wrong with a configuration; 1 if anything is.
+/// Prints all that is wrong with a configuration; 1 if anything is.
 int run_config_check(const std::string& path);
 /// Prints what is configured, with the origin of each value.
 int run_config_print(const ServeArguments& arguments);
@@ -73,8 +73,8 @@ struct BenchArguments {
   std::string name;
   std::vector<std::string> options;  // for the benchmark
 };
-/// Becomes the program trapeze-NAME: benchmarks need libraries that whoever serves does not.
-/// Returns never.
+/// Replaces the process by the program trapeze-NAME, as benchmarks need libraries that a server
+/// does not. Does not return.
 int run_bench(const BenchArguments& arguments);
 
 }  // namespace trapeze

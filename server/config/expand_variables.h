@@ -16,8 +16,7 @@ struct ExpandedText {
 };
 
 /// Replaces ${NAME} by the variable, ${NAME:-words} by the words if it is not set or empty, and $$
-/// by
-/// $. A name is of letters, digits and '_'. Values are not expanded again.
+/// by $. A name is of letters, digits and '_'. Values are not expanded again.
 ExpandedText expand_variables(std::string_view text, const FindVariable& find);
 
 }  // namespace trapeze

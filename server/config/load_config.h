@@ -30,11 +30,11 @@ struct LoadedConfig {
   std::map<std::string, std::string> origins;
 };
 
-/// Reads a TOML file, unless `path` is empty, and then applies the overrides, the later before the
-/// earlier. Finds all that is wrong (of what is not TOML, the first). Relative paths in the file
-/// are meant from its own folder, those of overrides from the working directory. In all strings of
-/// the file, ${NAME} is replaced by that variable of the environment, ${NAME:-words} by the words
-/// if it is not set, and $$ by $.
+/// Reads a TOML file, unless `path` is empty, and then applies the overrides, of which a
+/// later one overrides an earlier one. Finds all that is wrong (of what is not TOML, the first).
+/// Relative paths in the file are meant from its own folder, those of overrides from the working
+/// directory. In all strings of the file, ${NAME} is replaced by that variable of the environment,
+/// ${NAME:-words} by the words if it is not set, and $$ by $.
 LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverride>& overrides);
 
 /// The same of a text, as if it stood in a file of that path, and without overrides. Never throws

@@ -1,4 +1,4 @@
-// What a layer, or several served together, come to: titles, bounds, zooms, as documents tell them.
+// The summary of a layer, or of several served together, for documents: titles, bounds, zooms.
 #pragma once
 
 #include <array>

@@ -11,7 +11,7 @@ namespace trapeze {
 
 class LoadProgress {
  public:
-  /// `name` is that of a source, whose password nobody gets to see, or any words.
+  /// `name` is that of a source, which is shown without its password, or any words.
   explicit LoadProgress(const std::string& name);
   /// Takes the bar away again.
   ~LoadProgress();

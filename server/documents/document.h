@@ -17,8 +17,8 @@ struct DocumentRequest {
   const StyleBook& styles;
   const Fonts& fonts;
   std::string base_url;           // how this server is reached, without a '/' at the end
-  std::vector<std::string> path;  // decoded segments, hostile
-  StyledQuery query;              // hostile
+  std::vector<std::string> path;  // decoded segments, untrusted
+  StyledQuery query;              // untrusted
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {

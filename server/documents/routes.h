@@ -1,5 +1,5 @@
 // Every path that this server understands, in one table: requests are dispatched by it, counted by
-// it, and OpenAPI tells it. The viewer's files are not in it.
+// it, and the OpenAPI document is made from it. The viewer's files are not in it.
 //
 // Thread-safety: any thread.
 #pragma once
@@ -24,7 +24,7 @@ enum class Area : std::uint8_t {
   health,
   ready,
   metrics,
-  other,  // the viewer's files, and whatever people try
+  other,  // the viewer's files, and all unknown paths
 };
 constexpr std::size_t kAreas = static_cast<std::size_t>(Area::other) + 1;
 
@@ -70,7 +70,7 @@ enum class RouteId : std::uint8_t {
 struct Route {
   RouteId id;
   std::string_view path;       // {name} stands for a segment, or for the rest of one
-  std::string_view operation;  // its operationId in OpenAPI; empty: not told there
+  std::string_view operation;  // its operationId in OpenAPI; empty: not listed there
   std::string_view summary;
   std::string_view content_type;
   bool has_style = false;       // takes the parameters of styles

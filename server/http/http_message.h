@@ -19,7 +19,7 @@ struct HttpRequest {
   std::string target;
   std::string host;           // as sent, unchecked; empty if none was
   std::string if_none_match;  // as sent; empty if none was
-  std::string body = {};      // hostile
+  std::string body = {};      // untrusted
   ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
 };
 

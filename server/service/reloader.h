@@ -1,7 +1,8 @@
 // Reads the layers that are served, and reads them again when told to or when their files change.
 //
-// New layers are built aside and take the place of the old ones at once; who still draws from old
-// ones keeps them alive. If anything goes wrong, the old ones stay, and log and metrics say so.
+// New layers are built beside the old ones and replace them all at once; a worker that still draws
+// from old ones keeps them alive. If anything goes wrong, the old ones stay, and log and metrics
+// say so.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once

@@ -1,4 +1,4 @@
-// What is drawn over a tile to look into it.
+// Marks over a tile that show what it is drawn from.
 #pragma once
 
 #include "core/grid/name_table.h"

@@ -63,7 +63,8 @@ FeatureClasses classify(const Classing& classing, const FeatureTable& features);
 
 /// Keeps the classes of the rules that were asked for last, within a budget of memory.
 ///
-/// Thread-safety: find() may be called from any thread; who asks for what is being made waits.
+/// Thread-safety: find() may be called from any thread; a call for classes that another thread is
+/// computing waits for them.
 class FeatureClassCache {
  public:
   /// `budget` in bytes; what alone is larger is made every time.

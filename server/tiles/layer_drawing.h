@@ -46,7 +46,7 @@ class LayerDrawing {
   void add_tasks(const View& view, std::vector<MaskTask>& tasks);
   /// Draws pattern and outlines, for a picture of that scale.
   void draw_details(const View& view, int scale, DrawingTools& tools);
-  /// Lets go of what was made for this picture only.
+  /// Releases what was made for this picture only.
   void forget_places(MaskRenderer& renderer);
 
   /// As it goes into the picture, once all has been drawn; looks at memory of the drawing.

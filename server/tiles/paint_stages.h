@@ -1,4 +1,4 @@
-// The steps of painting a tile, under the names by which they are told and measured.
+// The steps of painting a tile, under the names by which they are measured and reported.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Makes the renderers of a command and tells the log what draws and what did not work.
+// Makes the renderers of a command, and logs which draws and which did not work.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@ namespace trapeze {
 std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions& options,
                                                            int count);
 
-/// Has each draw a little of everything, all at once: what a GL device compiles at its first
-/// picture is then ready, and the first visitors do not wait for it (60 to 100 ms on llvmpipe, 4 ms
-/// where Mesa finds what it compiled before in its cache on disk).
-/// Throws std::runtime_error if a device cannot draw.
+/// Warms the renderers up, all at the same time: each draws a little of everything, so that the
+/// first requests do not wait for what a GL device compiles at its first picture (60 to 100 ms on
+/// llvmpipe, 4 ms where Mesa finds what it compiled before in its cache on disk). Throws
+/// std::runtime_error if a device cannot draw.
 void warm_up(std::span<const std::unique_ptr<MaskRenderer>> renderers);
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-// What exactly is to be drawn for one tile: names resolved, defaults filled in, nothing left open.
+// What is to be drawn for one tile, with names resolved and defaults filled in.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ struct TilePlan {
   /// What the paint is for, made with or without the topological consistency test as it says; the
   /// first to ask for one without it waits until it is made.
   const Layer& layer_of(const LayerPaint& paint) const;
-  /// The first of the layers whose prepared file was cut off under the server; null if all are
-  /// whole. To be asked before drawing and after.
+  /// The first of the layers whose prepared file was truncated while it was mapped; null if
+  /// there is none. To be called before drawing and after.
   const ServedLayer* damaged_layer() const;
   /// The level of a quarter of a pixel of the picture.
   Level pixel_level() const;

@@ -1,4 +1,4 @@
-// What a URL below /tiles/ asks for, as types. Everything here is hostile until parsed.
+// What a URL below /tiles/ asks for, as types. Everything here is untrusted until parsed.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
 /// Parses names separated by commas; each is taken once, bottom first.
 Result<std::vector<std::string>> parse_layer_list(std::string_view list);
 
-/// The name of a picture, in parts. Looks at the text it was parsed from.
+/// The name of a picture, in parts: views into the text that it was parsed from.
 struct PictureName {
   std::string_view stem;  // "7" of "7@2x.png"
   int scale = 1;

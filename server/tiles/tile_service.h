@@ -70,7 +70,7 @@ class TileService {
   };
   Figures figures() const;
 
-  /// Lets go of what the renderers keep for a mesh. Call it when nothing is going to draw it any
+  /// Releases what the renderers keep for a mesh. Call it when nothing is going to draw it any
   /// more: what is drawn later would be kept again.
   void forget(std::uint64_t mesh_id) { renderer_.forget(mesh_id); }
 

@@ -20,16 +20,18 @@ namespace {
 constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // what one write takes for sure
 
 [[noreturn]] void fail(const std::string& path) {
-  throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
+  throw std::runtime_error("cannot write " + path + ": " + std::generic_category().message(errno));
 }
 
 /// A file under a name of its own, gone at the end unless it was given its final one.
 class NewFile {
  public:
   explicit NewFile(const std::string& path)
-      : path_(path), temporary_(Unfinished::file_beside(path)) {
-    // Read-only: to write into a file that is mapped would change what is being served.
-    descriptor_ = open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444);
+      : path_(path),
+        temporary_(Unfinished::file_beside(path)),
+        // Read-only: to write into a file that is mapped would change what is being served.
+        descriptor_(
+            open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444)) {
     if (descriptor_ < 0) fail(path_);
   }
   ~NewFile() {

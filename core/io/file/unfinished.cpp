@@ -1,10 +1,10 @@
 #include "core/io/file/unfinished.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -23,8 +23,9 @@ struct Register {
   std::set<std::string> paths;
 };
 Register& all_unfinished() {
-  static auto* const all = new Register;
-  return *all;
+  static Register& all =
+      *new Register;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+  return all;
 }
 
 /// The process in a name that is `prefix` and a number; 0 if it is none.

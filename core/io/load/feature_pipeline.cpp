@@ -43,6 +43,7 @@ double work_of(const Task& task) {
 /// The groups of features, and all others each by itself.
 std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode coverage) {
   std::vector<const Rings*> rings;
+  rings.reserve(waiting.size());
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
   std::vector<Task> tasks;
   std::vector<bool> is_grouped(waiting.size(), false);
@@ -164,7 +165,7 @@ class FeaturePipeline::Pool {
 };
 
 FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
-                                 std::vector<FeatureWorker*> workers,
+                                 const std::vector<FeatureWorker*>& workers,
                                  std::function<void(double)> progress)
     : source_(source), options_(options), progress_(std::move(progress)) {
   for (FeatureWorker* worker : workers) {
@@ -245,6 +246,7 @@ void FeaturePipeline::build_waiting() {
   std::vector<WaitingFeature> waiting = take_waiting();
   if (options_.close_gaps > 0) {
     std::vector<Rings*> rings;
+    rings.reserve(waiting.size());
     for (WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
     const GapClosing done = close_gaps(rings, options_.close_gaps);
     tally_.coverage.snapped += done.moved + done.led;

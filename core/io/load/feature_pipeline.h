@@ -66,7 +66,7 @@ class FeaturePipeline {
   /// `progress` is as in LoadOptions, and may be empty: it is called now and then with the share of
   /// the expected time that has gone, as far as it is spent here.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
-                  std::vector<FeatureWorker*> workers, std::function<void(double)> progress);
+                  const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress);
   ~FeaturePipeline();
 
   /// Reads features until the limit is reached or the source has no more, and has all of them

@@ -75,6 +75,7 @@ std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tall
   notes.insert(notes.end(), remarks.begin(), remarks.end());
   sort_by_order(notes);
   std::vector<FeatureNote> result;
+  result.reserve(notes.size());
   for (OrderedNote& note : notes) result.push_back(std::move(note.note));
   return result;
 }
@@ -93,6 +94,7 @@ void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilde
 std::unique_ptr<Layer> join_layer(std::deque<FeatureBuilder>& builders, FeatureTable table,
                                   const std::function<void(double)>& progress) {
   std::vector<LayerBuilder> parts;
+  parts.reserve(builders.size());
   for (FeatureBuilder& builder : builders) parts.push_back(builder.take_builder());
   return LayerBuilder::join(parts, std::move(table), progress);
 }
@@ -105,6 +107,7 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
     builders.emplace_back(options.generalization);
   }
   std::vector<FeatureWorker*> workers;
+  workers.reserve(builders.size());
   for (FeatureBuilder& builder : builders) workers.push_back(&builder);
   const auto progress = [&options](double share) {
     if (options.progress) options.progress(share);
