@@ -14,6 +14,7 @@
 #include "core/io/source/source_selection.h"
 #include "render/make_renderer.h"
 #include "render/picture/colour.h"
+#include "server/base/defaults.h"
 #include "server/base/limits.h"
 #include "server/http/client_address.h"
 #include "server/styles/style_parameters.h"
@@ -40,16 +41,17 @@ struct LayerConfig {
 };
 
 struct ServerConfig {
-  std::string address = "0.0.0.0";
-  std::uint16_t port = 8080;      // 0: any free port
-  unsigned threads = 2;           // for sockets
-  unsigned workers = 0;           // for drawing; 0: one a core
-  std::size_t queue = 256;        // tiles that may wait for a worker
-  unsigned deadline_ms = 10'000;  // a tile that waits longer is given up
-  unsigned batch = 8;             // tiles drawn in one pass, at most
-  unsigned cache_mb = 256;        // of memory for tiles that were drawn; 0: none are kept
-  std::string cache_control = "public, max-age=3600";  // of tiles
-  unsigned posted_styles_mb = 16;                      // of memory for styles that are posted
+  std::string address{defaults::kAddress};
+  std::uint16_t port = defaults::kPort;                // 0: any free port
+  unsigned threads = defaults::kThreads;               // for sockets
+  unsigned workers = 0;                                // for drawing; 0: one a core
+  std::size_t queue = defaults::kQueue;                // tiles that may wait for a worker
+  unsigned deadline_ms = defaults::kDeadline.count();  // a tile that waits longer is given up
+  unsigned batch = defaults::kBatch;                   // tiles drawn in one pass, at most
+  unsigned cache_mb = 256;  // of memory for tiles that were drawn; 0: none are kept
+  std::string cache_control{defaults::kCacheControl};  // of tiles
+  unsigned posted_styles_mb =
+      defaults::kPostedStylesMegabytes;  // of memory for styles that are posted
   RendererOptions renderer;
   std::string public_url;  // of the server as the world sees it, without a '/' at the end
   // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
@@ -60,21 +62,22 @@ struct ServerConfig {
   std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
   unsigned watch_ms = 2000;                   // between looks at the files, for changes; 0: none
   unsigned drain_delay_ms = 0;                // told to stop, it goes on so long, being not ready
-  unsigned drain_timeout_ms = 10'000;         // and then waits so long for what is under way
+  unsigned drain_timeout_ms =
+      defaults::kDrainTimeout.count();  // and then waits so long for what is under way
 };
 
 struct LimitsConfig {
-  std::size_t connections = 1024;
-  std::size_t connections_per_address = 256;
-  std::uint32_t header_bytes = 8192;            // request line and header together
-  std::size_t target_bytes = kMaxTargetLength;  // path and query together
-  std::uint32_t body_bytes = 16 * 1024;         // of a request that has one
-  std::size_t layers = kMaxLayersPerTile;       // of one tile
+  std::size_t connections = defaults::kConnections;
+  std::size_t connections_per_address = defaults::kConnectionsPerAddress;
+  std::uint32_t header_bytes = defaults::kHeaderBytes;  // request line and header together
+  std::size_t target_bytes = kMaxTargetLength;          // path and query together
+  std::uint32_t body_bytes = defaults::kBodyBytes;      // of a request that has one
+  std::size_t layers = kMaxLayersPerTile;               // of one tile
   int scale = kMaxScale;
   int zoom = kMaxZoom;
-  unsigned idle_timeout_ms = 30'000;   // until a request begins
-  unsigned read_timeout_ms = 10'000;   // from its first byte to its last
-  unsigned write_timeout_ms = 30'000;  // for a whole response
+  unsigned idle_timeout_ms = defaults::kIdleTimeout.count();    // until a request begins
+  unsigned read_timeout_ms = defaults::kReadTimeout.count();    // from its first byte to its last
+  unsigned write_timeout_ms = defaults::kWriteTimeout.count();  // for a whole response
   double drawn_per_second = 0;  // tiles not in the cache, for one address; 0: as many as it likes
   double drawn_burst = 2000;    // so many of them at once
 };

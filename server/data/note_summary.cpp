@@ -15,23 +15,34 @@ std::string_view sort_of(const FeatureNote& note) {
   return reason.substr(0, reason.find(':'));
 }
 
-std::string ids_of(std::span<const FeatureNote* const> notes) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(notes.size(), kMostIds); ++i) {
-    const bool is_last = i + 1 == notes.size();
-    text += fmt::format("{}{}", i == 0 ? "" : is_last ? " and " : ", ", notes[i]->id);
+/// Each once, in order of the notes.
+std::vector<std::int64_t> ids_of(std::span<const FeatureNote* const> notes) {
+  std::vector<std::int64_t> ids;
+  for (const FeatureNote* note : notes) {
+    if (ids.empty() || ids.back() != note->id) ids.push_back(note->id);
   }
-  if (notes.size() > kMostIds) text += fmt::format(" and {} more", notes.size() - kMostIds);
+  return ids;
+}
+
+/// "feature 3", or "features 3, 5, 9 and 2 more".
+std::string features_text(std::span<const std::int64_t> ids) {
+  if (ids.size() == 1) return fmt::format("feature {}", ids.front());
+  std::string text = "features ";
+  for (std::size_t i = 0; i < std::min(ids.size(), kMostIds); ++i) {
+    const bool is_last = i + 1 == ids.size();
+    text += fmt::format("{}{}", i == 0 ? "" : is_last ? " and " : ", ", ids[i]);
+  }
+  if (ids.size() > kMostIds) text += fmt::format(" and {} more", ids.size() - kMostIds);
   return text;
 }
 
 std::string line_of(std::span<const FeatureNote* const> notes) {
   const FeatureNote& first = *notes.front();
-  if (notes.size() == 1) return fmt::format("feature {}: {}", first.id, first.reason);
+  const std::string features = features_text(ids_of(notes));
   const bool are_equal = std::ranges::all_of(
       notes, [&first](const FeatureNote* note) { return note->reason == first.reason; });
-  if (are_equal) return fmt::format("features {}: {}", ids_of(notes), first.reason);
-  return fmt::format("features {}: {}; of feature {}{}", ids_of(notes), sort_of(first), first.id,
+  if (are_equal) return fmt::format("{}: {}", features, first.reason);
+  return fmt::format("{}: {}; of feature {}{}", features, sort_of(first), first.id,
                      first.reason.substr(sort_of(first).size()));
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "server/base/defaults.h"
 #include "server/base/limits.h"
 #include "server/http/client_address.h"
 #include "server/http/http_message.h"
@@ -20,24 +21,26 @@
 namespace trapeze {
 
 struct HttpServerOptions {
-  std::string address = "0.0.0.0";  // IPv4 or IPv6, no name
-  std::uint16_t port = 8080;        // 0: any free port
-  unsigned threads = 2;
-  std::size_t max_connections = 1024;  // more are turned away with 503
+  std::string address{defaults::kAddress};  // IPv4 or IPv6, no name
+  std::uint16_t port = defaults::kPort;     // 0: any free port
+  unsigned threads = defaults::kThreads;
+  std::size_t max_connections = defaults::kConnections;  // more are turned away with 503
   // More from one address (of IPv6: from one /64) are turned away with 429. Not counted are those
   // of trusted proxies, who speak for many.
-  std::size_t max_connections_per_address = 256;
-  std::size_t target_limit = kMaxTargetLength;      // bytes of path and query together
-  std::uint32_t header_limit = 8192;                // bytes of request line and header together
-  std::uint32_t body_limit = 16 * 1024;             // styles are posted
-  std::chrono::milliseconds idle_timeout{30'000};   // until a request begins
-  std::chrono::milliseconds read_timeout{10'000};   // from its first byte to its last
-  std::chrono::milliseconds write_timeout{30'000};  // for a whole response
+  std::size_t max_connections_per_address = defaults::kConnectionsPerAddress;
+  std::size_t target_limit = kMaxTargetLength;          // bytes of path and query together
+  std::uint32_t header_limit = defaults::kHeaderBytes;  // bytes of request line and header together
+  std::uint32_t body_limit = defaults::kBodyBytes;      // styles are posted
+  std::chrono::milliseconds idle_timeout = defaults::kIdleTimeout;  // until a request begins
+  std::chrono::milliseconds read_timeout =
+      defaults::kReadTimeout;  // from its first byte to its last
+  std::chrono::milliseconds write_timeout = defaults::kWriteTimeout;  // for a whole response
   // From the call of stop() until no more connections are taken: for balancers to notice that
   // is_stopping().
   std::chrono::milliseconds drain_delay{0};
-  std::chrono::milliseconds drain_timeout{10'000};  // after that, for what still runs
-  std::vector<AddressRange> trusted_proxies;        // whose X-Forwarded-For is believed
+  std::chrono::milliseconds drain_timeout =
+      defaults::kDrainTimeout;                // after that, for what still runs
+  std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
 };
 
 /// Answers a request by calling `respond` exactly once, within this call or later, from any thread.

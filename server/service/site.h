@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "render/text/fonts.h"
+#include "server/base/defaults.h"
 #include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/data/dataset.h"
@@ -32,7 +33,7 @@ struct SiteOptions {
   /// The Host headers that will do for that, as is_allowed_host() takes them; empty: all.
   std::vector<std::string> allowed_hosts = {};
   /// What caches between here and the client may do with tiles.
-  std::string cache_control = "public, max-age=3600";
+  std::string cache_control{defaults::kCacheControl};
   std::size_t max_layers = kMaxLayersPerTile;  // of one tile
   int max_scale = kMaxScale;
   int max_zoom = kMaxZoom;

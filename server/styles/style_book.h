@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/base/defaults.h"
 #include "server/base/lru_map.h"
 #include "server/base/result.h"
 #include "server/base/url.h"
@@ -55,7 +56,7 @@ class StyleBook {
 
   /// The name of the style that sets nothing: each layer has its own.
   static constexpr std::string_view kDefaultName = "default";
-  static constexpr std::size_t kDefaultBudget = std::size_t{16} << 20;
+  static constexpr std::size_t kDefaultBudget = std::size_t{defaults::kPostedStylesMegabytes} << 20;
   /// In bytes of canonical text: with it, a URL stays within its limit.
   static constexpr std::size_t kMaxStyleLength = 2048;
 

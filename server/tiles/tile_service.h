@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "server/base/defaults.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
 
@@ -34,11 +35,12 @@ struct TileAnswer {
 };
 
 struct TileServiceOptions {
-  std::size_t queue = 256;                     // distinct tiles that may wait for a worker
-  std::chrono::milliseconds deadline{10'000};  // from submission to the beginning of drawing
+  std::size_t queue = defaults::kQueue;  // distinct tiles that may wait for a worker
+  std::chrono::milliseconds deadline =
+      defaults::kDeadline;  // from submission to the beginning of drawing
   // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
   // waited for; but a tile waits until those of its pass are drawn too.
-  std::size_t batch = 8;
+  std::size_t batch = defaults::kBatch;
   // For marks.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   // Told once of every tile, however many asked for it, from whatever thread answers.

@@ -26,5 +26,10 @@ TEST(NoteSummaryTest, NotesOfOneSortAreOneLine) {
                           "feature 51"));
 }
 
+TEST(NoteSummaryTest, AFeatureWithSeveralNotesIsNamedOnce) {
+  const std::vector<FeatureNote> notes = {{3, "overlapped: a"}, {3, "overlapped: b"}};
+  EXPECT_THAT(summarize_notes(notes), ElementsAre("feature 3: overlapped; of feature 3: a"));
+}
+
 }  // namespace
 }  // namespace trapeze

@@ -1,0 +1,31 @@
+// Defaults of settings that more than the configuration needs: whoever makes a part of the server
+// without a configuration gets the same.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace trapeze::defaults {
+
+constexpr std::string_view kAddress = "0.0.0.0";
+constexpr std::uint16_t kPort = 8080;
+constexpr unsigned kThreads = 2;  // for sockets
+constexpr std::size_t kConnections = 1024;
+constexpr std::size_t kConnectionsPerAddress = 256;
+constexpr std::uint32_t kHeaderBytes = 8192;
+constexpr std::uint32_t kBodyBytes = 16 * 1024;
+constexpr std::chrono::milliseconds kIdleTimeout{30'000};
+constexpr std::chrono::milliseconds kReadTimeout{10'000};
+constexpr std::chrono::milliseconds kWriteTimeout{30'000};
+constexpr std::chrono::milliseconds kDrainTimeout{10'000};
+
+constexpr std::size_t kQueue = 256;  // tiles that may wait for a worker
+constexpr std::chrono::milliseconds kDeadline{10'000};
+constexpr unsigned kBatch = 8;  // tiles
+
+constexpr std::string_view kCacheControl = "public, max-age=3600";  // of tiles
+constexpr unsigned kPostedStylesMegabytes = 16;
+
+}  // namespace trapeze::defaults
