@@ -34,7 +34,7 @@ bool all_of(std::span<const T> items, const Holds& holds) {
   return result;
 }
 
-constexpr auto is_on_grid = [](Point p) {
+constexpr auto kIsOnGrid = [](Point p) {
   return p.x >= kGridMin && p.x <= kGridMax && p.y >= kGridMin && p.y <= kGridMax;
 };
 
@@ -58,7 +58,7 @@ void check_mesh(const LayerArrays& a) {
   const std::size_t edges = a.edges.size();
   require(std::max({vertices, edges, a.trapezoids.size()}) <= kMostItems,
           "there is too much of it");
-  require(all_of(a.vertices, is_on_grid), "a vertex is not on the grid");
+  require(all_of(a.vertices, kIsOnGrid), "a vertex is not on the grid");
   require(
       all_of(a.edges,
              [vertices](const MeshEdge& e) { return e.upper < vertices && e.lower < vertices; }),
@@ -79,14 +79,14 @@ void check_features(const LayerArrays& a) {
           "the feature of a trapezoid is not there");
   require(all_of(a.grains,
                  [rows](const FeatureGrain& grain) {
-                   return grain.row < rows && grain.born <= kLastLevel && is_on_grid(grain.from) &&
-                          is_on_grid(grain.to);
+                   return grain.row < rows && grain.born <= kLastLevel && kIsOnGrid(grain.from) &&
+                          kIsOnGrid(grain.to);
                  }),
           "a grain of dust has no feature or no place");
   require(a.outline_ends.size() <= rows, "there are outlines without a feature");
   require(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
   require(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
-  require(all_of(a.outline_points, is_on_grid), "a point of an outline is not on the grid");
+  require(all_of(a.outline_points, kIsOnGrid), "a point of an outline is not on the grid");
 }
 
 void check_sums(const LayerArrays& a) {
@@ -96,8 +96,8 @@ void check_sums(const LayerArrays& a) {
               a.size.motes == a.trapezoids.size() - a.feature_of.size(),
           "the sums are not those of the trapezoids");
   const Box& box = a.bounds;
-  require(box == Box() || (!box.is_empty() && is_on_grid({box.min_x, box.min_y}) &&
-                           is_on_grid({box.max_x, box.max_y})),
+  require(box == Box() || (!box.is_empty() && kIsOnGrid({box.min_x, box.min_y}) &&
+                           kIsOnGrid({box.max_x, box.max_y})),
           "the bounds are not on the grid");
 }
 

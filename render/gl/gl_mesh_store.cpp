@@ -90,7 +90,7 @@ GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshV
   const auto trapezoids = mesh.trapezoids.subspan(
       first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
   const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
-  const ChunkPointer chunk = make_chunk(gl, trapezoids.size());
+  ChunkPointer chunk = make_chunk(gl, trapezoids.size());
   auto* integers = static_cast<std::int32_t*>(
       gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
                         GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));

@@ -264,7 +264,7 @@ void GlRenderer::run_batches() {
   gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, differences_buffer_);
 }
 
-void GlRenderer::set_band(const Band& band) {
+void GlRenderer::set_band(const Band& band) const {
   const View& view = band.task->view;
   gl_.Uniform2d(program_.origin, static_cast<double>(view.origin_x),
                 static_cast<double>(view.origin_y));

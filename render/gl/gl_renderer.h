@@ -90,7 +90,7 @@ class GlRenderer final : public MaskRenderer {
   void set_last_band_aside(DrawTimes& times);
   void prepare_buffers();
   void run_batches();
-  void set_band(const Band& band);
+  void set_band(const Band& band) const;
   void resolve(const Band& band);
 
   std::unique_ptr<GlContext> context_;

@@ -56,6 +56,7 @@ std::vector<std::string> summarize_notes(std::span<const FeatureNote> notes) {
     (found == sorts.end() ? sorts.emplace_back() : *found).push_back(&note);
   }
   std::vector<std::string> lines;
+  lines.reserve(sorts.size());
   for (const auto& sort : sorts) lines.push_back(line_of(sort));
   return lines;
 }
