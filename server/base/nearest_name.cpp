@@ -1,7 +1,6 @@
 #include "server/base/nearest_name.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <utility>
 
@@ -10,12 +9,6 @@ namespace {
 
 constexpr std::size_t kLettersASlip = 3;
 constexpr std::size_t kLongestName = 64;  // what is longer is no mistyped name, and may be hostile
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 /// Edit distance in which neighbours that have changed places count once (optimal string
 /// alignment).
@@ -48,6 +41,8 @@ std::optional<std::string> nearest_name(std::string_view mistyped,
   std::optional<std::string> nearest;
   std::size_t fewest = std::max<std::size_t>(1, given.size() / kLettersASlip) + 1;
   for (const std::string& name : names) {
+    const auto [shorter, longer] = std::minmax(given.size(), name.size());
+    if (longer - shorter >= fewest) continue;
     const std::size_t slips = slips_between(given, in_lower_case(name));
     if (slips >= fewest || slips >= name.size()) continue;
     fewest = slips;
@@ -59,6 +54,19 @@ std::optional<std::string> nearest_name(std::string_view mistyped,
 std::string did_you_mean(std::string_view mistyped, const std::vector<std::string>& names) {
   const auto nearest = nearest_name(mistyped, names);
   return nearest ? "; did you mean " + *nearest + "?" : "";
+}
+
+std::string suggestion_or_stop(std::string_view mistyped, const std::vector<std::string>& names) {
+  const auto nearest = nearest_name(mistyped, names);
+  return nearest ? "; did you mean \"" + *nearest + "\"?" : ".";
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
 }
 
 }  // namespace trapeze

@@ -17,4 +17,10 @@ std::optional<std::string> nearest_name(std::string_view mistyped,
 /// "; did you mean NAME?", or nothing if no name is near: the end of a sentence that refuses one.
 std::string did_you_mean(std::string_view mistyped, const std::vector<std::string>& names);
 
+/// "; did you mean \"NAME\"?", or "." if no name is near: the same for the body of a problem.
+std::string suggestion_or_stop(std::string_view mistyped, const std::vector<std::string>& names);
+
+/// A to Z as a to z, all else as it is.
+std::string in_lower_case(std::string_view text);
+
 }  // namespace trapeze

@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -27,8 +26,7 @@ double epsilon_of(int zoom, double pixels) {
 
 void check_ending(const std::string& output) {
   const std::vector<std::string> endings = {".fgb", ".gpkg", ".geojson"};
-  std::string ending = std::filesystem::path(output).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = in_lower_case(std::filesystem::path(output).extension().string());
   if (std::ranges::find(endings, ending) != endings.end()) return;
   throw UsageError(
       fmt::format("--output takes a name that ends in .fgb (FlatGeobuf), .gpkg "

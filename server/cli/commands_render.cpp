@@ -1,6 +1,5 @@
 #include <spdlog/spdlog.h>
 
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -56,8 +55,7 @@ TileId tile_or_throw(const std::string& text) {
 
 /// What the end of a file's name says, whatever its case.
 TileFormat format_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".png") return TileFormat::png;
   if (extension != ".webp") {
     throw UsageError(
@@ -68,15 +66,6 @@ TileFormat format_of(const std::string& path) {
   return TileFormat::webp;
 }
 
-/// A URL may carry names that mean nothing to a style; here they can only be mistakes.
-void check_names(const std::vector<QueryPair>& style, const std::vector<std::string>& layers) {
-  for (const auto& [name, value] : style) {
-    if (auto problem = unknown_parameter(name, layers)) {
-      throw UsageError("--style: " + problem->detail);
-    }
-  }
-}
-
 TileRequest make_request(const RenderArguments& arguments, const std::vector<LayerConfig>& layers) {
   TileRequest request;
   for (const LayerConfig& layer : layers) request.layers.push_back(layer.name);
@@ -85,7 +74,6 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   request.format = format_of(arguments.output);
   const auto query = decode_query(arguments.style);
   if (!query) throw UsageError("--style takes a query string such as fill=red");
-  check_names(*query, request.layers);
   request.style =
       style_or_throw(style_or_throw(StyleBook().read(*query)).style_for(request.layers));
   return request;

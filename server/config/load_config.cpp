@@ -413,28 +413,59 @@ std::optional<SettingValue> value_in(SettingType type, const std::string& text) 
   return std::nullopt;
 }
 
-void apply(const ConfigOverride& change, LoadedConfig& loaded) {
-  for (const auto& setting : config_settings()) {
-    if (setting.name() != change.setting) continue;
-    const auto value = value_in(setting.type, change.value);
-    if (value && assign(setting, loaded.config, *value)) {
-      loaded.origins[change.setting] = change.origin;
-    } else {
-      const bool is_list = setting.type == SettingType::list || setting.type == SettingType::paths;
-      loaded.problems.push_back(
-          {change.origin,
-           fmt::format("takes {}{}{}", setting.takes, is_list ? ", with commas between them" : "",
-                       is_list ? "" : did_you_mean(change.value, setting.choices))});
-    }
-  }
-}
-
 std::string variable_of(const Setting<Config>& setting) {
   std::string name = fmt::format("{}{}_{}", kVariablePrefix, setting.table, setting.key);
   std::ranges::transform(name, name.begin(), [](char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   });
   return name;
+}
+
+/// What Kubernetes sets in every container for a service called trapeze-server, -admin or the like:
+/// TRAPEZE_SERVER_SERVICE_HOST, TRAPEZE_SERVER_PORT_8080_TCP.
+bool is_service_link(std::string_view variable) {
+  constexpr std::string_view kPort = "_PORT_";
+  const std::size_t port = variable.find(kPort);
+  const std::string_view number =
+      port == std::string_view::npos ? "" : variable.substr(port + kPort.size());
+  return variable.find("_SERVICE_HOST") != std::string_view::npos ||
+         variable.find("_SERVICE_PORT") != std::string_view::npos ||
+         (!number.empty() && number.front() >= '0' && number.front() <= '9');
+}
+
+/// Whether it begins as variables of settings do: TRAPEZE_SERVER_PROT, but not TRAPEZE_DATA.
+bool is_of_a_table(std::string_view variable) {
+  return std::ranges::any_of(config_settings(), [variable](const Setting<Config>& setting) {
+    const std::string of_setting = variable_of(setting);
+    const std::size_t beginning = kVariablePrefix.size() + setting.table.size() + 1;
+    return variable.starts_with(std::string_view(of_setting).substr(0, beginning));
+  });
+}
+
+ConfigProblem unknown_variable(const std::string& variable) {
+  std::vector<std::string> known;
+  for (const auto& setting : config_settings()) known.push_back(variable_of(setting));
+  return {variable, "there is no such setting; `trapeze config print` shows all" +
+                        did_you_mean(variable, known)};
+}
+
+void apply(const ConfigOverride& change, LoadedConfig& loaded) {
+  const auto found = std::ranges::find(config_settings(), change.setting, &Setting<Config>::name);
+  if (found == config_settings().end()) {
+    loaded.problems.push_back(unknown_variable(change.origin));
+    return;
+  }
+  const auto& setting = *found;
+  const auto value = value_in(setting.type, change.value);
+  if (value && assign(setting, loaded.config, *value)) {
+    loaded.origins[change.setting] = change.origin;
+    return;
+  }
+  const bool is_list = setting.type == SettingType::list || setting.type == SettingType::paths;
+  loaded.problems.push_back(
+      {change.origin,
+       fmt::format("takes {}{}{}", setting.takes, is_list ? ", with commas between them" : "",
+                   is_list ? "" : did_you_mean(change.value, setting.choices))});
 }
 
 std::string layer_name_of_file(const std::string& file) {
@@ -480,8 +511,11 @@ std::vector<ConfigOverride> environment_overrides(const char* const* environment
     if (!entry.starts_with(kVariablePrefix) || equals == std::string_view::npos) continue;
     const std::string name(entry.substr(0, equals));
     const auto setting = std::ranges::find(config_settings(), name, variable_of);
-    if (setting == config_settings().end()) continue;  // others may have their own variables
-    overrides.push_back({setting->name(), std::string(entry.substr(equals + 1)), name});
+    const bool is_setting = setting != config_settings().end();
+    // Others may have their own variables.
+    if (!is_setting && (!is_of_a_table(name) || is_service_link(name))) continue;
+    overrides.push_back(
+        {is_setting ? setting->name() : "", std::string(entry.substr(equals + 1)), name});
   }
   return overrides;
 }

@@ -18,7 +18,7 @@ struct ConfigProblem {
 
 /// A value from outside of the file, which it overrides.
 struct ConfigOverride {
-  std::string setting;  // "server.port"
+  std::string setting;  // "server.port"; empty: there is none of that name, which is a problem
   std::string value;
   std::string origin;  // how messages call it: "TRAPEZE_SERVER_PORT", "--port"
 };
@@ -42,7 +42,8 @@ LoadedConfig load_config(const std::string& path, const std::vector<ConfigOverri
 LoadedConfig load_config_text(std::string_view text, const std::string& path);
 
 /// The overrides of an environment of "NAME=value" strings that ends with a null: for each setting
-/// TABLE.KEY, the variable TRAPEZE_TABLE_KEY.
+/// TABLE.KEY, the variable TRAPEZE_TABLE_KEY. What begins with TRAPEZE_TABLE_ and is no setting is
+/// among them, without a setting; but not what Kubernetes sets for services of such a name.
 std::vector<ConfigOverride> environment_overrides(const char* const* environment);
 
 /// Reads a TOML file alone. Throws std::runtime_error with all problems, one a line.

@@ -63,11 +63,8 @@ Problem unknown_layer(const std::string& name, const Dataset& dataset) {
   constexpr std::size_t kMaxNames = 20;
   std::vector<std::string> known;
   for (const ServedLayer& served : dataset.layers()) known.push_back(served.config.name);
-  const auto nearest = nearest_name(name, known);
   const auto shown = std::span(known).first(std::min(known.size(), kMaxNames));
-  return {404,
-          fmt::format("There is no layer \"{}\"{}", name,
-                      nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+  return {404, fmt::format("There is no layer \"{}\"{}", name, suggestion_or_stop(name, known)),
           "layers", name,
           fmt::format("one of {}{}", fmt::join(shown, ", "),
                       known.size() > kMaxNames ? ", ... (all are in /catalog)" : "")};

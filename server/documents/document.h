@@ -2,7 +2,10 @@
 // what comes out.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/text/fonts.h"
@@ -18,14 +21,23 @@ struct DocumentRequest {
   const Fonts& fonts;
   std::string base_url;           // how this server is reached, without a '/' at the end
   std::vector<std::string> path;  // decoded segments, untrusted
-  StyledQuery query;              // untrusted
+  std::vector<QueryPair> query;   // untrusted
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {
-    for (const auto& [key, value] : query.pairs) {
+    for (const auto& [key, value] : query) {
       if (key == name) return &value;
     }
     return nullptr;
+  }
+
+  /// The style that the query asks for. Problems, and the names of `others`, are those of
+  /// StyleBook::read() and StyledQuery::style_for().
+  Result<StyleQuery> style_for(std::span<const std::string> layers,
+                               std::span<const std::string_view> others = {}) const {
+    auto styled = styles.read(query);
+    if (!styled) return std::move(styled).problem();
+    return styled->style_for(layers, others);
   }
 };
 

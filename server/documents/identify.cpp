@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -18,6 +19,7 @@
 namespace trapeze {
 namespace {
 
+constexpr std::array<std::string_view, 1> kOwnParameters = {"z"};
 constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
 
 struct IdentifyRequest {
@@ -78,7 +80,7 @@ Result<IdentifyRequest> parse_request(const DocumentRequest& request) {
   auto zoom = parse_zoom(request);
   if (!zoom) return std::move(zoom).problem();
   IdentifyRequest parsed{*std::move(layers), *place, *zoom, {}};
-  auto style = request.query.style_for(parsed.layers);
+  auto style = request.style_for(parsed.layers, kOwnParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;

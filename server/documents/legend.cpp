@@ -76,7 +76,7 @@ LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) 
 
 Result<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layers,
                                            const DocumentRequest& request) {
-  const auto query = request.query.style_for(layers);
+  const auto query = request.style_for(layers);
   if (!query) return query.problem();
   std::vector<LayerLegend> legend;
   for (auto name = layers.rbegin(); name != layers.rend(); ++name) {

@@ -16,6 +16,7 @@
 namespace trapeze {
 namespace {
 
+constexpr std::array<std::string_view, 2> kOwnParameters = {"collections", "f"};
 constexpr std::string_view kJsonType = "application/json";
 constexpr std::string_view kPngType = "image/png";
 constexpr std::string_view kTilesetsRelation =
@@ -97,7 +98,7 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
 
 /// What must follow the path of a link to keep the resource and its style.
 Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
-  const auto style = request.query.style_for(resource.layers);
+  const auto style = request.style_for(resource.layers, kOwnParameters);
   if (!style) return style.problem();
   const std::string text = style->canonical_text();
   std::string query = resource.selection;
@@ -275,10 +276,13 @@ Json matrix_set_json(const DocumentRequest& request) {
   return json;
 }
 
+std::span<const std::string> whole_path(const DocumentRequest& request) {
+  const auto path = std::span(request.path);
+  return path.back().empty() ? path.first(path.size() - 1) : path;  // "/ogc/"
+}
+
 std::span<const std::string> path_below_ogc(const DocumentRequest& request) {
-  auto path = std::span(request.path).subspan(1);
-  if (!path.empty() && path.back().empty()) path = path.first(path.size() - 1);  // "/ogc/"
-  return path;
+  return whole_path(request).subspan(1);
 }
 
 /// The resource that a path of tiles begins with.
@@ -296,9 +300,7 @@ std::optional<Problem> check_format(const DocumentRequest& request, std::string_
 }
 
 const Route* route_of(const DocumentRequest& request) {
-  auto path = std::span<const std::string>(request.path);
-  if (path.back().empty()) path = path.first(path.size() - 1);  // "/ogc/"
-  return find_route(path);
+  return find_route(whole_path(request));
 }
 
 Result<Json> collection_of(const std::string& name, const DocumentRequest& request) {
@@ -355,7 +357,7 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
   const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2]);
   if (!tile) return tile.problem();
   TileRequest parsed{std::move(resource->layers), *tile, 1, {}};
-  auto style = request.query.style_for(parsed.layers);
+  auto style = request.style_for(parsed.layers, kOwnParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;

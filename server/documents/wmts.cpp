@@ -7,6 +7,7 @@
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
+#include "server/base/nearest_name.h"
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/tile_matrix_set.h"
@@ -143,15 +144,7 @@ std::string capabilities_xml(const DocumentRequest& request) {
   return xml;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-  }
-  return result;
-}
-
-// The keys of GetTile. What else stands in the query is about style.
+// The keys of GetTile, in any case of letters. What else stands in the query is about style.
 constexpr std::array<std::string_view, 10> kKeys = {
     "service", "request",       "version",    "layer",   "style",
     "format",  "tilematrixset", "tilematrix", "tilerow", "tilecol",
@@ -170,7 +163,7 @@ struct KeyValuePairs {
 KeyValuePairs divide(std::span<const QueryPair> query) {
   KeyValuePairs pairs;
   for (const auto& [name, value] : query) {
-    const auto key = std::ranges::find(kKeys, lower(name));
+    const auto key = std::ranges::find(kKeys, in_lower_case(name));
     if (key == kKeys.end()) {
       pairs.others.emplace_back(name, value);
     } else {
@@ -187,7 +180,7 @@ bool is_key_value_path(const DocumentRequest& request) {
 /// A key whose value must be the one given, or may be left out.
 std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
                              std::string_view value) {
-  if (pairs[key].empty() || lower(pairs[key]) == lower(value)) return std::nullopt;
+  if (pairs[key].empty() || in_lower_case(pairs[key]) == in_lower_case(value)) return std::nullopt;
   return Problem{400, fmt::format("{} takes {} here.", key, value), std::string(key), pairs[key],
                  std::string(value)};
 }
@@ -223,9 +216,9 @@ Result<Document> wmts_document(const DocumentRequest& request) {
     return Problem{404, "There is nothing here. The capabilities are at /wmts.xml."};
   }
   if (is_key_value_path(request)) {
-    const KeyValuePairs pairs = divide(request.query.pairs);
+    const KeyValuePairs pairs = divide(request.query);
     if (auto problem = check(pairs, "service", "WMTS")) return std::move(*problem);
-    if (lower(pairs["request"]) != "getcapabilities") {
+    if (in_lower_case(pairs["request"]) != "getcapabilities") {
       return Problem{400, "request takes GetCapabilities or GetTile.", "request", pairs["request"],
                      "GetCapabilities or GetTile"};
     }
@@ -235,8 +228,8 @@ Result<Document> wmts_document(const DocumentRequest& request) {
 
 std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
   if (!is_key_value_path(request)) return std::nullopt;
-  const KeyValuePairs pairs = divide(request.query.pairs);
-  if (lower(pairs["request"]) != "gettile") return std::nullopt;
+  const KeyValuePairs pairs = divide(request.query);
+  if (in_lower_case(pairs["request"]) != "gettile") return std::nullopt;
   return tile_of(pairs, request.styles);
 }
 

@@ -297,10 +297,8 @@ void Site::handle_document(const Documents& documents, const Target& target,
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
-  auto styled = styles_->read(std::move(*query));
-  if (!styled) return respond(problem_response(styled.problem()));
   const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
-                              *std::move(base), std::move(*path), *std::move(styled)};
+                              *std::move(base), std::move(*path), *std::move(query)};
   if (const auto tile = documents.find_tile ? documents.find_tile(asked) : std::nullopt) {
     const Result<TileRequest>& found = *tile;
     return found ? handle_tile(*found, request, respond)

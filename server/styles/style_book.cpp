@@ -21,8 +21,9 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
 
 }  // namespace
 
-Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers) const {
-  auto style = StyleQuery::parse(pairs, layers);
+Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers,
+                                          std::span<const std::string_view> others) const {
+  auto style = StyleQuery::parse(pairs, layers, others);
   if (!style || named == nullptr) return style;
   return style->over(*named, layers);
 }
@@ -49,12 +50,11 @@ Problem StyleBook::unknown(const std::string& name) const {
   if (!named_.empty()) takes = fmt::format("one of {}, or {}", fmt::join(names(), ", "), takes);
   std::vector<std::string> known = names();
   known.emplace_back(kDefaultName);
-  const auto nearest = nearest_name(name, known);
   return {
       400,
       fmt::format("There is no style of that name{} Posted styles are given up when others need "
                   "their place: post it again.",
-                  nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+                  suggestion_or_stop(name, known)),
       "style", name, takes};
 }
 
@@ -67,12 +67,12 @@ Result<std::string> StyleBook::post(StyleQuery style) {
                                     kMaxStyleLength, text.size())};
   }
   const std::size_t bytes = kOverhead + 4 * text.size();
+  std::string id = digest_of(text);
   const std::lock_guard lock(mutex_);
   if (bytes > posted_.budget()) {
     return Problem{403,
                    "This server keeps no styles that are posted, or none as long as this one."};
   }
-  std::string id = digest_of(text);
   if (posted_.find(id) == nullptr) {
     posted_.insert(id, std::make_shared<const StyleQuery>(std::move(style)), bytes);
   }

@@ -27,9 +27,10 @@ struct StyledQuery {
   std::vector<QueryPair> pairs;
   std::shared_ptr<const StyleQuery> named;  // null: none, or the one that sets nothing
 
-  /// What the pairs set and, where they are silent, the named style. Problems are those of
-  /// StyleQuery::parse().
-  Result<StyleQuery> style_for(std::span<const std::string> layers) const;
+  /// What the pairs set and, where they are silent, the named style. Problems, and the names of
+  /// `others`, are those of StyleQuery::parse().
+  Result<StyleQuery> style_for(std::span<const std::string> layers,
+                               std::span<const std::string_view> others = {}) const;
 };
 
 class StyleBook {

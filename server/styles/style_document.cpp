@@ -125,10 +125,9 @@ class DocumentReader {
       }
       known.emplace_back(parameter.name);
     }
-    const auto nearest = nearest_name(name, known);
     return wrong(
         fmt::format("A style does not know \"{}\"{}{}", name, layer.empty() ? "" : " for one layer",
-                    nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
+                    suggestion_or_stop(name, known)),
         name, fmt::format("{}", fmt::join(known, ", ")));
   }
 

@@ -448,6 +448,38 @@ SettingName resolve_name(std::string_view name, std::span<const std::string> lay
   return {layer, parameter};
 }
 
+/// How the sentence about an unknown name ends.
+std::string reason_or_suggestion(std::string_view name, std::span<const std::string> layers,
+                                 const std::vector<std::string>& known) {
+  const std::string suggestion = suggestion_or_stop(name, known);
+  const std::size_t dot = name.find('.');
+  const StyleParameter* parameter =
+      dot == std::string_view::npos ? nullptr : find_style_parameter(name.substr(dot + 1));
+  if (parameter == nullptr) return suggestion;
+  const std::string_view layer = name.substr(0, dot);
+  if (std::ranges::find(layers, layer) != layers.end()) {
+    return fmt::format(": {} is one of the whole tile.", parameter->name);
+  }
+  return suggestion == "." ? fmt::format(": no layer \"{}\" is asked for.", layer) : suggestion;
+}
+
+Problem unknown_name(const QueryPair& pair, std::span<const std::string> layers,
+                     std::span<const std::string_view> others) {
+  std::vector<std::string> known(others.begin(), others.end());
+  for (const StyleParameter& parameter : kParameters) {
+    known.emplace_back(parameter.name);
+    if (!parameter.is_per_layer) continue;
+    for (const std::string& layer : layers) {
+      known.push_back(fmt::format("{}.{}", layer, parameter.name));
+    }
+  }
+  return {400,
+          fmt::format("There is no parameter \"{}\"{}", pair.first,
+                      reason_or_suggestion(pair.first, layers, known)),
+          pair.first, pair.second,
+          fmt::format("one of {}; {} may be anything", fmt::join(known, ", "), kFreeParameter)};
+}
+
 Problem given_twice(const StyleParameter& parameter, const QueryPair& pair) {
   return {400, fmt::format("The parameter {} is given more than once.", pair.first), pair.first,
           pair.second, describe_values(parameter) + ", once"};
@@ -559,31 +591,16 @@ std::string describe_values(const StyleParameter& parameter) {
   return {};
 }
 
-std::optional<Problem> unknown_parameter(std::string_view name,
-                                         std::span<const std::string> layers) {
-  if (resolve_name(name, layers).parameter != nullptr) return std::nullopt;
-  std::vector<std::string> known;
-  for (const StyleParameter& parameter : style_parameters()) {
-    known.emplace_back(parameter.name);
-    if (!parameter.is_per_layer) continue;
-    for (const std::string& layer : layers)
-      known.push_back(fmt::format("{}.{}", layer, parameter.name));
-  }
-  const auto nearest = nearest_name(name, known);
-  return Problem{400,
-                 fmt::format("There is no parameter \"{}\"{}", name,
-                             nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "."),
-                 std::string(name),
-                 {},
-                 fmt::format("one of {}", fmt::join(known, ", "))};
-}
-
 Result<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
-                                     std::span<const std::string> layers) {
+                                     std::span<const std::string> layers,
+                                     std::span<const std::string_view> others) {
   StyleQuery query;
   for (const QueryPair& pair : pairs) {
+    if (pair.first == kFreeParameter) continue;
+    if (std::ranges::find(others, pair.first) != others.end()) continue;
     const auto [layer, parameter] = resolve_name(pair.first, layers);
-    if (parameter == nullptr || parameter->id == ParameterId::style) continue;
+    if (parameter == nullptr) return unknown_name(pair, layers, others);
+    if (parameter->id == ParameterId::style) continue;
     if (query.find_setting(layer, parameter->id) != nullptr) return given_twice(*parameter, pair);
     auto value = parse_parameter(*parameter, pair.second);
     if (!value) return wrong_value(*parameter, pair);

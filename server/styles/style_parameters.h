@@ -113,10 +113,8 @@ std::string format_value(const ParameterValue& value);
 /// "a number from 0 to 1".
 std::string describe_values(const StyleParameter& parameter);
 
-/// What is wrong with a name of a query, PARAMETER or LAYER.PARAMETER, that means nothing to these
-/// layers, with the nearest that does; nothing if it means something.
-std::optional<Problem> unknown_parameter(std::string_view name,
-                                         std::span<const std::string> layers);
+/// A name that any query may hold, with any value: so that a URL can be made new to caches.
+constexpr std::string_view kFreeParameter = "_";
 
 /// One parameter set by a request, for all layers (`layer` empty) or for one.
 struct StyleSetting {
@@ -131,10 +129,12 @@ class StyleQuery {
  public:
   StyleQuery() = default;
 
-  /// Names that are not in the table, or belong to a layer that is not in `layers`, are ignored.
-  /// A parameter given twice, or set to what it does not take, is a problem.
+  /// A problem, 400, is a name that is neither PARAMETER nor LAYER.PARAMETER of one of `layers`,
+  /// nor among `others`, which are read elsewhere; a parameter that is given twice, or is set to
+  /// what it does not take. `style` and kFreeParameter are passed over.
   static Result<StyleQuery> parse(std::span<const QueryPair> pairs,
-                                  std::span<const std::string> layers);
+                                  std::span<const std::string> layers,
+                                  std::span<const std::string_view> others = {});
 
   std::span<const StyleSetting> settings() const { return settings_; }
   /// What holds for `layer`: its own setting, else the one for all layers, else null.

@@ -287,6 +287,20 @@ TEST_F(ConfigTest, EnvironmentGoesBeforeTheFileAndTheCommandLineBeforeBoth) {
   EXPECT_FALSE(loaded.origins.contains("server.deadline_ms"));
 }
 
+TEST_F(ConfigTest, AMistypedVariableIsAnErrorWithTheNearestSetting) {
+  const char* const environment[] = {"TRAPEZE_SERVER_PROT=80",
+                                     "TRAPEZE_LIMITS_=1",
+                                     "TRAPEZE_SERVER_SERVICE_HOST=10.0.0.1",
+                                     "TRAPEZE_LOG_PORT_80_TCP_ADDR=10.0.0.1",
+                                     "TRAPEZE_DATA=/data",
+                                     nullptr};
+  const LoadedConfig loaded = load_config("", environment_overrides(environment));
+  ASSERT_EQ(loaded.problems.size(), 2u) << problems_text(loaded.problems);
+  EXPECT_EQ(problems_text(loaded.problems).substr(0, 20), "TRAPEZE_SERVER_PROT:");
+  EXPECT_THAT(loaded.problems[0].what, HasSubstr("did you mean TRAPEZE_SERVER_PORT?"));
+  EXPECT_EQ(loaded.problems[1].where, "TRAPEZE_LIMITS_");
+}
+
 TEST_F(ConfigTest, WrongOverridesAreErrorsThatNameThem) {
   const LoadedConfig loaded =
       load_config("", {{"server.port", "http", "--port"},

@@ -98,7 +98,7 @@ TEST_F(OgcApiTest, TheDatasetIsAllLayersOrThoseChosen) {
 TEST_F(OgcApiTest, TheStyleOfTheQueryIsInTheTilesAndInTheirLinks) {
   EXPECT_EQ(*sample_.get(kTiles + "/0/0/0?fill=lime&f=png").body,
             *sample_.get("/tiles/rings/0/0/0.png?fill=lime").body);
-  const auto tilesets = json("/ogc/collections/rings/map/tiles?fill=lime&x=1");
+  const auto tilesets = json("/ogc/collections/rings/map/tiles?fill=lime&_=1");
   const auto tileset = json(link(tilesets["tilesets"][0], "self"));
   EXPECT_THAT(link(tileset, "item"), EndsWith("{tileCol}?fill=00ff00ff"));
 }

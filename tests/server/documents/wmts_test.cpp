@@ -57,6 +57,16 @@ TEST_F(WmtsTest, TilesAreTheSameByKeysAndValues) {
             *sample_.get("/tiles/rings/3/5/2.png?fill=lime").body);
 }
 
+TEST_F(WmtsTest, KeysMayBeWrittenInAnyCaseAndTheStyleMayBeEmpty) {
+  const std::string body = *sample_.get(kTile).body;
+  for (const char* style : {"STYLE=", "style=", "Style=default", "style=default"}) {
+    const auto response = sample_.get(
+        std::string("/wmts?Request=GetTile&layer=rings&TileMatrix=3&tilerow=2&tilecol=5&") + style);
+    ASSERT_EQ(response.status, 200) << style << *response.body;
+    EXPECT_EQ(*response.body, body) << style;
+  }
+}
+
 TEST_F(WmtsTest, WhatIsWrongIsSaid) {
   const auto with = [](const std::string& from, const std::string& to) {
     std::string target = kTile;
@@ -75,6 +85,7 @@ TEST_F(WmtsTest, WhatIsWrongIsSaid) {
       {with("TILEROW=2", "TILEROW=x"), 400},
       {with("1.0.0", "2.0.0"), 400},
       {kTile + "&fill=no", 400},
+      {kTile + "&FILL=red", 400},
       {"/wmts.xml/x", 404}};
   for (const auto& [target, status] : wrong) {
     EXPECT_EQ(sample_.get(target).status, status) << target;

@@ -26,7 +26,7 @@ StyleQuery layered_style(const std::string& json) {
 TEST(StyleBookTest, AStyleFillsInWhatTheQueryDoesNotSet) {
   const StyleBook book({{"night", testing::style_of("fill=000080&stroke=ffffff")}});
   EXPECT_EQ(style_text(book, {{"style", "night"}}), "fill=000080ff&stroke=ffffffff");
-  EXPECT_EQ(style_text(book, {{"stroke", "red"}, {"style", "night"}, {"x", "1"}}),
+  EXPECT_EQ(style_text(book, {{"stroke", "red"}, {"style", "night"}, {"_", "1"}}),
             "fill=000080ff&stroke=ff0000ff");
   EXPECT_EQ(style_text(book, {{"style", "default"}, {"fill", "red"}}), "fill=ff0000ff");
   EXPECT_EQ(style_text(book, {{"fill", "red"}}), "fill=ff0000ff");

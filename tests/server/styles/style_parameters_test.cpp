@@ -32,7 +32,7 @@ TEST(StyleParametersTest, EqualStylesHaveEqualText) {
   for (const char* query : {"fill=red&background=white", "fill=f00&background=fff",
                             "fill=FF0000&background=WHITE", "fill=%23ff0000ff&background=ffffffff",
                             "background=rgb(255,255,255)&&fill=rgba(255,+0,+0,+1)",
-                            "unknown=1&fill=red&background=white&unknown=2"}) {
+                            "_=1&fill=red&background=white&_=2"}) {
     EXPECT_EQ(canonical(query), text) << query;
   }
   EXPECT_EQ(canonical("fill-opacity=0.50"), canonical("fill-opacity=5e-1"));
@@ -52,29 +52,33 @@ TEST(StyleParametersTest, CanonicalTextReadsBackAsItself) {
   EXPECT_EQ(text, "fill-opacity=0.1&lakes.fill=008080ff&roads.fill-opacity=0.25");
 }
 
-TEST(StyleParametersTest, NamesThatMeanNothingAreIgnored) {
-  for (const char* query :
-       {"fil=red", "sea.fill=nonsense", "roads.background=red", "roads.=1", ".fill=red", "Fill=red",
-        "fill%20=red", "=red", "utm_source=x&utm_source=y"}) {
-    EXPECT_EQ(canonical(query), "") << query;
+TEST(StyleParametersTest, ANameThatMeansNothingIsAProblemWithTheNearestThatDoes) {
+  for (const auto& [query, nearest] : std::vector<std::pair<const char*, const char*>>{
+           {"fil=red", "\"fill\"?"},
+           {"FILL=red", "\"fill\"?"},
+           {"fill%20=red", "\"fill\"?"},
+           {"lake.fill=red", "\"lakes.fill\"?"},
+           {"roads.fil=red", "\"roads.fill\"?"},
+           {"roads.background=red", "background is one of the whole tile"},
+           {"sea.opacity=1", "no layer \"sea\" is asked for"},
+           {"=red", "\"\"."},
+           {"v=7", "\"v\"."}}) {
+    const Problem problem = problem_of(query);
+    EXPECT_EQ(problem.status, 400) << query;
+    EXPECT_NE(problem.detail.find(nearest), std::string::npos) << problem.detail;
   }
 }
 
-TEST(StyleParametersTest, NamesThatMeanNothingAreToldWithTheNearestThatDoes) {
-  const std::vector<std::string> layers = {"land", "lakes"};
-  for (const char* name : {"fill", "lakes.fill", "background", "style"}) {
-    EXPECT_EQ(unknown_parameter(name, layers), std::nullopt) << name;
-  }
-  for (const auto& [name, nearest] :
-       std::vector<std::pair<const char*, const char*>>{{"fil", "\"fill\"?"},
-                                                        {"lake.fill", "\"lakes.fill\"?"},
-                                                        {"land.fil", "\"land.fill\"?"}}) {
-    const auto problem = unknown_parameter(name, layers);
-    ASSERT_TRUE(problem.has_value()) << name;
-    EXPECT_TRUE(problem->detail.ends_with(nearest)) << problem->detail;
-  }
-  EXPECT_TRUE(unknown_parameter("land.background", layers)) << "is of the whole tile";
-  EXPECT_TRUE(unknown_parameter("v", layers)->detail.ends_with("\"v\"."));
+TEST(StyleParametersTest, OneNameIsFreeForAnyValue) {
+  EXPECT_EQ(canonical("_=1732000000&fill=red&_=2"), canonical("fill=red"));
+  EXPECT_FALSE(parse("_fill=red"));
+}
+
+TEST(StyleParametersTest, NamesThatAreReadElsewhereArePassedOver) {
+  const std::vector<QueryPair> pairs = {{"z", "7"}, {"fill", "red"}};
+  constexpr std::array<std::string_view, 1> kOthers = {"z"};
+  EXPECT_TRUE(StyleQuery::parse(pairs, kLayers, kOthers));
+  EXPECT_FALSE(StyleQuery::parse(pairs, kLayers));
 }
 
 TEST(StyleParametersTest, ALayersOwnSettingGoesBeforeTheOneForAll) {
@@ -131,7 +135,7 @@ TEST(StyleParametersTest, GeneralizationIsSetForAllLayersOrForOne) {
   EXPECT_EQ(query.value_for("lakes", ParameterId::small), ParameterValue("keep"));
   EXPECT_EQ(query.value_for("roads", ParameterId::small), ParameterValue("drop"));
   EXPECT_EQ(query.value_for("roads", ParameterId::topology), ParameterValue("fast"));
-  EXPECT_EQ(canonical("lakes.debug=tile"), "") << "marks are drawn over the whole tile";
+  EXPECT_FALSE(parse("lakes.debug=tile")) << "marks are drawn over the whole tile";
 }
 
 TEST(StyleParametersTest, WrongGeneralizationsAreProblemsThatSayWhatIsAllowed) {
