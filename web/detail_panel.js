@@ -16,8 +16,11 @@ export function simplify_in_words(pixels) {
 }
 
 export class DetailPanel {
-  /** `on_change` is called without arguments; `has_coverage`: polygons of a layer share borders. */
-  constructor(on_change, { has_coverage }) {
+  /**
+   * `on_change` is called without arguments; `has_fast`: a layer is served with topology=fast, and
+   * `has_apart`: its polygons share borders.
+   */
+  constructor(on_change, { has_fast, has_apart }) {
     this.simplify_ = input("range", {
       min: 0, max: STEPS.length - 1, step: 1, "aria-label": "Simplify",
     });
@@ -40,9 +43,9 @@ export class DetailPanel {
     }
     this.node = element("div", "part",
       element("label", "row slider", element("span", "", "Simplify"), this.simplify_, this.told_),
-      ...COMPARISONS.filter(([value]) => has_coverage || value !== "apart").map(([, text], i) =>
+      ...COMPARISONS.filter(([value]) => has_apart || value !== "apart").map(([, text], i) =>
         element("label", "check", this.comparisons_[i], text)),
-      element("label", "check", this.strict_, "Borders never cross"),
+      ...(has_fast ? [element("label", "check", this.strict_, "Borders never cross")] : []),
       element("label", "row", "Too small", this.small_),
       ...DEBUG.map(([, text], i) => element("label", "check", this.debug_[i], text)));
   }

@@ -8,6 +8,31 @@ export function query_text(parameters) {
   return [...parameters].map(([name, value]) => `${encode(name)}=${encode(value)}`).join("&");
 }
 
+/** Whether a layer, as /catalog has it, is served with topology=fast. */
+export function has_fast_topology({ topologies }) {
+  return Array.isArray(topologies) && topologies.includes("fast");
+}
+
+/** What of the parameters for all layers holds for one of /catalog. */
+export function taken_by(layer, shared) {
+  return [...shared].filter(([name]) => name !== "topology" || has_fast_topology(layer));
+}
+
+/**
+ * The same for a picture of several: where not all of them are served with topology=fast, it is
+ * written for those that are. `layers` are {name, style}, `catalog` is all that there are.
+ */
+export function divide_shared(layers, catalog, shared) {
+  const takes = ({ name }) => has_fast_topology(catalog.find((layer) => layer.name === name));
+  if (!shared.has("topology") || layers.every(takes)) return { styled: layers, shared };
+  const topology = ["topology", shared.get("topology")];
+  return {
+    styled: layers.map((layer) =>
+      takes(layer) ? { ...layer, style: [...layer.style, topology] } : layer),
+    shared: [...shared].filter(([name]) => name !== "topology"),
+  };
+}
+
 /** With the '?' if there is anything to ask. */
 export function query_part(parameters) {
   const text = query_text(parameters);

@@ -14,7 +14,14 @@ import { ask_legend, legend_section } from "./legend.js";
 import { MapLayer } from "./map_layer.js";
 import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
 import { format_hash, parse_hash } from "./place_hash.js";
-import { parameters_of_layers, path_of_layers, query_part } from "./tile_query.js";
+import {
+  divide_shared,
+  has_fast_topology,
+  parameters_of_layers,
+  path_of_layers,
+  query_part,
+  taken_by,
+} from "./tile_query.js";
 import { watch_tiles } from "./tile_timing.js";
 
 const MAX_ZOOM = 22;
@@ -194,8 +201,10 @@ class Viewer {
     $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
     load_style_names(BASE).then((names) => this.show_style_names_(names));
     $("style").addEventListener("change", () => this.change_named_style_($("style").value));
-    const has_coverage = this.layers_.some(({ coverages }) => coverages > 0);
-    this.detail_ = new DetailPanel(() => this.change_detail_(), { has_coverage });
+    this.detail_ = new DetailPanel(() => this.change_detail_(), {
+      has_fast: this.layers_.some(has_fast_topology),
+      has_apart: this.layers_.some((layer) => layer.coverages > 0 && has_fast_topology(layer)),
+    });
     $("detail").append(this.detail_.node);
     this.features_ = new FeaturePanel($("features"), {
       choose: (feature) => this.choose_(feature),
@@ -332,7 +341,8 @@ class Viewer {
     let is_lowest = true;
     this.states_.forEach(({ is_on, drawn }, i) => {
       const is_shown = is_on && drawn !== null;
-      const query = (shared) => query_part([...drawn, ...shared, ...this.background_(is_lowest)]);
+      const query = (shared) => query_part([...drawn, ...taken_by(this.layers_[i], shared),
+        ...this.background_(is_lowest)]);
       this.map_layers_[i].show(is_shown ? query(this.shared_) : null);
       this.compared_layers_[i].show(is_shown && this.compare_ !== null ? query(compared) : null);
       if (is_shown) is_lowest = false;
@@ -369,7 +379,8 @@ class Viewer {
   tile_url_() {
     const layers = this.drawn_layers_();
     if (layers.length === 0) return "";
-    const query = query_part(parameters_of_layers(layers, this.shared_));
+    const { styled, shared } = divide_shared(layers, this.layers_, this.shared_);
+    const query = query_part(parameters_of_layers(styled, shared));
     return `${TILES}${path_of_layers(layers)}/{z}/{x}/{y}.png${query}`;
   }
 

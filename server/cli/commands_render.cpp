@@ -89,8 +89,12 @@ void write_file(const std::string& path, const std::string& bytes) {
 }  // namespace
 
 int run_render(const RenderArguments& arguments) {
-  const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
+  std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   const TileRequest request = make_request(arguments, layers);
+  for (LayerConfig& layer : layers) {
+    const auto topology = request.style.value_for(layer.name, ParameterId::topology);
+    layer.fast_topology = topology && *topology == ParameterValue("fast");
+  }
   const RendererKind kind = word_or_throw("--renderer", arguments.renderer, kRendererNames);
   auto renderers = start_renderers({kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));

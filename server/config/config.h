@@ -34,10 +34,14 @@ struct LayerConfig {
   std::optional<WeightRule> weights;     // unset: as a file was prepared, else Douglas-Peucker
   std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
   std::optional<double> close_gaps;      // metres; unset: as a file was prepared, else 0
+  bool fast_topology = false;            // requests may ask for topology=fast
   int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
 
   const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }
+  /// Whether it is built without the topological consistency test as well: also if its own style
+  /// says topology=fast.
+  bool has_fast_topology() const;
 };
 
 struct ServerConfig {

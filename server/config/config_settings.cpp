@@ -10,10 +10,19 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
+#include "core/graph/topological_consistency.h"
 #include "server/base/url.h"
 #include "server/styles/style_parameters.h"
 
 namespace trapeze {
+
+bool LayerConfig::has_fast_topology() const {
+  const ParameterValue* topology = style.find({}, ParameterId::topology);
+  return fast_topology ||
+         (topology != nullptr &&
+          *topology == ParameterValue(std::string(kTopologyNames.name_of(Topology::fast))));
+}
+
 namespace {
 
 constexpr int kMaxMilliseconds = 600'000;
@@ -514,6 +523,10 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
       weights_setting(),
       coverage_setting(),
       close_gaps_setting(),
+      boolean<LayerConfig>(
+          "fast_topology", [](auto& layer) -> auto& { return layer.fast_topology; },
+          "whether requests may ask for topology=fast, polygons apart and without the test of "
+          "topology: it is then built a second time, and takes twice the memory"),
       list<LayerConfig>(
           "locked", [](auto& layer) -> auto& { return layer.locked; },
           "a list of parameters that are set for one layer: " + layer_parameter_names(),

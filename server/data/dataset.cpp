@@ -9,6 +9,7 @@
 
 #include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_arrays.h"
+#include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
@@ -88,6 +89,11 @@ class SharedProgress {
 
 }  // namespace
 
+std::size_t ServedLayer::memory() const {
+  return layer->memory() + layer->features().memory() +
+         (untested == nullptr ? 0 : untested->memory());
+}
+
 Problem damaged_layer(const ServedLayer& layer) {
   return {503,
           fmt::format("The file of the layer \"{}\" has been cut off. It has to be prepared again.",
@@ -134,8 +140,10 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       LoadedLayer loaded = open_layer(layer.file_to_open(), options);
       const std::uint64_t revision =
           loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
-      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report), revision,
-                         std::move(loaded.file)};
+      std::shared_ptr<const Layer> untested =
+          layer.has_fast_topology() ? build_without_topology_test(*loaded.layer) : nullptr;
+      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report),
+                         revision,  std::move(loaded.file),  std::move(untested)};
     }));
   }
   std::vector<ServedLayer> served;
@@ -148,8 +156,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
 
 Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
   ContentHash hash;
-  for (ServedLayer& layer : layers_) {
-    layer.untested = std::make_unique<UntestedLayer>(*layer.layer);
+  for (const ServedLayer& layer : layers_) {
     hash.add(layer.config.name);
     hash.add(layer.revision);
   }

@@ -12,7 +12,6 @@
 #include "core/io/file/mapped_file.h"
 #include "core/io/load/load_layer.h"
 #include "core/layer/layer.h"
-#include "core/layer/untested_layer.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
 
@@ -22,10 +21,18 @@ struct ServedLayer {
   LayerConfig config;
   std::unique_ptr<const Layer> layer;
   LoadReport report;
-  std::uint64_t revision = 0;                          // revision_of(*layer)
-  std::shared_ptr<const MappedFile> file = {};         // of a prepared layer
-  std::unique_ptr<const UntestedLayer> untested = {};  // beside `layer`; made by Dataset
+  std::uint64_t revision = 0;                   // revision_of(*layer)
+  std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
+  /// Without the topological consistency test; null unless the configuration
+  /// asks for it.
+  std::shared_ptr<const Layer> untested = {};
 
+  /// The layer to draw; null if it is not there without the test.
+  const Layer* layer_for(Topology topology) const {
+    return topology == Topology::strict ? layer.get() : untested.get();
+  }
+  /// In bytes: geometry, index and attributes, and what there is of it without the test.
+  std::size_t memory() const;
   /// False if its prepared file was truncated while it was mapped.
   bool is_whole() const { return file == nullptr || file->is_whole(); }
 };

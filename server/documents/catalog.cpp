@@ -47,6 +47,15 @@ Json style_json(const LayerConfig& config, std::size_t position) {
   return json;
 }
 
+/// The values of `topology` that the layer takes.
+Json topologies_json(const ServedLayer& served) {
+  Json topologies = Json::array();
+  for (const std::string_view name : kTopologyNames.names()) {
+    if (served.layer_for(*kTopologyNames.find(name)) != nullptr) topologies.push_back(name);
+  }
+  return topologies;
+}
+
 Json layer_json(const ServedLayer& served, std::size_t position, const std::string& base_url) {
   const LayerConfig& config = served.config;
   const Box& box = served.layer->bounds();
@@ -62,9 +71,10 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["polygons"] = served.report.polygons;
   json["rings"] = served.report.rings;
   json["vertices"] = served.report.vertices;
+  json["topologies"] = topologies_json(served);
   json["coverages"] = served.report.coverage.groups;
   json["trapezoids"] = served.layer->mesh().trapezoids.size();
-  json["memory"] = served.layer->memory() + served.layer->features().memory();
+  json["memory"] = served.memory();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;
   json["style"] = style_json(config, position);

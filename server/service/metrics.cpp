@@ -122,10 +122,7 @@ void add_layers(Snapshot& snapshot, const Dataset& data) {
   };
   static constexpr std::array kFigures = {
       Figure{"trapeze_layer_bytes", "Memory of a layer: geometry, index and attributes",
-             [](const ServedLayer& served) {
-               return static_cast<double>(served.layer->memory() + served.untested->memory() +
-                                          served.layer->features().memory());
-             }},
+             [](const ServedLayer& served) { return static_cast<double>(served.memory()); }},
       Figure{"trapeze_layer_vertices", "Vertices of a layer at full detail",
              [](const ServedLayer& served) {
                return static_cast<double>(served.layer->size().vertices);

@@ -190,7 +190,7 @@ void Reloader::forget_retired() {
   for (const auto& dataset : datasets) {
     for (const ServedLayer& served : dataset->layers()) {
       tiles_.forget(served.layer->mesh().id);
-      if (const auto mesh = served.untested->mesh_id()) tiles_.forget(*mesh);
+      if (served.untested != nullptr) tiles_.forget(served.untested->mesh().id);
     }
   }
   datasets.clear();

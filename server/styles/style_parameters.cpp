@@ -511,8 +511,9 @@ const StyleParameter& style_parameter(ParameterId id) {
 }
 
 const StyleParameter* find_style_parameter(std::string_view name) {
-  const auto found = std::ranges::lower_bound(kParameters, name, {}, &StyleParameter::name);
-  return found == kParameters.end() || found->name != name ? nullptr : &*found;
+  const auto known = style_parameters();
+  const auto found = std::ranges::lower_bound(known, name, {}, &StyleParameter::name);
+  return found == known.end() || found->name != name ? nullptr : &*found;
 }
 
 std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,

@@ -45,11 +45,18 @@ DebugMarks debug_marks(const StyleQuery& query) {
   return marks;
 }
 
+Problem no_fast_topology(const std::string& layer) {
+  return {400,
+          fmt::format("The layer \"{}\" is not served with topology=fast: its configuration does "
+                      "not set fast_topology.",
+                      layer),
+          "topology", "fast", "strict"};
+}
+
 }  // namespace
 
 const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
-  const ServedLayer& served = dataset->layers()[paint.layer];
-  return paint.topology == Topology::fast ? served.untested->get() : *served.layer;
+  return *dataset->layers()[paint.layer].layer_for(paint.topology);
 }
 
 const ServedLayer* TilePlan::damaged_layer() const {
@@ -111,8 +118,10 @@ Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dat
     if (!style) return std::move(style).problem();
     if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
     if (!style->is_visible() && !plan.debug.any()) continue;
+    const Topology topology = topology_of_layer(*query, name);
+    if (served.layer_for(topology) == nullptr) return no_fast_topology(name);
     plan.layers.push_back({*layer, *std::move(style), level_of_layer(request, *query, name),
-                           topology_of_layer(*query, name), small_of_layer(*query, name)});
+                           topology, small_of_layer(*query, name)});
   }
   return plan;
 }

@@ -40,8 +40,7 @@ struct TilePlan {
   DebugMarks debug = {};
   TileFormat format = TileFormat::png;
 
-  /// What the paint is for, made with or without the topological consistency test as it says; the
-  /// first to ask for one without it waits until it is made.
+  /// What the paint is for, made with or without the topological consistency test as it says.
   const Layer& layer_of(const LayerPaint& paint) const;
   /// The first of the layers whose prepared file was truncated while it was mapped; null if
   /// there is none. To be called before drawing and after.
@@ -57,7 +56,8 @@ struct TilePlan {
 /// the build, so that it is known before anything is drawn.
 std::string entity_tag_of(std::string_view key);
 
-/// The problem is 404 for a layer that is not in the dataset.
+/// The problem is 404 for a layer that is not in the dataset, 400 for a style that does not fit its
+/// layer.
 Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
 
 /// How far the drawn boundary of the layer may be from the true one. `style` is

@@ -62,6 +62,7 @@ name = "land"
 file = "${join(HERE, "land.geojson")}"
 title = "Land"
 attribution = 'Drawn by <a href="https://example.org/">hand</a>'
+fast_topology = true
 style = { fill = "#d8c99b" }
 
 [[layer]]

@@ -15,6 +15,7 @@ name = "fields"
 file = "${join(HERE, "fields.geojson")}"
 title = "Fields"
 coverage = "auto"
+fast_topology = true
 style = { fill = "#d8c99b", fill_opacity = 1.0 }
 `;
 const COLOURS = "&fields.color-by=name&fields.classes=west:cc4444,east:4444cc";

@@ -270,9 +270,12 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   await page.getByLabel("Too small").selectOption("left out");
   await page.getByLabel("Trapezoids").check();
   await page.getByLabel("Borders of tiles").check();
-  const wanted = { simplify: "8", topology: "fast", small: "drop", debug: "mesh,tile" };
-  await wait_for_query(page, "land", wanted);
-  await wait_for_query(page, "lake", wanted);
+  const wanted = { simplify: "8", small: "drop", debug: "mesh,tile" };
+  await wait_for_query(page, "land", { ...wanted, topology: "fast" });
+  await wait_for_query(page, "lake", wanted); // is not served with topology=fast
+  const url = new URL(await page.locator("#tile-url").inputValue());
+  assert.equal(url.searchParams.get("land.topology"), "fast");
+  assert.equal(url.searchParams.get("topology"), null);
   await assert_survives_reload(page);
   await page.locator("#detail summary").click();
   assert.equal(await page.getByLabel("Borders never cross").isChecked(), false);

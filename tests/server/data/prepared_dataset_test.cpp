@@ -33,7 +33,9 @@ std::string prepare(const TemporaryFolder& folder, const std::string& source) {
 }
 
 std::shared_ptr<const Dataset> load(const std::string& file) {
-  return Dataset::load(layers_of_files({file}));
+  auto layers = layers_of_files({file});
+  layers[0].fast_topology = true;
+  return Dataset::load(layers);
 }
 
 /// Paints the tiles of both and compares picture and entity tag.

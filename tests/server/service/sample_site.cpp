@@ -38,6 +38,7 @@ std::shared_ptr<const Dataset> sample_dataset() {
   layers[0].attribution = "drawn by hand";
   layers[0].style = style_of("fill=f00");
   layers[1].style = style_of("fill=00f&fill-opacity=0.5");
+  layers[0].fast_topology = true;
   layers[1].min_zoom = 0;
   layers[1].max_zoom = 5;
   return Dataset::load(layers);

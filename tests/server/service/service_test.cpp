@@ -304,7 +304,11 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   TileCache cache(0);
   TileService tiles({}, std::move(renderers));
   const Site site({}, {}, data, tiles, cache);
-  const auto layers = [] { return layers_of_files({fixture("rings.geojson")}); };
+  const auto layers = [] {
+    auto rings = layers_of_files({fixture("rings.geojson")});
+    rings[0].fast_topology = true;
+    return rings;
+  };
   // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
   // up.
   Reloader reloader(

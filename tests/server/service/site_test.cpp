@@ -222,6 +222,16 @@ TEST_F(SiteTest, ThePolygonsThatAreLeftLookTheSameWithoutTheTopologyTest) {
             *get("/tiles/rings/0/0/0.png?topology=strict").body);
 }
 
+TEST_F(SiteTest, ALayerIsDrawnWithoutTheTopologyTestOnlyWhereTheConfigurationAsksForIt) {
+  const auto refused = get("/tiles/rings,west/0/0/0.png?topology=fast");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(*refused.body, AllOf(HasSubstr("west"), HasSubstr("fast_topology")));
+  EXPECT_EQ(get("/tiles/rings,west/0/0/0.png?rings.topology=fast").status, 200);
+  const auto layers = nlohmann::json::parse(*get("/catalog").body)["layers"];
+  EXPECT_EQ(layers[0]["topologies"], nlohmann::json({"fast", "strict"}));
+  EXPECT_EQ(layers[1]["topologies"], nlohmann::json({"strict"}));
+}
+
 /// The opacities of the tile of zoom 0 with the speck, which covers a sixteenth of one pixel.
 class SpeckTest : public SiteTest {
  protected:

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/layer/layer_builder.h"
+#include "core/layer/untested_layer.h"
 #include "render/picture/png.h"
 #include "render/picture/webp.h"
 #include "server/service/site.h"
@@ -58,7 +59,7 @@ std::shared_ptr<const Dataset> plots() {
   served.config.title = "Plots";
   served.config.style = testing::style_of("fill=808080");
   served.layer = LayerBuilder::join(builders, std::move(features));
-  served.untested = std::make_unique<UntestedLayer>(*served.layer);
+  served.untested = build_without_topology_test(*served.layer);
   served.revision = revision_of(*served.layer);
   std::vector<ServedLayer> layers;
   layers.push_back(std::move(served));
