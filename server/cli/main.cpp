@@ -20,6 +20,7 @@
 #include "core/borders/gap_closing.h"
 #include "core/grid/web_mercator.h"
 #include "server/base/build_id.h"
+#include "server/base/heap.h"
 #include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 #include "server/cli/interruption.h"
@@ -484,6 +485,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    trapeze::return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
     return run(argc, argv);

@@ -1,7 +1,7 @@
 #include "server/service/reloader.h"
+#include "server/base/heap.h"
 #include "server/config/load_config.h"
 
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
@@ -105,6 +105,7 @@ bool Reloader::load_first() {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
+  return_free_memory();  // what building took, here and below
   is_loading_ = false;
   return data_.get() != nullptr;
 }
@@ -121,6 +122,7 @@ void Reloader::load_again() {
     spdlog::error("the layers cannot be read again, so the old ones are kept: {}", error.what());
     note(error.what());
   }
+  return_free_memory();
   is_loading_ = false;
 }
 
@@ -194,7 +196,7 @@ void Reloader::forget_retired() {
     }
   }
   datasets.clear();
-  malloc_trim(0);  // what building took is not needed again soon
+  return_free_memory();
 }
 
 }  // namespace trapeze
