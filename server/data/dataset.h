@@ -20,11 +20,12 @@ namespace trapeze {
 
 struct ServedLayer {
   LayerConfig config;
-  std::unique_ptr<const Layer> layer;
+  std::shared_ptr<const Layer> layer;  // shared with the dataset before, if it did not change
   LoadReport report;
   std::uint64_t revision = 0;                          // revision_of(*layer)
   std::shared_ptr<const MappedFile> file = {};         // of a prepared layer
-  std::unique_ptr<const UntestedLayer> untested = {};  // beside `layer`; made by Dataset
+  std::string source_state = {};                       // state_of_sources() before it was read
+  std::shared_ptr<const UntestedLayer> untested = {};  // beside `layer`; made by Dataset
 
   /// False if its prepared file was truncated while it was mapped.
   bool is_whole() const { return file == nullptr || file->is_whole(); }
@@ -41,9 +42,11 @@ std::uint64_t revision_of(const Layer& layer);
 class Dataset {
  public:
   /// Loads all layers at once, or maps those that are prepared, on all cores, with progress and a
-  /// summary in the log. Throws std::runtime_error naming the file if one cannot be read, or was
-  /// prepared otherwise than configured.
-  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers);
+  /// summary in the log. A layer that `previous` has, if that is not null, is taken from there if
+  /// neither its files nor how it is read have changed. Throws std::runtime_error naming the file
+  /// if one cannot be read, or was prepared otherwise than configured.
+  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
+                                             const Dataset* previous = nullptr);
 
   explicit Dataset(std::vector<ServedLayer> layers);
 

@@ -1,13 +1,9 @@
 #include "server/service/reloader.h"
 #include "server/base/heap.h"
-#include "server/config/load_config.h"
+#include "server/data/source_files.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
 
-#include <array>
-#include <filesystem>
-#include <string_view>
 #include <utility>
 
 namespace trapeze {
@@ -15,34 +11,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::seconds(1);  // without a watch, only to tidy up
 
-// A shapefile is several files, of which one is named.
-constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
-
-void append_file(const std::string& path, std::vector<std::string>& files) {
-  if (!is_file_path(path)) return;
-  files.push_back(path);
-  const std::filesystem::path named(path);
-  if (named.extension() != ".shp") return;
-  for (const std::string_view ending : kBesideShapefile) {
-    files.push_back(std::filesystem::path(named).replace_extension(ending).string());
-  }
-}
-
 }  // namespace
-
-std::string state_of_files(const std::vector<std::string>& paths) {
-  std::string state;
-  for (const std::string& path : paths) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0) {
-      state += "-;";
-      continue;
-    }
-    state += fmt::format("{}:{}:{}:{}.{};", status.st_dev, status.st_ino, status.st_size,
-                         status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
-  }
-  return state;
-}
 
 /// Datasets that nobody uses any more, until the reloader lets go of them: destroying one takes too
 /// long for the thread that happens to be the last to hold it.
@@ -134,7 +103,7 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   files_ = watched_files(layers);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
-  std::shared_ptr<const Dataset> loaded = Dataset::load(layers);
+  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, data_.get().get());
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);
@@ -146,10 +115,10 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
 
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
   std::vector<std::string> files;
-  append_file(source_.config, files);
+  append_files(source_.config, files);
   for (const LayerConfig& layer : layers) {
-    append_file(layer.file, files);
-    append_file(layer.prepared, files);
+    append_files(layer.file, files);
+    append_files(layer.prepared, files);
   }
   return files;
 }
@@ -189,13 +158,22 @@ void Reloader::forget_retired() {
     datasets.swap(retired_->datasets);
   }
   if (datasets.empty()) return;
+  struct Mesh {
+    std::weak_ptr<const Layer> layer;  // to which it belongs
+    std::uint64_t id;
+  };
+  std::vector<Mesh> meshes;
   for (const auto& dataset : datasets) {
     for (const ServedLayer& served : dataset->layers()) {
-      tiles_.forget(served.layer->mesh().id);
-      if (const auto mesh = served.untested->mesh_id()) tiles_.forget(*mesh);
+      meshes.push_back({served.layer, served.layer->mesh().id});
+      if (const auto mesh = served.untested->mesh_id()) meshes.push_back({served.layer, *mesh});
     }
   }
   datasets.clear();
+  // A layer that has not changed lives on in the dataset that is served.
+  for (const Mesh& mesh : meshes) {
+    if (mesh.layer.expired()) tiles_.forget(mesh.id);
+  }
   return_free_memory();
 }
 
