@@ -1,9 +1,11 @@
 #include "server/service/reloader.h"
+#include "server/base/failure_words.h"
 #include "server/base/heap.h"
 #include "server/data/source_files.h"
 
 #include <spdlog/spdlog.h>
 
+#include <new>
 #include <utility>
 
 namespace trapeze {
@@ -63,7 +65,16 @@ std::string Reloader::last_problem() const {
 void Reloader::work() {
   if (!load_first()) return give_up_();
   is_loaded_();
-  while (wait_for_a_reason()) load_again();
+  while (true) {
+    // Memory may be short outside of what load_again() catches; that passes.
+    try {
+      if (!wait_for_a_reason()) return;
+      load_again();
+    } catch (const std::exception& error) {
+      spdlog::error("looking after the layers: {}", failure_words(error));
+      is_loading_ = false;
+    }
+  }
 }
 
 bool Reloader::load_first() {
@@ -88,8 +99,9 @@ void Reloader::load_again() {
     metrics_.count_load(false);
     // Not tried again before something changes once more.
     state_read_ = state_of_files(files_);
-    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", error.what());
-    note(error.what());
+    const std::string problem = failure_words(error);
+    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", problem);
+    note(problem);
   }
   return_free_memory();
   is_loading_ = false;
@@ -107,7 +119,11 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);
-               retired->datasets.push_back(std::move(loaded));
+               try {
+                 retired->datasets.push_back(std::move(loaded));
+               } catch (const std::bad_alloc&) {
+                 // Then it is destroyed here, which takes longer but frees memory.
+               }
              }});
   metrics_.count_load(true);
   spdlog::info("ready: {} layers, generation {}", layers.size(), served->generation());
