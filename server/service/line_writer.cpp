@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <climits>
-#include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace trapeze {
@@ -21,7 +21,7 @@ constexpr int kLookMs = 100;  // between looks whether to give up
 constexpr auto kLastWait = std::chrono::seconds(1);
 
 std::string words_of(int error) {
-  return std::strerror(error);
+  return std::generic_category().message(error);
 }
 
 /// Without waiting for a reader, if it is a pipe.
