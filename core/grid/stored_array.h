@@ -13,7 +13,8 @@ template <typename T>
 class StoredArray {
  public:
   StoredArray() = default;
-  StoredArray(std::vector<T> items) : own_(std::move(items)), items_(own_) {}
+  /// Gives back the room that the items do not need.
+  StoredArray(std::vector<T> items) : own_(std::move(items)) { shrink_to_fit(); }
   /// `items` must outlive the array.
   static StoredArray looking_at(std::span<const T> items) {
     StoredArray array;
@@ -60,6 +61,13 @@ class StoredArray {
   T& back() {
     own_items();
     return own_.back();
+  }
+
+  /// Gives back the room that the items do not need, as nothing more is appended.
+  void shrink_to_fit() {
+    if (own_.empty()) return;
+    own_.shrink_to_fit();
+    items_ = own_;
   }
 
   /// Bytes of memory, whether owned or viewed.

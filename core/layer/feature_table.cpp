@@ -85,6 +85,18 @@ std::uint32_t FeatureTable::append(std::int64_t id, std::span<const Value> value
   return static_cast<std::uint32_t>(ids_.size() - 1);
 }
 
+void FeatureTable::shrink_to_fit() {
+  ids_.shrink_to_fit();
+  for (Column& column : columns_) {
+    column.numbers.shrink_to_fit();
+    column.nulls.shrink_to_fit();
+    column.texts.shrink_to_fit();
+  }
+  string_bytes_.shrink_to_fit();
+  string_ends_.shrink_to_fit();
+  string_slots_ = {};
+}
+
 int FeatureTable::field_index(std::string_view name) const {
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     if (fields_[i].name == name) return static_cast<int>(i);
@@ -189,7 +201,7 @@ std::string_view FeatureTable::text(std::uint32_t number) const {
 }
 
 void FeatureTable::grow_slots() {
-  const std::size_t size = string_slots_.empty() ? kFirstSlots : 2 * string_slots_.size();
+  const std::size_t size = std::max(kFirstSlots, std::bit_ceil(2 * (string_ends_.size() + 1)));
   string_slots_.assign(size, kFreeSlot);
   for (std::uint32_t number = 0; number < string_ends_.size(); ++number) {
     std::size_t slot = std::hash<std::string_view>{}(text(number)) & (size - 1);

@@ -51,6 +51,9 @@ class FeatureTable {
   /// field's type (std::invalid_argument if not). `id` is the source's own feature id.
   std::uint32_t append(std::int64_t id, std::span<const Value> values);
 
+  /// Gives back memory that only appending needs.
+  void shrink_to_fit();
+
   std::size_t size() const { return ids_.size(); }
   std::span<const Field> fields() const { return fields_; }
   /// Number of the first field of that name, or -1.
@@ -84,7 +87,8 @@ class FeatureTable {
   std::vector<Column> columns_;
   StoredArray<char> string_bytes_;
   StoredArray<std::uint64_t> string_ends_;
-  // Open addressing over string numbers, keyed by the bytes; the size is a power of two.
+  // Open addressing over string numbers, keyed by the bytes; the size is a power of two. Made when
+  // text is appended.
   std::vector<std::uint32_t> string_slots_;
 };
 

@@ -40,28 +40,44 @@ struct Stock {
   Rings outline_rings;
 };
 
-/// The parts of all builders in the order of features.
+/// A part of a builder, and what leads from indices of its stock to indices of the layer; wraps
+/// around where that is negative.
 struct PartOf {
   const Stock* stock;
   std::size_t part;
+  std::uint32_t vertex_shift = 0;
+  std::uint32_t edge_shift = 0;
 };
-std::vector<PartOf> in_order_of_rows(const std::vector<const Stock*>& stocks) {
+
+template <class T>
+std::span<const T> items_of(const PartOf& part, std::vector<T> History::*items,
+                            std::size_t Stock::Part::*begin) {
+  const std::vector<T>& all = part.stock->history.*items;
+  const std::vector<Stock::Part>& parts = part.stock->parts;
+  const std::size_t from = parts[part.part].*begin;
+  const std::size_t to = part.part + 1 < parts.size() ? parts[part.part + 1].*begin : all.size();
+  return std::span<const T>(all).subspan(from, to - from);
+}
+
+/// The parts of all builders in the order of features.
+std::vector<PartOf> in_order_of_rows(const std::vector<Stock>& stocks) {
   std::vector<PartOf> parts;
-  for (const Stock* stock : stocks) {
-    for (std::size_t p = 0; p < stock->parts.size(); ++p) parts.push_back({stock, p});
+  for (const Stock& stock : stocks) {
+    for (std::size_t p = 0; p < stock.parts.size(); ++p) parts.push_back({&stock, p});
   }
   std::sort(parts.begin(), parts.end(), [](const PartOf& a, const PartOf& b) {
     return a.stock->parts[a.part].row < b.stock->parts[b.part].row;
   });
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  for (PartOf& part : parts) {
+    const Stock::Part& begin = part.stock->parts[part.part];
+    part.vertex_shift = static_cast<std::uint32_t>(vertices - begin.vertices);
+    part.edge_shift = static_cast<std::uint32_t>(edges - begin.edges);
+    vertices += items_of(part, &History::vertices, &Stock::Part::vertices).size();
+    edges += items_of(part, &History::edges, &Stock::Part::edges).size();
+  }
   return parts;
-}
-
-template <class T>
-std::span<const T> part_of(const std::vector<T>& all, const Stock& stock, std::size_t part,
-                           std::size_t Stock::Part::*begin) {
-  const std::size_t from = stock.parts[part].*begin;
-  const std::size_t to = part + 1 < stock.parts.size() ? stock.parts[part + 1].*begin : all.size();
-  return std::span<const T>(all).subspan(from, to - from);
 }
 
 FeatureGrain grain_of(const Grain& grain, double area, std::uint32_t row) {
@@ -94,45 +110,64 @@ void add_grain(const Grain& grain, GrowingLayer& layer) {
   }
 }
 
-/// Concatenates the histories.
-void concatenate(const std::vector<PartOf>& parts, GrowingLayer& layer) {
-  for (const auto& [stock, p] : parts) {
-    const History& history = stock->history;
-    // From indices of the stock to indices of the layer; wraps around where that is negative.
-    const auto vertex_shift =
-        static_cast<std::uint32_t>(layer.vertices.size() - stock->parts[p].vertices);
-    const auto edge_shift = static_cast<std::uint32_t>(layer.edges.size() - stock->parts[p].edges);
-    const auto vertices = part_of(history.vertices, *stock, p, &Stock::Part::vertices);
-    layer.vertices.insert(layer.vertices.end(), vertices.begin(), vertices.end());
-    for (const MeshEdge e : part_of(history.edges, *stock, p, &Stock::Part::edges)) {
-      layer.edges.push_back({e.upper + vertex_shift, e.lower + vertex_shift});
-    }
-    for (const MeshTrapezoid& t :
-         part_of(history.trapezoids, *stock, p, &Stock::Part::trapezoids)) {
-      layer.trapezoids.push_back({t.top + vertex_shift, t.bottom + vertex_shift,
-                                  t.left + edge_shift, t.right + edge_shift});
-    }
-    const auto rows = part_of(history.rows, *stock, p, &Stock::Part::trapezoids);
-    layer.feature_of.insert(layer.feature_of.end(), rows.begin(), rows.end());
-    const auto lifespans = part_of(history.lifespans, *stock, p, &Stock::Part::trapezoids);
-    layer.lifespans.insert(layer.lifespans.end(), lifespans.begin(), lifespans.end());
-    for (HorizontalEdge horizontal_edge :
-         part_of(history.horizontal_edges, *stock, p, &Stock::Part::horizontal_edges)) {
-      horizontal_edge.edge += edge_shift;
-      layer.horizontal_edges.push_back(horizontal_edge);
-    }
-    for (const Grain& grain : part_of(history.grains, *stock, p, &Stock::Part::grains)) {
-      add_grain(grain, layer);
+/// Concatenates one array of the histories, and frees it there: so no more than one of them is held
+/// twice. `renumber` changes an item from indices of its stock to indices of the layer.
+template <class T, class Renumber>
+std::vector<T> take_items(std::vector<Stock>& stocks, const std::vector<PartOf>& parts,
+                          std::vector<T> History::*items, std::size_t Stock::Part::*begin,
+                          const Renumber& renumber) {
+  std::size_t size = 0;
+  for (const Stock& stock : stocks) size += (stock.history.*items).size();
+  std::vector<T> all;
+  all.reserve(size);
+  for (const PartOf& part : parts) {
+    for (T item : items_of(part, items, begin)) {
+      renumber(item, part);
+      all.push_back(item);
     }
   }
+  for (Stock& stock : stocks) stock.history.*items = {};
+  return all;
+}
+
+void concatenate_histories(std::vector<Stock>& stocks, GrowingLayer& layer) {
+  using Part = Stock::Part;
+  const std::vector<PartOf> parts = in_order_of_rows(stocks);
+  const auto as_it_is = [](auto&, const PartOf&) {};
+  layer.trapezoids = take_items(stocks, parts, &History::trapezoids, &Part::trapezoids,
+                                [](MeshTrapezoid& t, const PartOf& part) {
+                                  t.top += part.vertex_shift;
+                                  t.bottom += part.vertex_shift;
+                                  t.left += part.edge_shift;
+                                  t.right += part.edge_shift;
+                                });
+  layer.feature_of = take_items(stocks, parts, &History::rows, &Part::trapezoids, as_it_is);
+  layer.lifespans = take_items(stocks, parts, &History::lifespans, &Part::trapezoids, as_it_is);
+  layer.horizontal_edges =
+      take_items(stocks, parts, &History::horizontal_edges, &Part::horizontal_edges,
+                 [](HorizontalEdge& horizontal_edge, const PartOf& part) {
+                   horizontal_edge.edge += part.edge_shift;
+                 });
+  for (const Grain& grain : take_items(stocks, parts, &History::grains, &Part::grains, as_it_is)) {
+    add_grain(grain, layer);
+  }
+  layer.edges =
+      take_items(stocks, parts, &History::edges, &Part::edges, [](MeshEdge& e, const PartOf& part) {
+        e.upper += part.vertex_shift;
+        e.lower += part.vertex_shift;
+      });
+  layer.vertices = take_items(stocks, parts, &History::vertices, &Part::vertices, as_it_is);
 }
 
 /// The outlines of all builders in the order of features.
-void concatenate_outlines(const std::vector<const Stock*>& stocks, GrowingLayer& layer) {
+void concatenate_outlines(const std::vector<Stock>& stocks, GrowingLayer& layer) {
   std::vector<std::pair<const Stock*, Stock::Outline>> outlines;
-  for (const Stock* stock : stocks) {
-    for (const Stock::Outline& outline : stock->outlines) outlines.emplace_back(stock, outline);
+  std::size_t points = 0;
+  for (const Stock& stock : stocks) {
+    for (const Stock::Outline& outline : stock.outlines) outlines.emplace_back(&stock, outline);
+    points += stock.outline_rings.points.size();
   }
+  layer.outlines.points.reserve(points);
   std::sort(outlines.begin(), outlines.end(),
             [](const auto& a, const auto& b) { return a.second.row < b.second.row; });
   for (const auto& [stock, outline] : outlines) {
@@ -143,6 +178,13 @@ void concatenate_outlines(const std::vector<const Stock*>& stocks, GrowingLayer&
   }
 }
 
+GrowingLayer concatenate(std::vector<Stock> stocks) {
+  GrowingLayer layer;
+  concatenate_histories(stocks, layer);
+  concatenate_outlines(stocks, layer);
+  return layer;
+}
+
 template <class T>
 void permute(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
   std::vector<T> moved;
@@ -151,8 +193,8 @@ void permute(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
   items.swap(moved);
 }
 
-/// Orders trapezoids for the index.
-void order_trapezoids(GrowingLayer& layer) {
+/// The order of the trapezoids in the index.
+std::vector<std::uint32_t> order_for_index(const GrowingLayer& layer) {
   const MeshView view{0, layer.vertices, layer.edges, layer.trapezoids};
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   keys.reserve(layer.trapezoids.size());
@@ -165,9 +207,21 @@ void order_trapezoids(GrowingLayer& layer) {
   std::vector<std::uint32_t> order;
   order.reserve(keys.size());
   for (const auto& [key, i] : keys) order.push_back(i);
+  return order;
+}
+
+/// Orders trapezoids for the index.
+void order_trapezoids(GrowingLayer& layer) {
+  const std::vector<std::uint32_t> order = order_for_index(layer);
   permute(layer.trapezoids, order);
   permute(layer.lifespans, order);
   permute(layer.feature_of, order);
+}
+
+/// Growing by doubling would leave much of the room unused.
+void add_room_for_trapezoids(std::size_t more, GrowingLayer& layer) {
+  layer.trapezoids.reserve(layer.trapezoids.size() + more);
+  layer.lifespans.reserve(layer.lifespans.size() + more);
 }
 
 /// A horizontal edge stands behind the trapezoids as one without height, between the edge and
@@ -183,6 +237,8 @@ void append_horizontal_edges(GrowingLayer& layer) {
     keys.emplace_back(order_key(box, horizontal_edge.lifespan), static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
+  add_room_for_trapezoids(keys.size(), layer);
+  layer.feature_of.reserve(layer.feature_of.size() + keys.size());
   for (const auto& [key, i] : keys) {
     const HorizontalEdge& horizontal_edge = layer.horizontal_edges[i];
     const MeshEdge& edge = layer.edges[horizontal_edge.edge];
@@ -210,8 +266,8 @@ void order_edges_and_vertices(GrowingLayer& layer) {
     edge(t.left);
     edge(t.right);
   }
-  edges.shrink_to_fit();
   layer.edges.swap(edges);
+  edges = {};
 
   number.assign(layer.vertices.size(), kUnused);
   std::vector<Point> vertices;
@@ -231,7 +287,6 @@ void order_edges_and_vertices(GrowingLayer& layer) {
     vertex(t.top);
     vertex(t.bottom);
   }
-  vertices.shrink_to_fit();
   layer.vertices.swap(vertices);
 }
 
@@ -256,8 +311,7 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
   std::sort(keys.begin(), keys.end());
   layer.vertices.reserve(layer.vertices.size() + 4 * motes.size());
   layer.edges.reserve(layer.edges.size() + 2 * motes.size());
-  layer.trapezoids.reserve(layer.trapezoids.size() + motes.size());
-  layer.lifespans.reserve(layer.lifespans.size() + motes.size());
+  add_room_for_trapezoids(motes.size(), layer);
   std::uint32_t singles = 0;
   for (const auto& [is_merged, key, i] : keys) {
     append_mote(motes[i], layer);
@@ -267,8 +321,6 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
 }
 
 void move_arrays(GrowingLayer& from, LayerContents& to) {
-  from.outlines.points.shrink_to_fit();
-  from.outlines.ends.shrink_to_fit();
   to.vertices = std::move(from.vertices);
   to.edges = std::move(from.edges);
   to.trapezoids = std::move(from.trapezoids);
@@ -347,13 +399,12 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   };
   auto layer = std::make_unique<LayerContents>();
   if (!builders.empty()) layer->options = builders.front().state_->options;
-  std::vector<const Stock*> stocks;
-  stocks.reserve(builders.size());
-  for (const LayerBuilder& builder : builders) stocks.push_back(&builder.state_->stock);
-  GrowingLayer arrays;
-  concatenate(in_order_of_rows(stocks), arrays);
-  concatenate_outlines(stocks, arrays);
-  for (LayerBuilder& builder : builders) builder = LayerBuilder(builder.state_->options);
+  std::vector<Stock> stocks;
+  for (LayerBuilder& builder : builders) {
+    stocks.push_back(std::move(builder.state_->stock));
+    builder = LayerBuilder(builder.state_->options);  // what building took is given back
+  }
+  GrowingLayer arrays = concatenate(std::move(stocks));
 
   tell(0.2);
   order_trapezoids(arrays);
@@ -369,9 +420,9 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   const auto all = static_cast<std::uint32_t>(arrays.trapezoids.size());
   layer->size.motes = all - horizontal_edges;
   sort_for_index(arrays.feature_grains);
-  arrays.feature_grains.shrink_to_fit();
 
   move_arrays(arrays, *layer);
+  features.shrink_to_fit();
   layer->features = std::move(features);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   const auto index = [&layer](std::uint32_t from, std::uint32_t to) {

@@ -6,6 +6,7 @@
 #include "core/io/prepared/open_layer.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
+#include "server/service/process_figures.h"
 
 namespace trapeze {
 namespace {
@@ -95,6 +96,7 @@ int run_check(const CheckArguments& arguments) {
   for (const std::string& file : arguments.files) {
     is_all_read &= check_file(file, how);
   }
+  fmt::print("memory of the process   {} bytes at most\n", process_figures().peak_resident_bytes);
   return is_all_read ? 0 : 1;
 }
 

@@ -13,6 +13,7 @@
 #include "server/cli/commands.h"
 #include "server/config/config_settings.h"
 #include "server/config/load_config.h"
+#include "server/service/server_log.h"
 #include "server/service/service.h"
 
 namespace trapeze {
@@ -83,10 +84,11 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
   return {layers, arguments.config};
 }
 
-[[noreturn]] void end_now() {
+[[noreturn]] void end_now(ServerLog& log) {
   // Reading a large file cannot be interrupted, and its result is not needed any more. The
   // thread that reads must not meet objects that are being destroyed: so none are.
   spdlog::info("stopped while loading");
+  log.flush();
   std::quick_exit(0);
 }
 
@@ -110,6 +112,7 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
 int run_serve(const ServeArguments& arguments) {
   // The server goes on when whoever reads its log goes away.
   std::signal(SIGPIPE, SIG_IGN);
+  ServerLog log;
   const Config config = configure(arguments);
   if (!arguments.is_verbose) spdlog::set_level(spdlog::level::from_str(config.log.level));
   spdlog::info("trapeze {} (build {})", version(), build_id());
@@ -118,7 +121,7 @@ int run_serve(const ServeArguments& arguments) {
   Service service(config, layer_source(arguments, config));
   service.act_on_signals();
   service.run();
-  if (service.is_loading()) end_now();
+  if (service.is_loading()) end_now(log);
   spdlog::info("stopped");
   return 0;
 }

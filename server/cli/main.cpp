@@ -20,10 +20,13 @@
 #include "core/borders/gap_closing.h"
 #include "core/grid/web_mercator.h"
 #include "server/base/build_id.h"
+#include "server/base/failure_words.h"
+#include "server/base/heap.h"
 #include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 #include "server/cli/interruption.h"
 #include "server/config/config_settings.h"
+#include "server/service/server_log.h"
 #include "server/styles/parameter_table.h"
 
 namespace {
@@ -484,14 +487,15 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    trapeze::return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
+    spdlog::set_pattern(trapeze::kServerLogPattern);
     return run(argc, argv);
   } catch (const trapeze::UsageError& error) {
     std::cerr << "trapeze: " << error.what() << '\n';
     return kWrongUsage;
   } catch (const std::exception& error) {
-    std::cerr << "trapeze: " << error.what() << '\n';
+    std::cerr << "trapeze: " << trapeze::failure_words(error) << '\n';
     return kFailed;
   }
 }

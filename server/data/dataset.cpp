@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <future>
 #include <numeric>
+#include <utility>
 
 #include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_arrays.h"
@@ -13,6 +15,7 @@
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
+#include "server/data/source_files.h"
 
 namespace trapeze {
 namespace {
@@ -87,6 +90,60 @@ class SharedProgress {
   std::optional<LoadProgress> progress_;
 };
 
+OpenOptions how_to_open(const LayerConfig& layer) {
+  OpenOptions options;
+  options.weights = layer.weights;
+  options.coverage = layer.coverage;
+  options.close_gaps = layer.close_gaps;
+  options.selection = layer.selection;
+  options.prepared_from = layer.prepared.empty() ? "" : layer.file;
+  return options;
+}
+
+/// Whether the same files lead to the same layer: all else is how it is shown.
+bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
+  const OpenOptions how_a = how_to_open(a);
+  const OpenOptions how_b = how_to_open(b);
+  return a.file_to_open() == b.file_to_open() && how_a.weights == how_b.weights &&
+         how_a.coverage == how_b.coverage && how_a.close_gaps == how_b.close_gaps &&
+         how_a.selection == how_b.selection && how_a.prepared_from == how_b.prepared_from &&
+         a.has_fast_topology() == b.has_fast_topology();
+}
+
+/// The layer as it was read before, if it would be the same now.
+std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Dataset* previous) {
+  if (previous == nullptr) return std::nullopt;
+  const std::string state = state_of_sources(layer);
+  if (state.empty()) return std::nullopt;
+  for (const ServedLayer& served : previous->layers()) {
+    if (served.source_state == state && are_read_the_same(served.config, layer) &&
+        served.is_whole()) {
+      ServedLayer kept = served;
+      kept.config = layer;
+      return kept;
+    }
+  }
+  return std::nullopt;
+}
+
+/// `progress` is called by the thread that calls this.
+ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double)>& progress) {
+  ServedLayer served;
+  served.config = layer;
+  served.source_state = state_of_sources(layer);  // before reading: what changes meanwhile is read
+  OpenOptions options = how_to_open(layer);
+  options.progress = progress;
+  LoadedLayer loaded = open_layer(layer.file_to_open(), options);
+  served.revision = loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
+  served.layer = std::move(loaded.layer);
+  if (layer.has_fast_topology()) served.untested = build_without_topology_test(*served.layer);
+  served.report = std::move(loaded.report);
+  served.file = std::move(loaded.file);
+  // Its fields may be in another file.
+  if (served.report.driver == "GML" && served.file == nullptr) served.source_state.clear();
+  return served;
+}
+
 }  // namespace
 
 std::size_t ServedLayer::memory() const {
@@ -123,34 +180,27 @@ std::uint64_t revision_of(const Layer& layer) {
   return hash.value();
 }
 
-std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers) {
+std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers,
+                                             const Dataset* previous) {
   // All at once: while one layer is at a step for one core, another one uses the others.
   SharedProgress progress(layers);
-  std::vector<std::future<ServedLayer>> loading;
+  std::vector<ServedLayer> served(layers.size());
+  std::vector<std::pair<std::size_t, std::future<ServedLayer>>> reading;
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    loading.push_back(std::async(std::launch::async, [&progress, &layers, i] {
-      const LayerConfig& layer = layers[i];
-      OpenOptions options;
-      options.weights = layer.weights;
-      options.coverage = layer.coverage;
-      options.close_gaps = layer.close_gaps;
-      options.selection = layer.selection;
-      options.prepared_from = layer.prepared.empty() ? "" : layer.file;
-      options.progress = [&progress, i](double share) { progress.show(i, share); };
-      LoadedLayer loaded = open_layer(layer.file_to_open(), options);
-      const std::uint64_t revision =
-          loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
-      std::shared_ptr<const Layer> untested =
-          layer.has_fast_topology() ? build_without_topology_test(*loaded.layer) : nullptr;
-      return ServedLayer{layers[i], std::move(loaded.layer), std::move(loaded.report),
-                         revision,  std::move(loaded.file),  std::move(untested)};
-    }));
+    const auto show = [&progress, i](double share) { progress.show(i, share); };
+    if (auto kept = unchanged_layer(layers[i], previous)) {
+      served[i] = *std::move(kept);
+      spdlog::info("{}: unchanged, so it is not read again", served[i].report.path);
+      show(1);
+    } else {
+      reading.emplace_back(i, std::async(std::launch::async, [&layers, i, show] {
+                             return read_layer(layers[i], show);
+                           }));
+    }
   }
-  std::vector<ServedLayer> served;
-  served.reserve(loading.size());
-  for (std::future<ServedLayer>& layer : loading) served.push_back(layer.get());
+  for (auto& [i, layer] : reading) served[i] = layer.get();
   progress.finish();
-  for (const ServedLayer& layer : served) log_report(layer.report, *layer.layer);
+  for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
   return std::make_shared<const Dataset>(std::move(served));
 }
 

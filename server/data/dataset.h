@@ -19,12 +19,12 @@ namespace trapeze {
 
 struct ServedLayer {
   LayerConfig config;
-  std::unique_ptr<const Layer> layer;
+  std::shared_ptr<const Layer> layer;  // shared with the dataset before, if it did not change
   LoadReport report;
   std::uint64_t revision = 0;                   // revision_of(*layer)
   std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
-  /// Without the topological consistency test; null unless the configuration
-  /// asks for it.
+  std::string source_state = {};                // state_of_sources() before it was read
+  /// Without the topological consistency test; null unless the configuration asks for it.
   std::shared_ptr<const Layer> untested = {};
 
   /// The layer to draw; null if it is not there without the test.
@@ -48,9 +48,11 @@ std::uint64_t revision_of(const Layer& layer);
 class Dataset {
  public:
   /// Loads all layers at once, or maps those that are prepared, on all cores, with progress and a
-  /// summary in the log. Throws std::runtime_error naming the file if one cannot be read, or was
-  /// prepared otherwise than configured.
-  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers);
+  /// summary in the log. A layer that `previous` has, if that is not null, is taken from there if
+  /// neither its files nor how it is read have changed. Throws std::runtime_error naming the file
+  /// if one cannot be read, or was prepared otherwise than configured.
+  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
+                                             const Dataset* previous = nullptr);
 
   explicit Dataset(std::vector<ServedLayer> layers);
 

@@ -106,20 +106,81 @@ GeographicBounds bounds_of_feature(const Layer& layer, std::uint32_t row) {
   return bounds_in_degrees(box);
 }
 
-Json feature_json(const ServedLayer& served, std::uint32_t row) {
-  const FeatureTable& features = served.layer->features();
+/// Of a text in JSON, quotes left out; what is no UTF-8 may become somewhat longer.
+std::size_t json_size(std::string_view text) {
+  std::size_t size = text.size();
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) size += 5;  // \u001f
+    if (c == '"' || c == '\\') ++size;
+  }
+  return size;
+}
+
+/// About the bytes of the attributes in the answer.
+std::size_t size_of_properties(const FeatureTable& features, std::uint32_t row) {
+  constexpr std::size_t kAroundValue = 32;  // indent, quotes, a number
+  std::size_t size = 0;
+  for (std::size_t field = 0; field < features.fields().size(); ++field) {
+    size += kAroundValue + json_size(features.fields()[field].name);
+    const Value value = features.value(row, static_cast<int>(field));
+    if (const auto* text = std::get_if<std::string_view>(&value)) size += json_size(*text);
+  }
+  return size;
+}
+
+Json properties_json(const FeatureTable& features, std::uint32_t row) {
   Json properties = Json::object();
   for (std::size_t field = 0; field < features.fields().size(); ++field) {
     properties[features.fields()[field].name] =
         to_json(features.value(row, static_cast<int>(field)));
   }
+  return properties;
+}
+
+/// The features of an answer.
+class IdentifiedFeatures {
+ public:
+  void add(const ServedLayer& served, std::uint32_t row) {
+    if (++matched_ > kMaxIdentified) return;
+    const std::size_t size = size_of_properties(served.layer->features(), row);
+    const bool is_too_much = size > bytes_left_;
+    if (is_too_much) {
+      ++left_out_;
+    } else {
+      bytes_left_ -= size;
+    }
+    features_.push_back(feature_json(served, row, !is_too_much));
+  }
+
+  Json take_json() {
+    Json json;
+    json["type"] = "FeatureCollection";
+    json["numberMatched"] = matched_;
+    json["numberReturned"] = features_.size();
+    if (left_out_ > 0) json["propertiesLeftOut"] = left_out_;
+    json["features"] = std::move(features_);
+    return json;
+  }
+
+ private:
+  static Json feature_json(const ServedLayer& served, std::uint32_t row, bool has_properties);
+
+  Json features_ = Json::array();
+  std::size_t matched_ = 0;
+  std::size_t left_out_ = 0;
+  std::size_t bytes_left_ = kMaxIdentifiedBytes;
+};
+
+Json IdentifiedFeatures::feature_json(const ServedLayer& served, std::uint32_t row,
+                                      bool has_properties) {
+  const FeatureTable& features = served.layer->features();
   Json json;
   json["type"] = "Feature";
   json["id"] = features.id(row);
   json["layer"] = served.config.name;
   json["bbox"] = bounds_of_feature(*served.layer, row);
   json["geometry"] = nullptr;
-  json["properties"] = std::move(properties);
+  json["properties"] = has_properties ? properties_json(features, row) : Json();
   return json;
 }
 
@@ -144,8 +205,7 @@ Result<Document> identify_document(const DocumentRequest& request) {
   const auto parsed = parse_request(request);
   if (!parsed) return parsed.problem();
   const auto& identify = *parsed;
-  Json features = Json::array();
-  std::size_t matched = 0;
+  IdentifiedFeatures features;
   for (auto name = identify.layers.rbegin(); name != identify.layers.rend(); ++name) {
     const auto position = request.dataset.find(*name);
     if (!position) return unknown_layer(*name, request.dataset);
@@ -153,16 +213,9 @@ Result<Document> identify_document(const DocumentRequest& request) {
     if (!served.is_whole()) return damaged_layer(served);
     const auto rows = find_rows(identify, served, *position);
     if (!rows) return rows.problem();
-    for (const std::uint32_t row : *rows) {
-      if (++matched <= kMaxIdentified) features.push_back(feature_json(served, row));
-    }
+    for (const std::uint32_t row : *rows) features.add(served, row);
   }
-  Json json;
-  json["type"] = "FeatureCollection";
-  json["numberMatched"] = matched;
-  json["numberReturned"] = features.size();
-  json["features"] = std::move(features);
-  return Document{"application/geo+json", to_text(json)};
+  return Document{"application/geo+json", to_text(features.take_json())};
 }
 
 }  // namespace trapeze

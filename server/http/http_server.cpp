@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <unordered_map>
 #include <unordered_set>
@@ -42,6 +43,7 @@ constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
 constexpr std::size_t kMaxRefusals = 64;
 constexpr auto kRefusalPause = std::chrono::seconds(1);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+constexpr auto kWarningPause = std::chrono::seconds(1);
 
 std::string http_date(std::time_t time) {
   std::tm parts{};
@@ -108,6 +110,7 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   void open();
   void accept();
   void on_accepted(const ErrorCode& error, tcp::socket socket);
+  void warn_of_refusal(const ErrorCode& error);
   void admit(tcp::socket socket);
   void wait_for_signal();
   void wait_for_hangup();
@@ -134,6 +137,7 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   net::executor_work_guard<net::io_context::executor_type> work_;
   tcp::acceptor acceptor_;
   net::steady_timer accept_timer_;
+  Clock::time_point next_warning_;  // that connections cannot be accepted
   net::steady_timer drain_timer_;
   net::signal_set signals_;
   net::signal_set hangups_;
@@ -452,7 +456,13 @@ void HttpServer::State::open() {
 void HttpServer::State::run() {
   net::post(control_, [this] { accept(); });
   std::vector<std::thread> threads;
-  for (unsigned i = 1; i < options_.threads; ++i) threads.emplace_back([this] { io_.run(); });
+  try {
+    for (unsigned i = 1; i < options_.threads; ++i) threads.emplace_back([this] { io_.run(); });
+  } catch (const std::system_error&) {
+    io_.stop();
+    for (std::thread& thread : threads) thread.join();
+    throw;
+  }
   io_.run();
   for (std::thread& thread : threads) thread.join();
   const std::lock_guard lock(mutex_);
@@ -473,11 +483,19 @@ void HttpServer::State::on_accepted(const ErrorCode& error, tcp::socket socket) 
     return accept();
   }
   // Most likely there are no more file descriptors: trying again at once would only burn time.
-  spdlog::warn("cannot accept a connection: {}", error.message());
+  warn_of_refusal(error);
   accept_timer_.expires_after(kAcceptPause);
   accept_timer_.async_wait([this](const ErrorCode& cancelled) {
     if (!cancelled) accept();
   });
+}
+
+/// Once a second at most, however often it is tried again.
+void HttpServer::State::warn_of_refusal(const ErrorCode& error) {
+  const auto now = Clock::now();
+  if (now < next_warning_) return;
+  next_warning_ = now + kWarningPause;
+  spdlog::warn("cannot accept a connection: {}", error.message());
 }
 
 void HttpServer::State::admit(tcp::socket socket) {

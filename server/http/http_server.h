@@ -78,7 +78,7 @@ class HttpServer {
   std::uint64_t refusals() const;
 
   /// Serves until stop() is called and what was running then has been answered (or the drain
-  /// timeout has passed). Call it once.
+  /// timeout has passed). Call it once. Throws std::system_error if its threads cannot be started.
   void run();
 
   /// After the drain delay no more connections and requests are taken, and run() returns when what

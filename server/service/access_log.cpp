@@ -1,9 +1,6 @@
 #include "server/service/access_log.h"
 
-#include <spdlog/async.h>
 #include <spdlog/fmt/chrono.h>
-#include <spdlog/sinks/basic_file_sink.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -14,11 +11,10 @@
 #include <utility>
 
 #include "server/base/json_text.h"
+#include "server/service/line_writer.h"
 
 namespace trapeze {
 namespace {
-
-constexpr std::size_t kMostWaitingLines = 8192;
 
 /// To stand between quotes: nothing in it ends them, or the line.
 std::string escaped(std::string_view text) {
@@ -69,6 +65,22 @@ std::string json_line(const Answered& answered, std::time_t now) {
   return line.dump(-1, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace);
 }
 
+std::shared_ptr<const LineFile> open_file(const std::string& target) {
+  try {
+    return std::make_shared<LineFile>(target);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("log of requests: {}", error.what()));
+  }
+}
+
+void warn_of_lost_lines(std::uint64_t lines) {
+  spdlog::warn("log of requests: {} lines were lost, as they could not be written in time", lines);
+}
+
+void tell_failure(const std::string& words) {
+  spdlog::error("log of requests: it cannot be written: {}", words);
+}
+
 }  // namespace
 
 std::string access_line(const Answered& answered, LogFormat format) {
@@ -79,48 +91,21 @@ std::string access_line(const Answered& answered, LogFormat format) {
 AccessLog::AccessLog(std::string target, LogFormat format)
     : target_(std::move(target)),
       format_(format),
-      writer_(std::make_shared<spdlog::details::thread_pool>(kMostWaitingLines, 1)),
-      logger_(open_logger()) {}
+      writer_(std::make_unique<LineWriter>(open_file(target_),
+                                           LineWriter::Events{warn_of_lost_lines, tell_failure})) {}
 
 AccessLog::~AccessLog() = default;
 
 void AccessLog::write(const Answered& answered) {
-  logger()->info("{}", access_line(answered, format_));
+  writer_->write(access_line(answered, format_));
 }
 
 void AccessLog::reopen() {
   try {
-    auto opened = open_logger();
-    const std::lock_guard lock(mutex_);
-    logger_.swap(opened);
+    writer_->redirect(open_file(target_));
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
   }
-}
-
-std::shared_ptr<spdlog::logger> AccessLog::logger() const {
-  const std::lock_guard lock(mutex_);
-  return logger_;
-}
-
-std::shared_ptr<spdlog::logger> AccessLog::open_logger() const {
-  spdlog::sink_ptr sink;
-  try {
-    if (target_ == "stdout") {
-      sink = std::make_shared<spdlog::sinks::stdout_sink_mt>();
-    } else if (target_ == "stderr") {
-      sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
-    } else {
-      sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(target_);
-    }
-  } catch (const spdlog::spdlog_ex& error) {
-    throw std::runtime_error(fmt::format("cannot write the log of requests: {}", error.what()));
-  }
-  auto opened = std::make_shared<spdlog::async_logger>(
-      "access", std::move(sink), writer_, spdlog::async_overflow_policy::overrun_oldest);
-  opened->set_pattern("%v");
-  opened->flush_on(spdlog::level::info);
-  return opened;
 }
 
 }  // namespace trapeze

@@ -2,24 +2,19 @@
 //
 // Thread-safety: all methods may be called from any thread. Lines are written by a thread of the
 // log's own: whoever answers requests never waits for a disk or a pipe. If it cannot keep up, the
-// oldest lines are lost.
+// oldest lines are lost; the log of the server says how many, and what keeps them from being
+// written.
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "server/config/config.h"
 #include "server/http/http_server.h"
 
-namespace spdlog {
-class logger;
-namespace details {
-class thread_pool;
-}
-}  // namespace spdlog
-
 namespace trapeze {
+
+class LineWriter;
 
 /// The line of an answer, without a line end. As text it is what web servers call the combined
 /// format, followed by the seconds it took and X-Cache ("-" if there is none); what is not
@@ -29,7 +24,7 @@ std::string access_line(const Answered& answered, LogFormat format);
 class AccessLog {
  public:
   /// `target`: "stdout", "stderr", or the path of a file, to which lines are appended. Throws
-  /// std::runtime_error that names the file if it cannot be opened.
+  /// std::runtime_error that names the file if it cannot be opened, or is a pipe that nobody reads.
   AccessLog(std::string target, LogFormat format);
   ~AccessLog();
   AccessLog(const AccessLog&) = delete;
@@ -42,14 +37,9 @@ class AccessLog {
   void reopen();
 
  private:
-  std::shared_ptr<spdlog::logger> open_logger() const;
-  std::shared_ptr<spdlog::logger> logger() const;
-
   const std::string target_;
   const LogFormat format_;
-  std::shared_ptr<spdlog::details::thread_pool> writer_;
-  mutable std::mutex mutex_;  // guards the one below
-  std::shared_ptr<spdlog::logger> logger_;
+  const std::unique_ptr<LineWriter> writer_;
 };
 
 }  // namespace trapeze

@@ -146,6 +146,8 @@ void add_process(Snapshot& snapshot) {
   const auto number = [](auto value) { return static_cast<double>(value); };
   snapshot.gauge("process_resident_memory_bytes", "Resident memory",
                  number(process.resident_bytes));
+  snapshot.gauge("process_resident_memory_peak_bytes", "The most resident memory there ever was",
+                 number(process.peak_resident_bytes));
   snapshot.gauge("process_virtual_memory_bytes", "Virtual memory", number(process.virtual_bytes));
   snapshot.gauge("process_open_fds", "Open file descriptors", number(process.open_files));
   snapshot.gauge("process_max_fds", "File descriptors that may be open", number(process.max_files));

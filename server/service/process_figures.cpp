@@ -61,6 +61,8 @@ ProcessFigures process_figures() {
   memory >> figures.virtual_bytes >> figures.resident_bytes;
   figures.virtual_bytes *= page;
   figures.resident_bytes *= page;
+  figures.peak_resident_bytes =
+      static_cast<std::size_t>(value_in("/proc/self/status", "VmHWM:")) * 1024;
   figures.open_files = count_open_files();
   rlimit files{};
   if (getrlimit(RLIMIT_NOFILE, &files) == 0) figures.max_files = files.rlim_cur;

@@ -7,6 +7,7 @@ namespace trapeze {
 
 struct ProcessFigures {
   std::size_t resident_bytes = 0;
+  std::size_t peak_resident_bytes = 0;  // the most there ever were
   std::size_t virtual_bytes = 0;
   std::size_t open_files = 0;
   std::size_t max_files = 0;

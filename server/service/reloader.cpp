@@ -1,13 +1,11 @@
 #include "server/service/reloader.h"
-#include "server/config/load_config.h"
+#include "server/base/failure_words.h"
+#include "server/base/heap.h"
+#include "server/data/source_files.h"
 
-#include <malloc.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
 
-#include <array>
-#include <filesystem>
-#include <string_view>
+#include <new>
 #include <utility>
 
 namespace trapeze {
@@ -15,34 +13,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::seconds(1);  // without a watch, only to tidy up
 
-// A shapefile is several files, of which one is named.
-constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
-
-void append_file(const std::string& path, std::vector<std::string>& files) {
-  if (!is_file_path(path)) return;
-  files.push_back(path);
-  const std::filesystem::path named(path);
-  if (named.extension() != ".shp") return;
-  for (const std::string_view ending : kBesideShapefile) {
-    files.push_back(std::filesystem::path(named).replace_extension(ending).string());
-  }
-}
-
 }  // namespace
-
-std::string state_of_files(const std::vector<std::string>& paths) {
-  std::string state;
-  for (const std::string& path : paths) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0) {
-      state += "-;";
-      continue;
-    }
-    state += fmt::format("{}:{}:{}:{}.{};", status.st_dev, status.st_ino, status.st_size,
-                         status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
-  }
-  return state;
-}
 
 /// Datasets that nobody uses any more, until the reloader lets go of them: destroying one takes too
 /// long for the thread that happens to be the last to hold it.
@@ -94,7 +65,16 @@ std::string Reloader::last_problem() const {
 void Reloader::work() {
   if (!load_first()) return give_up_();
   is_loaded_();
-  while (wait_for_a_reason()) load_again();
+  while (true) {
+    // Memory may be short outside of what load_again() catches; that passes.
+    try {
+      if (!wait_for_a_reason()) return;
+      load_again();
+    } catch (const std::exception& error) {
+      spdlog::error("looking after the layers: {}", failure_words(error));
+      is_loading_ = false;
+    }
+  }
 }
 
 bool Reloader::load_first() {
@@ -105,6 +85,7 @@ bool Reloader::load_first() {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
+  return_free_memory();  // what building took, here and below
   is_loading_ = false;
   return data_.get() != nullptr;
 }
@@ -118,9 +99,11 @@ void Reloader::load_again() {
     metrics_.count_load(false);
     // Not tried again before something changes once more.
     state_read_ = state_of_files(files_);
-    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", error.what());
-    note(error.what());
+    const std::string problem = failure_words(error);
+    spdlog::error("the layers cannot be read again, so the old ones are kept: {}", problem);
+    note(problem);
   }
+  return_free_memory();
   is_loading_ = false;
 }
 
@@ -132,11 +115,15 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   files_ = watched_files(layers);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
-  std::shared_ptr<const Dataset> loaded = Dataset::load(layers);
+  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, data_.get().get());
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);
-               retired->datasets.push_back(std::move(loaded));
+               try {
+                 retired->datasets.push_back(std::move(loaded));
+               } catch (const std::bad_alloc&) {
+                 // Then it is destroyed here, which takes longer but frees memory.
+               }
              }});
   metrics_.count_load(true);
   spdlog::info("ready: {} layers, generation {}", layers.size(), served->generation());
@@ -144,10 +131,10 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
 
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
   std::vector<std::string> files;
-  append_file(source_.config, files);
+  append_files(source_.config, files);
   for (const LayerConfig& layer : layers) {
-    append_file(layer.file, files);
-    append_file(layer.prepared, files);
+    append_files(layer.file, files);
+    append_files(layer.prepared, files);
   }
   return files;
 }
@@ -187,14 +174,25 @@ void Reloader::forget_retired() {
     datasets.swap(retired_->datasets);
   }
   if (datasets.empty()) return;
+  struct Mesh {
+    std::weak_ptr<const Layer> layer;  // to which it belongs
+    std::uint64_t id;
+  };
+  std::vector<Mesh> meshes;
   for (const auto& dataset : datasets) {
     for (const ServedLayer& served : dataset->layers()) {
-      tiles_.forget(served.layer->mesh().id);
-      if (served.untested != nullptr) tiles_.forget(served.untested->mesh().id);
+      meshes.push_back({served.layer, served.layer->mesh().id});
+      if (served.untested != nullptr) {
+        meshes.push_back({served.untested, served.untested->mesh().id});
+      }
     }
   }
   datasets.clear();
-  malloc_trim(0);  // what building took is not needed again soon
+  // A layer that has not changed lives on in the dataset that is served.
+  for (const Mesh& mesh : meshes) {
+    if (mesh.layer.expired()) tiles_.forget(mesh.id);
+  }
+  return_free_memory();
 }
 
 }  // namespace trapeze

@@ -1,8 +1,8 @@
 // Reads the layers that are served, and reads them again when told to or when their files change.
 //
-// New layers are built beside the old ones and replace them all at once; a worker that still draws
-// from old ones keeps them alive. If anything goes wrong, the old ones stay, and log and metrics
-// say so.
+// Only layers that have changed, or may have, are read again. New ones are built beside the old
+// ones and all take their place at once; a worker that still draws from old ones keeps them alive.
+// If anything goes wrong, the old ones stay, and log and metrics say so.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -31,10 +31,6 @@ struct LayerSource {
   std::function<std::vector<LayerConfig>()> layers;
   std::string config;  // the path of the configuration, watched as well; empty: there is none
 };
-
-/// What can be seen of files without reading them: equal as long as none was changed, replaced,
-/// added or removed.
-std::string state_of_files(const std::vector<std::string>& paths);
 
 class Reloader {
  public:

@@ -155,11 +155,18 @@ void Service::run() {
   // As long as the other, to be watched while it ends.
   std::thread admin;
   if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });
-  server_->run();
-  if (admin_ != nullptr) {
+  const auto end_admin = [this, &admin] {
+    if (admin_ == nullptr) return;
     admin_->stop();
     admin.join();
+  };
+  try {
+    server_->run();
+  } catch (...) {
+    end_admin();
+    throw;
   }
+  end_admin();
   reloader_->rethrow_failure();
 }
 

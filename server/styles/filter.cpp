@@ -457,49 +457,6 @@ std::partial_ordering compare(const Value& value, const FilterLiteral& literal) 
   return a <=> b;
 }
 
-/// The first character of a text that is not empty, with the bytes that continue it.
-std::size_t character_size(std::string_view text) {
-  std::size_t size = 1;
-  while (size < text.size() && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) ++size;
-  return size;
-}
-
-/// In time of the product of the lengths at most: only the last % is ever taken back.
-bool is_like(std::string_view text, std::string_view pattern) {
-  std::optional<std::string_view> pattern_after_star;
-  std::string_view text_at_star;
-  while (true) {
-    bool fits = false;
-    if (pattern.starts_with('%')) {
-      pattern.remove_prefix(1);
-      pattern_after_star = pattern;
-      text_at_star = text;
-      continue;
-    }
-    if (pattern.empty() && text.empty()) return true;
-    if (!pattern.empty() && !text.empty()) {
-      if (pattern.front() == '_') {
-        fits = true;
-        pattern.remove_prefix(1);
-        text.remove_prefix(character_size(text));
-      } else {
-        std::string_view rest = pattern;
-        if (rest.front() == '\\' && rest.size() > 1) rest.remove_prefix(1);
-        fits = rest.front() == text.front();
-        if (fits) {
-          pattern = rest.substr(1);
-          text.remove_prefix(1);
-        }
-      }
-    }
-    if (fits) continue;
-    if (!pattern_after_star || text_at_star.empty()) return false;
-    text_at_star.remove_prefix(character_size(text_at_star));
-    text = text_at_star;
-    pattern = *pattern_after_star;
-  }
-}
-
 bool holds(const FilterNode& node, const Value& value) {
   const auto order = [&](std::size_t i) { return compare(value, node.literals[i]); };
   switch (node.op) {
@@ -521,8 +478,6 @@ bool holds(const FilterNode& node, const Value& value) {
       return std::ranges::any_of(node.literals, [&](const FilterLiteral& literal) {
         return compare(value, literal) == 0;
       });
-    case FilterOperator::like:
-      return is_like(std::get<std::string_view>(value), std::get<std::string>(node.literals[0]));
     default:
       return false;
   }
@@ -581,6 +536,9 @@ Result<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,
     return Problem{400, fmt::format("The property {} is compared with {}.", field.name, takes),
                    "filter", text_of(node), takes};
   }
+  if (node.op == FilterOperator::like) {
+    bound.pattern.emplace(std::get<std::string>(node.literals[0]));
+  }
   return bound;
 }
 
@@ -606,7 +564,9 @@ BoundFilter::Truth BoundFilter::evaluate(const Node& node, std::uint32_t row) co
   const bool is_null = std::holds_alternative<std::monostate>(value);
   if (node.source->op == FilterOperator::is_null) return is_null ? Truth::yes : Truth::no;
   if (is_null) return Truth::unknown;
-  return holds(*node.source, value) ? Truth::yes : Truth::no;
+  const bool is_true = node.pattern ? node.pattern->matches(std::get<std::string_view>(value))
+                                    : holds(*node.source, value);
+  return is_true ? Truth::yes : Truth::no;
 }
 
 BoundFilter::Truth BoundFilter::evaluate_all(const Node& node, std::uint32_t row) const {

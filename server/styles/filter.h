@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@
 
 #include "core/layer/feature_table.h"
 #include "server/base/result.h"
+#include "server/styles/like_pattern.h"
 
 namespace trapeze {
 
@@ -89,6 +91,7 @@ class BoundFilter {
   struct Node {
     const FilterNode* source = nullptr;
     int field = -1;
+    std::optional<LikePattern> pattern = {};  // of LIKE
     std::vector<Node> operands;
   };
 

@@ -14,13 +14,31 @@ TileService::TileService(const TileServiceOptions& options,
       renderer_(*renderers.front()),
       renderer_name_(renderer_.name()),
       workers_(renderers.size()) {
+  try {
+    start_workers(std::move(renderers));
+  } catch (...) {
+    stop_workers();
+    throw;
+  }
+}
+
+void TileService::start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers) {
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
-        [this, painter = TilePainter(std::move(renderer), classes, options.fonts)]() mutable {
+        [this, painter = TilePainter(std::move(renderer), classes, options_.fonts)]() mutable {
           work(painter);
         });
   }
+}
+
+void TileService::stop_workers() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
 }
 
 void TileService::submit(TilePlan plan, std::string key, Callback callback) {
@@ -95,7 +113,7 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
     if (flights.size() > 1 && answers[i].outcome == TileOutcome::failed) {
       answers[i] = paint(painter, {flights[i]}).front();
     }
-    land(*flights[i], answers[i]);
+    land(flights[i], answers[i]);
   }
 }
 
@@ -137,28 +155,29 @@ void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>
   }
 }
 
-void TileService::land(Flight& flight, const TileAnswer& answer) {
+void TileService::land(const std::shared_ptr<Flight>& flight, const TileAnswer& answer) {
   std::vector<Callback> callbacks;
   {
     const std::lock_guard lock(mutex_);
-    flights_.erase(flight.key);
-    callbacks.swap(flight.callbacks);
+    const bool has_time = flight->deadline > TilePainter::Clock::now() && !is_stopping_;
+    if (answer.outcome == TileOutcome::late && has_time) {
+      queue_.push_front(flight);
+      wake_.notify_one();
+      return;
+    }
+    flights_.erase(flight->key);
+    callbacks.swap(flight->callbacks);
   }
   tell(answer);
   for (const Callback& callback : callbacks) callback(answer);
 }
 
 TileService::~TileService() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_stopping_ = true;
-  }
-  wake_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  stop_workers();
   while (!queue_.empty()) {
     const auto flight = std::move(queue_.front());
     queue_.pop_front();
-    land(*flight, {TileOutcome::saturated, {}});
+    land(flight, {TileOutcome::saturated, {}});
   }
 }
 

@@ -51,7 +51,8 @@ class TileService {
  public:
   using Callback = std::function<void(const TileAnswer&)>;
 
-  /// Starts one worker for each renderer, of which there is at least one.
+  /// Starts one worker for each renderer, of which there is at least one. Throws std::system_error
+  /// if a thread cannot be started.
   TileService(const TileServiceOptions& options,
               std::vector<std::unique_ptr<MaskRenderer>> renderers);
   /// Ends what is being drawn; what waits is answered as saturated.
@@ -86,6 +87,8 @@ class TileService {
   };
   using Flights = std::vector<std::shared_ptr<Flight>>;
 
+  void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
+  void stop_workers();
   void work(TilePainter& painter);
   /// The next flights to draw together, up to so many; none when the service stops.
   Flights take(std::size_t most);
@@ -94,7 +97,9 @@ class TileService {
   void draw(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
-  void land(Flight& flight, const TileAnswer& answer);
+  /// Answers all who asked; but if it is late, and somebody has joined who can still wait, it
+  /// queues once more.
+  void land(const std::shared_ptr<Flight>& flight, const TileAnswer& answer);
   void tell(const TileAnswer& answer) const;
 
   const TileServiceOptions options_;

@@ -131,8 +131,13 @@ class FeaturePipeline::Pool {
  public:
   explicit Pool(const std::vector<std::unique_ptr<Lane>>& lanes)
       : queue_(kWaitingBatchesPerLane * lanes.size()) {
-    for (const auto& lane : lanes) {
-      running_.push_back(std::async(std::launch::async, [this, &lane] { work(*lane); }));
+    try {
+      for (const auto& lane : lanes) {
+        running_.push_back(std::async(std::launch::async, [this, &lane] { work(*lane); }));
+      }
+    } catch (...) {
+      queue_.abandon();  // else those that have been started would wait for work
+      throw;
     }
   }
   ~Pool() { queue_.abandon(); }

@@ -14,6 +14,8 @@ struct SourceSelection {
   std::string where = {};
   std::optional<std::vector<std::string>> attributes = {};  // those that are kept; unset: all
 
+  friend bool operator==(const SourceSelection&, const SourceSelection&) = default;
+
   bool is_all() const { return layer.empty() && where.empty() && !attributes; }
 };
 

@@ -75,6 +75,24 @@ TEST(FeatureTableTest, StoresEqualTextsOnce) {
   EXPECT_LT(table.memory(), 100'000u);
 }
 
+TEST(FeatureTableTest, GivesBackMemoryAndStillFindsItsTextsWhenMoreIsAppended) {
+  FeatureTable table({{"a", FieldType::text}});
+  const auto append = [&table](int i) {
+    const std::string text = "street " + std::to_string(i);
+    table.append(i, std::vector<Value>{std::string_view(text)});
+  };
+  for (int i = 0; i < 1000; ++i) append(i);
+  const std::size_t before = table.memory();
+  table.shrink_to_fit();
+  EXPECT_LT(table.memory(), before);
+  const std::size_t strings = table.cells().string_ends.size();
+  for (int i = 0; i < 1000; ++i) append(i);
+  EXPECT_EQ(table.cells().string_ends.size(), strings);
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    EXPECT_EQ(std::get<std::string_view>(table.value(i, 0)), "street " + std::to_string(i % 1000));
+  }
+}
+
 TEST(FeatureTableTest, TakesTextWithZeroBytes) {
   FeatureTable table({{"a", FieldType::text}});
   const std::string_view text("a\0b", 3);

@@ -117,6 +117,25 @@ TEST(LayerArrays, GiveALayerThatAnswersAsTheOneTheyWereTakenFrom) {
                                  build_without_topology_test(*built)->mesh().trapezoids));
 }
 
+TEST(LayerArrays, OfABuiltLayerTakeNoMoreMemoryThanTheirItems) {
+  const auto layer = sample_layer();
+  const LayerArrays a = arrays_of(*layer);
+  const std::size_t items =
+      a.vertices.size_bytes() + a.edges.size_bytes() + a.trapezoids.size_bytes() +
+      a.lifespans.size_bytes() + a.feature_of.size_bytes() + a.polygon_index.size_bytes() +
+      a.mote_index.size_bytes() + a.merged_mote_index.size_bytes() +
+      a.horizontal_edge_index.size_bytes() + a.outline_points.size_bytes() +
+      a.ring_ends.size_bytes() + a.outline_ends.size_bytes() + layer->grains().memory();
+  EXPECT_EQ(layer->memory(), items);
+  EXPECT_LE(layer->grains().memory(), a.grains.size_bytes() * 11 / 10 + 64);
+  std::size_t cells = a.cells.ids.size_bytes() + a.cells.string_bytes.size_bytes() +
+                      a.cells.string_ends.size_bytes();
+  for (const auto& column : a.cells.columns) {
+    cells += column.numbers.size_bytes() + column.nulls.size_bytes() + column.texts.size_bytes();
+  }
+  EXPECT_LE(layer->features().memory(), cells + 1000) << "names of fields are the rest";
+}
+
 TEST(LayerArrays, OfALayerWithoutAnythingGiveOne) {
   std::vector<LayerBuilder> builders(1);
   const auto empty = LayerBuilder::join(builders, FeatureTable());

@@ -2,13 +2,16 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <regex>
 #include <stdexcept>
@@ -18,6 +21,7 @@
 
 #include "render/picture/png.h"
 #include "server/config/config.h"
+#include "tests/sanitized.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
 
@@ -124,6 +128,25 @@ void wait_until_ready(std::uint16_t port) {
   FAIL() << "never ready";
 }
 
+double metric(std::uint16_t port, const std::string& name) {
+  const std::string text = "\n" + RawClient(port).get("/metrics").body;
+  const std::size_t begin = text.find("\n" + name + " ");
+  return begin == std::string::npos ? 0 : std::stod(text.substr(begin + name.size() + 2));
+}
+
+/// A round island of so many vertices.
+void write_island(const std::string& path, int vertices) {
+  std::ofstream file(path);
+  file << R"({"type": "Polygon", "coordinates": [[)";
+  for (int i = 0; i <= vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * (i % vertices) / vertices;
+    const double radius = 20 + i % vertices * 7919 % 1000 * 1e-6;
+    file << fmt::format("{}[{:.6f},{:.6f}]", i == 0 ? "" : ",", radius * std::cos(angle),
+                        radius * std::sin(angle));
+  }
+  file << "]]}";
+}
+
 /// A polygon whose graph takes seconds, in a folder of its own.
 std::string write_large_polygon(const std::string& folder) {
   std::filesystem::create_directories(folder);
@@ -188,6 +211,35 @@ TEST(ProgramTest, ServesFilesAndEndsInOrderOnSigterm) {
   EXPECT_THAT(program.output(),
               AllOf(HasSubstr("drawing by software"), HasSubstr("rings.geojson: 1 of 1 features"),
                     HasSubstr("ready: 2 layers"), HasSubstr("SIGTERM"), HasSubstr("stopped")));
+}
+
+TEST(ProgramTest, KeepsTheMemoryOfLayersAndNotThatOfBuildingThem) {
+  if (testing::kIsSanitized) GTEST_SKIP() << "sanitizers have allocators of their own";
+  const char* const kResident = "process_resident_memory_bytes";
+  double without = 0;
+  {
+    const Program server(serve_arguments({fixture("rings.geojson")}));
+    wait_until_ready(server.port());
+    without = metric(server.port(), kResident);
+  }
+  const std::string map = scratch_path("island.geojson");
+  write_island(map, 150'000);
+  const Program server(serve_arguments({map}));
+  wait_until_ready(server.port());
+  std::filesystem::remove(map);
+  const double layer =
+      metric(server.port(),
+             "trapeze_layer_bytes{layer=\"" + std::filesystem::path(map).stem().string() + "\"}");
+  EXPECT_GT(layer, 10e6);
+  double with = 0;
+  // It is ready a little before it has given all back.
+  for (int i = 0; i < 1000; ++i) {
+    with = metric(server.port(), kResident);
+    if (with - without < 1.2 * layer + 10e6) break;
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_LT(with - without, 1.2 * layer + 10e6);
+  EXPECT_GT(metric(server.port(), "process_resident_memory_peak_bytes"), with);
 }
 
 TEST(ProgramTest, EndsItsStartWithTheAddressToOpen) {
@@ -500,7 +552,8 @@ TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
   EXPECT_THAT(program.output(),
               AllOf(HasSubstr("nosuch.fgb"), HasSubstr("rings.geojson (GeoJSON)"),
                     ::testing::ContainsRegex("polygons +2"), ::testing::ContainsRegex("rings +3"),
-                    ::testing::ContainsRegex("vertices +12"), HasSubstr("per vertex")));
+                    ::testing::ContainsRegex("vertices +12"), HasSubstr("per vertex"),
+                    ::testing::ContainsRegex("memory of the process +[0-9]+ bytes at most")));
   Program good({"check", fixture("rings.geojson")});
   EXPECT_EQ(good.wait(), 0);
 }

@@ -126,6 +126,46 @@ ServedLayer many_squares(std::uint32_t count) {
   return served;
 }
 
+/// A layer "long" of equal squares around 0 E, 0 N with these texts.
+ServedLayer squares_with(const std::vector<std::string>& texts) {
+  FeatureTable features({{"text", FieldType::text}});
+  std::vector<LayerBuilder> builders(1);
+  for (std::uint32_t i = 0; i < texts.size(); ++i) {
+    features.append(i, std::vector<Value>{std::string_view(texts[i])});
+    Rings rings;
+    rings.add(std::vector<Point>{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}});
+    builders.front().add(i, rings);
+  }
+  ServedLayer served;
+  served.config.name = "long";
+  served.layer = LayerBuilder::join(builders, std::move(features));
+  return served;
+}
+
+TEST_F(IdentifyTest, LongTextsAreLeftOutOnceTheyAreTooMuch) {
+  constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+  std::vector<ServedLayer> layers;
+  // Each control character takes six bytes in JSON.
+  layers.push_back(squares_with({std::string(kMegabyte, 'a'), std::string(kMegabyte, '\1'), "short",
+                                 std::string(2 * kMegabyte, 'b'), std::string(20 * kMegabyte, 'c'),
+                                 std::string(kMegabyte - 1000, 'd')}));
+  sample_.data().set(std::make_shared<const Dataset>(std::move(layers)));
+  const auto response = sample_.get("/identify/long/0,0");
+  EXPECT_EQ(response.status, 200);
+  EXPECT_LT(response.body->size(), kMaxIdentifiedBytes + 10'000);
+  const auto json = nlohmann::json::parse(*response.body);
+  EXPECT_EQ(json["numberReturned"], 6);
+  EXPECT_EQ(json["propertiesLeftOut"], 2);
+  std::vector<std::size_t> sizes;
+  for (const auto& feature : json["features"]) {
+    EXPECT_EQ(feature["bbox"].size(), 4u);
+    sizes.push_back(feature["properties"].is_null()
+                        ? 0
+                        : feature["properties"]["text"].get<std::string>().size());
+  }
+  EXPECT_THAT(sizes, ElementsAre(kMegabyte, 0, 5, 2 * kMegabyte, 0, kMegabyte - 1000));
+}
+
 TEST_F(IdentifyTest, AnswersStaySmallAndIntegersExact) {
   std::vector<ServedLayer> layers;
   layers.push_back(many_squares(150));
@@ -138,6 +178,7 @@ TEST_F(IdentifyTest, AnswersStaySmallAndIntegersExact) {
   EXPECT_THAT(*response.body, HasSubstr("\"number\": 9223372036854775807"));
   EXPECT_THAT(*response.body, HasSubstr("\"id\": -9223372036854775807"));
   EXPECT_TRUE(json["features"][0]["properties"]["share"].is_null()) << "JSON has no NaN";
+  EXPECT_FALSE(json.contains("propertiesLeftOut"));
 }
 
 }  // namespace

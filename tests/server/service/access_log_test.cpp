@@ -1,6 +1,7 @@
 #include "server/service/access_log.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,9 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/core/io/temporary_folder.h"
+
 namespace trapeze {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
@@ -94,6 +98,23 @@ TEST(AccessLogTest, AFileThatCannotBeOpenedIsAnErrorThatNamesIt) {
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/dev/null/access.log"));
   }
+}
+
+TEST(AccessLogTest, APipeThatNobodyReadsIsAnErrorThatNamesIt) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  try {
+    AccessLog log(pipe, LogFormat::text);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr(pipe), HasSubstr("a pipe that nobody reads")));
+  }
+}
+
+TEST(AccessLogTest, GoesOnWhereNothingCanBeWritten) {
+  AccessLog log("/dev/full", LogFormat::text);
+  for (int i = 0; i < 100; ++i) log.write(Sample().answered());
 }
 
 }  // namespace

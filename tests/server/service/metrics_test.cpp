@@ -127,6 +127,8 @@ TEST(MetricsTest, TellsTheStateOfTheParts) {
   EXPECT_EQ(samples.at("trapeze_data_load_failed"), 1);
   EXPECT_GT(samples.at("trapeze_data_loaded_timestamp_seconds"), 1.6e9);
   EXPECT_GT(samples.at("process_resident_memory_bytes"), 1e6);
+  EXPECT_GE(samples.at("process_resident_memory_peak_bytes"),
+            samples.at("process_resident_memory_bytes"));
   EXPECT_GT(samples.at("process_open_fds"), 2);
   EXPECT_GT(samples.at("process_start_time_seconds"), 1.6e9);
   EXPECT_THAT(text, HasSubstr(R"(renderer="soft\"ware\n")"));

@@ -21,6 +21,7 @@
 
 #include "render/make_renderer.h"
 #include "server/config/load_config.h"
+#include "tests/core/io/temporary_folder.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
 
@@ -304,8 +305,17 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   TileCache cache(0);
   TileService tiles({}, std::move(renderers));
   const Site site({}, {}, data, tiles, cache);
-  const auto layers = [] {
-    auto rings = layers_of_files({fixture("rings.geojson")});
+  const TemporaryFolder folder;
+  const auto replace_file = [&folder](int generation) {
+    std::filesystem::copy_file(fixture("rings.geojson"), folder.file("rings.geojson"),
+                               std::filesystem::copy_options::overwrite_existing);
+    // So that it has changed, however fast all this is.
+    std::filesystem::last_write_time(folder.file("rings.geojson"),
+                                     std::filesystem::file_time_type{} + generation * 1s);
+  };
+  replace_file(0);
+  const auto layers = [&folder] {
+    auto rings = layers_of_files({folder.file("rings.geojson")});
     rings[0].fast_topology = true;
     return rings;
   };
@@ -330,13 +340,42 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
     draw("");
     draw("&topology=fast");
     reload();
+    replace_file(i + 1);
+    reload();
   }
-  reload();
   EXPECT_EQ(notes.drawn, 10u);
   EXPECT_TRUE(holds_within(5s, [&notes] {
     const std::lock_guard lock(notes.mutex);
     return notes.kept.empty();
   })) << "five generations with two meshes each are gone, the sixth was not drawn";
+}
+
+TEST(ReloaderTest, TheRendererKeepsMeshesOfLayersThatAreServedOn) {
+  NotingRenderer::Notes notes;
+  std::vector<std::unique_ptr<MaskRenderer>> renderers;
+  renderers.push_back(std::make_unique<NotingRenderer>(notes));
+  const auto layers = [] { return layers_of_files({fixture("rings.geojson")}); };
+  CurrentDataset data;
+  Metrics metrics;
+  TileService tiles({}, std::move(renderers));
+  {
+    Reloader reloader(
+        {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+    ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
+    const std::uint64_t mesh = data.get()->layers()[0].layer->mesh().id;
+    {
+      const std::lock_guard lock(notes.mutex);
+      notes.kept.insert(mesh);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const Dataset* const before = data.get().get();
+      reloader.reload();
+      ASSERT_TRUE(holds_within(10s, [&] { return data.get().get() != before; }));
+      EXPECT_EQ(data.get()->layers()[0].layer->mesh().id, mesh);
+    }
+  }
+  const std::lock_guard lock(notes.mutex);
+  EXPECT_EQ(notes.kept.size(), 1u);
 }
 
 TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {

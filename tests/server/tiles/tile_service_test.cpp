@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <functional>
 #include <future>
 
 #include "render/make_renderer.h"
@@ -24,14 +25,16 @@ class GatedRenderer final : public MaskRenderer {
     std::atomic<int> passes = 0;
     bool gains_by_batching = false;
     std::atomic<bool> fails = false;
+    std::function<void()> during_second_pass = [] {};
   };
   using MaskRenderer::draw;
   explicit GatedRenderer(Gate& gate) : gate_(gate) {}
 
   DrawTimes draw(std::span<const MaskTask> tasks) override {
     gate_.begun += static_cast<int>(tasks.size());
-    ++gate_.passes;
+    const int pass = ++gate_.passes;
     gate_.is_open.wait();
+    if (pass == 2) gate_.during_second_pass();
     if (gate_.fails) throw std::runtime_error("the device is lost");
     for (const MaskTask& task : tasks) {
       task.out->resize(task.view.width, task.view.height);
@@ -141,6 +144,23 @@ TEST_F(TileServiceTest, WhatWaitsPastItsDeadlineIsNotDrawn) {
   open();
   EXPECT_EQ(waiting.get().outcome, TileOutcome::late);
   EXPECT_EQ(gate_.begun, 1);
+}
+
+TEST_F(TileServiceTest, WhoJoinsWhatIsLateWaitsOnAndDoesNotShareItsDeadline) {
+  gate_.gains_by_batching = true;
+  std::future<TileAnswer> joined;
+  gate_.during_second_pass = [&] { joined = submit(1); };
+  start({8, 1s, 2});
+  auto drawing = submit(0);
+  wait_until_drawing(1);
+  auto late = submit(1);
+  std::this_thread::sleep_for(1100ms);
+  auto company = submit(2);  // in one pass with the late one, which is given up before it is drawn
+  open();
+  if (company.get().outcome == TileOutcome::late) GTEST_SKIP() << "the machine stood still";
+  ASSERT_TRUE(joined.valid());
+  EXPECT_EQ(joined.get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(late.get().outcome, TileOutcome::drawn) << "it has waited anyway";
 }
 
 TEST_F(TileServiceTest, AFailingRendererFailsTheRequestAndNotTheWorker) {

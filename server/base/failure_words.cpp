@@ -1,0 +1,17 @@
+#include "server/base/failure_words.h"
+
+#include <new>
+#include <system_error>
+
+namespace trapeze {
+
+std::string failure_words(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "there is not enough memory";
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {
+    return "no more threads can be started, or there is not enough memory for them";
+  }
+  return error.what();
+}
+
+}  // namespace trapeze

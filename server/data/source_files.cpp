@@ -1,0 +1,62 @@
+#include "server/data/source_files.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "server/config/load_config.h"
+
+namespace trapeze {
+namespace {
+
+// A shapefile is several files, of which one is named.
+constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
+
+/// Whether the source is one file, to which all changes are made itself: SQLite may write them into
+/// another one first.
+bool is_in_one_file(const std::string& source) {
+  std::error_code error;
+  return is_file_path(source) && std::filesystem::is_regular_file(source, error) &&
+         !std::filesystem::exists(source + "-wal", error);
+}
+
+}  // namespace
+
+void append_files(const std::string& source, std::vector<std::string>& files) {
+  if (!is_file_path(source)) return;
+  files.push_back(source);
+  const std::filesystem::path named(source);
+  if (named.extension() != ".shp") return;
+  for (const std::string_view ending : kBesideShapefile) {
+    files.push_back(std::filesystem::path(named).replace_extension(ending).string());
+  }
+}
+
+std::string state_of_files(const std::vector<std::string>& paths) {
+  std::string state;
+  for (const std::string& path : paths) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) {
+      state += "-;";
+      continue;
+    }
+    state += fmt::format("{}:{}:{}:{}.{};", status.st_dev, status.st_ino, status.st_size,
+                         status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+  }
+  return state;
+}
+
+std::string state_of_sources(const LayerConfig& layer) {
+  // Of a prepared layer, the file it was prepared from is only compared with it.
+  if (!is_in_one_file(layer.file_to_open())) return {};
+  std::vector<std::string> files;
+  append_files(layer.file, files);
+  append_files(layer.prepared, files);
+  return state_of_files(files);
+}
+
+}  // namespace trapeze

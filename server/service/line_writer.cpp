@@ -1,0 +1,171 @@
+#include "server/service/line_writer.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kMostWaitingBytes = std::size_t{4} << 20;
+constexpr int kLookMs = 100;  // between looks whether to give up
+constexpr auto kLastWait = std::chrono::seconds(1);
+
+std::string words_of(int error) {
+  return std::generic_category().message(error);
+}
+
+/// Without waiting for a reader, if it is a pipe.
+int open_at_end(const std::string& path) {
+  const int descriptor =
+      open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+  if (descriptor >= 0) return descriptor;
+  const std::string why = errno == ENXIO ? "it is a pipe that nobody reads" : words_of(errno);
+  throw std::runtime_error(fmt::format("{} cannot be written: {}", path, why));
+}
+
+}  // namespace
+
+LineFile::LineFile(const std::string& target) {
+  if (target == "stdout" || target == "stderr") {
+    descriptor_ = target == "stdout" ? STDOUT_FILENO : STDERR_FILENO;
+    open_pipe_anew();
+  } else {
+    descriptor_ = open_at_end(target);
+    is_own_ = true;
+  }
+  struct stat status {};
+  may_be_full_ = fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+/// So that writing to a full pipe does not wait, without changing that for others who have it.
+/// Where that cannot be done, put() takes care not to fill it.
+void LineFile::open_pipe_anew() {
+  struct stat status {};
+  if (fstat(descriptor_, &status) != 0 || !S_ISFIFO(status.st_mode)) return;
+  const std::string path = fmt::format("/proc/self/fd/{}", descriptor_);
+  const int opened = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+  if (opened < 0) return;
+  descriptor_ = opened;
+  is_own_ = true;
+}
+
+LineFile::~LineFile() {
+  if (is_own_) close(descriptor_);
+}
+
+LineWriter::LineWriter(std::shared_ptr<const LineFile> file, Events events)
+    : events_(std::move(events)), file_(std::move(file)), thread_([this] { work(); }) {}
+
+LineWriter::~LineWriter() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+    give_up_at_ = Clock::now() + kLastWait;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void LineWriter::write(std::string line) {
+  line += '\n';
+  const std::lock_guard lock(mutex_);
+  waiting_bytes_ += line.size();
+  queue_.push_back({std::move(line), file_});
+  while (waiting_bytes_ > kMostWaitingBytes) {
+    waiting_bytes_ -= queue_.front().text.size();
+    queue_.pop_front();
+    ++lost_;
+  }
+  wake_.notify_one();
+}
+
+void LineWriter::redirect(std::shared_ptr<const LineFile> file) {
+  const std::lock_guard lock(mutex_);
+  file_.swap(file);
+}
+
+void LineWriter::flush(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  is_idle_.wait_for(lock, patience, [this] { return queue_.empty() && !is_writing_; });
+}
+
+void LineWriter::work() {
+  while (true) {
+    Line line;
+    {
+      std::unique_lock lock(mutex_);
+      is_writing_ = false;
+      if (queue_.empty()) is_idle_.notify_all();
+      wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty(); });
+      if (queue_.empty() || Clock::now() >= give_up_at_) return;
+      line = std::move(queue_.front());
+      queue_.pop_front();
+      waiting_bytes_ -= line.text.size();
+      is_writing_ = true;
+    }
+    if (put(line)) {
+      tell_what_is_lost();
+    } else {
+      const std::lock_guard lock(mutex_);
+      ++lost_;
+    }
+  }
+}
+
+/// In pieces that a pipe takes as a whole once it has room, so that this does not hang in it.
+bool LineWriter::put(const Line& line) {
+  const std::string text = (is_line_broken_ ? "\n" : "") + line.text;
+  std::size_t done = 0;
+  while (done < text.size()) {
+    if (line.file->may_be_full() && !wait_for_room(*line.file)) return false;
+    const std::size_t piece = std::min<std::size_t>(text.size() - done, PIPE_BUF);
+    const ssize_t written = ::write(line.file->descriptor(), text.data() + done, piece);
+    if (written >= 0) {
+      done += static_cast<std::size_t>(written);
+    } else if (errno != EINTR && errno != EAGAIN) {
+      note_failure(errno);
+      is_line_broken_ = is_line_broken_ || done > 0;
+      return false;
+    }
+  }
+  is_line_broken_ = false;
+  has_failed_ = false;
+  return true;
+}
+
+/// False if it is time to end.
+bool LineWriter::wait_for_room(const LineFile& file) const {
+  pollfd wanted{file.descriptor(), POLLOUT, 0};
+  while (poll(&wanted, 1, kLookMs) == 0) {
+    const std::lock_guard lock(mutex_);
+    if (Clock::now() >= give_up_at_) return false;
+  }
+  return true;
+}
+
+void LineWriter::note_failure(int error) {
+  if (!std::exchange(has_failed_, true) && events_.failed) events_.failed(words_of(error));
+}
+
+/// Once the queue has been worked off, so that it is told once.
+void LineWriter::tell_what_is_lost() {
+  std::uint64_t lost = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!queue_.empty() && !is_stopping_) return;
+    lost = std::exchange(lost_, 0);
+  }
+  if (lost > 0 && events_.lost) events_.lost(lost);
+}
+
+}  // namespace trapeze
