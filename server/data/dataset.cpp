@@ -153,7 +153,8 @@ std::size_t ServedLayer::memory() const {
 
 Problem damaged_layer(const ServedLayer& layer) {
   return {503,
-          fmt::format("The file of the layer \"{}\" has been cut off. It has to be prepared again.",
+          fmt::format("The file of the layer \"{}\" has been cut off or written into. It has to be "
+                      "prepared again.",
                       layer.config.name)};
 }
 

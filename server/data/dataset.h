@@ -33,11 +33,11 @@ struct ServedLayer {
   }
   /// In bytes: geometry, index and attributes, and what there is of it without the test.
   std::size_t memory() const;
-  /// False if its prepared file was truncated while it was mapped.
+  /// False if its prepared file was written into while it was mapped.
   bool is_whole() const { return file == nullptr || file->is_whole(); }
 };
 
-/// The problem, 503, with a layer whose prepared file was truncated.
+/// The problem, 503, with a layer whose prepared file was written into.
 Problem damaged_layer(const ServedLayer& layer);
 
 /// A hash of geometry, attributes and which feature has which polygon: equal on every machine that

@@ -27,40 +27,57 @@ int open_or_throw(const std::string& path) {
   return file;
 }
 
+std::int64_t modified_of(const struct stat& status) {
+  return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
 }  // namespace
 
 /// Knows what is mapped. Reading what a file has no more raises SIGBUS; where that happens within a
 /// mapping, the page is replaced by zeros and the reader goes on.
 class MappingGuard {
  public:
-  static void add(const MappedFile& file) {
+  static void add(std::span<const std::byte> bytes) {
     static std::once_flag once;
     std::call_once(once, catch_signal);
-    for (auto& slot : files()) {
-      const MappedFile* none = nullptr;
-      if (slot.compare_exchange_strong(none, &file)) return;
+    for (Slot& slot : slots()) {
+      std::uintptr_t none = 0;
+      if (!slot.begin.compare_exchange_strong(none, kTaken)) continue;
+      slot.end = begin_of(bytes) + bytes.size();
+      slot.begin = begin_of(bytes);
+      return;
     }
     // More files than slots: the rest is mapped without a guard.
   }
-  static void remove(const MappedFile& file) {
-    for (auto& slot : files()) {
-      const MappedFile* same = &file;
-      if (slot.compare_exchange_strong(same, nullptr)) return;
+  static void remove(std::span<const std::byte> bytes) {
+    for (Slot& slot : slots()) {
+      std::uintptr_t same = begin_of(bytes);
+      if (slot.begin.compare_exchange_strong(same, 0)) return;
     }
   }
 
  private:
   static constexpr std::size_t kMostFiles = 1024;
-  using Files = std::array<std::atomic<const MappedFile*>, kMostFiles>;
-  static_assert(std::atomic<const MappedFile*>::is_always_lock_free);
+  /// The addresses of a mapping, and not the file: another thread may be destroying that one while
+  /// the handler looks for its own.
+  struct Slot {
+    std::atomic<std::uintptr_t> begin = 0;  // 0: free
+    std::atomic<std::uintptr_t> end = 0;
+  };
+  static constexpr std::uintptr_t kTaken = 1;  // the begin of a slot whose end is being written
+  using Slots = std::array<Slot, kMostFiles>;
+  static_assert(std::atomic<std::uintptr_t>::is_always_lock_free);
 
-  static Files& files() {
-    static Files files{};
-    return files;
+  static Slots& slots() {
+    static Slots slots{};
+    return slots;
+  }
+  static std::uintptr_t begin_of(std::span<const std::byte> bytes) {
+    return reinterpret_cast<std::uintptr_t>(bytes.data());
   }
 
   static void catch_signal() {
-    files();  // made before the handler may ask for it
+    slots();  // made before the handler may ask for it
     page_size() = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     struct sigaction action {};
     action.sa_sigaction = on_signal;
@@ -77,11 +94,10 @@ class MappingGuard {
   // Calls nothing but system calls. A file that is read is mapped, so it stays in its slot.
   static void on_signal(int, siginfo_t* info, void*) {
     const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
-    for (const auto& slot : files()) {
-      const MappedFile* file = slot.load();
-      if (file == nullptr) continue;
-      const auto begin = reinterpret_cast<std::uintptr_t>(file->bytes_.data());
-      if (address < begin || address >= begin + file->bytes_.size()) continue;
+    for (const Slot& slot : slots()) {
+      const std::uintptr_t begin = slot.begin;
+      const std::uintptr_t end = slot.end;
+      if (begin <= kTaken || address < begin || address >= end || slot.begin != begin) continue;
       void* page = reinterpret_cast<void*>(address & ~(page_size() - 1));
       const int error = errno;
       const void* zeros =
@@ -106,26 +122,29 @@ MappedFile::MappedFile(const std::string& path) : file_(open_or_throw(path)) {
 void MappedFile::map(const std::string& path) {
   struct stat status {};
   if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) fail(path, "is no regular file");
+  modified_ = modified_of(status);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;
   // Its pages are taken in at once: all of it is about to be read.
   void* memory = mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, file_, 0);
   if (memory == MAP_FAILED) fail(path, std::string("cannot be mapped: ") + std::strerror(errno));
   bytes_ = {static_cast<const std::byte*>(memory), size};
-  MappingGuard::add(*this);
+  MappingGuard::add(bytes_);
 }
 
 MappedFile::~MappedFile() {
   if (!bytes_.empty()) {
-    MappingGuard::remove(*this);
+    MappingGuard::remove(bytes_);
     munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
   }
   close(file_);
 }
 
+// The descriptor stays with the file that is mapped, whatever its name means by now.
 bool MappedFile::is_whole() const {
   struct stat status {};
-  return fstat(file_, &status) == 0 && static_cast<std::size_t>(status.st_size) >= bytes_.size();
+  return fstat(file_, &status) == 0 && static_cast<std::size_t>(status.st_size) == bytes_.size() &&
+         modified_of(status) == modified_;
 }
 
 }  // namespace trapeze

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
 namespace trapeze {
 
 /// Must not be written to while it is mapped; replacing it (by rename) or removing it does no harm.
-/// If it is truncated nevertheless, the missing bytes read as zeros, and is_whole() is false.
+/// If it is written to nevertheless, is_whole() is false; bytes that it has no more read as zeros.
 /// Thread-safety: any number of threads may read.
 class MappedFile {
  public:
@@ -20,15 +21,14 @@ class MappedFile {
 
   /// Begins at a page boundary.
   std::span<const std::byte> bytes() const { return bytes_; }
-  /// Whether the file is still as long as it was.
+  /// Whether the file still has the size and the time of its last change that it had.
   bool is_whole() const;
 
  private:
-  friend class MappingGuard;
-
   void map(const std::string& path);
 
   int file_;
+  std::int64_t modified_ = 0;  // nanoseconds since 1970
   std::span<const std::byte> bytes_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/io/source/ring_reader.h"
 #include "core/io/source/source_name.h"
+#include "core/io/source/source_shortage.h"
 
 namespace trapeze {
 namespace {
@@ -26,6 +27,8 @@ int polygon_field(OGRFeatureDefn& definition) {
 FeatureSource::FeatureSource(const std::string& path, const SourceSelection& selection)
     : dataset_(open_source(path)), is_interleaved_(driver() == "OSM") {
   try {
+    const std::string shortage = shortage_of_files(*dataset_);
+    if (!shortage.empty()) throw SourceError(shortage);
     find_layers(selection);
   } catch (const SourceError& error) {
     throw std::runtime_error(name_of_source(path) + ": " + error.what());
@@ -49,6 +52,7 @@ void FeatureSource::find_layers(const SourceSelection& selection) {
       }
     }
   }
+  count_stored();
   if (!selection.where.empty()) apply_condition(selection.where);
   for (const SourceLayer& layer : layers_) expect(*layer.layer);
   messages_.clear();
@@ -76,7 +80,17 @@ void FeatureSource::add_layer(OGRLayer& layer, int geometry_field) {
   layers_.push_back({&layer, geometry_field, SourceCrs::describe(reference)});
 }
 
+/// Before there is a condition, which the count would go by.
+void FeatureSource::count_stored() {
+  const bool is_told = tells_feature_count(driver());
+  for (const SourceLayer& layer : layers_) {
+    const bool is_stored = is_told && layer.layer->TestCapability(OLCFastFeatureCount) != 0;
+    stored_.push_back(is_stored ? layer.layer->GetFeatureCount(FALSE) : -1);
+  }
+}
+
 void FeatureSource::apply_condition(const std::string& where) {
+  has_condition_ = true;
   for (const SourceLayer& layer : layers_) {
     messages_.clear();
     if (layer.layer->SetAttributeFilter(where.c_str()) != OGRERR_NONE) {
@@ -98,13 +112,13 @@ bool FeatureSource::next(SourceFeature& next) {
   if (next.feature != nullptr) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
-    return true;
   }
-  if (messages_.has_failure()) {
+  // One stream fails as a whole, though it may still give features from before that.
+  if (messages_.has_failure() && (next.feature == nullptr || is_interleaved_)) {
     throw SourceError("breaks off after " + std::to_string(read_) +
                       " features: " + messages_.text());
   }
-  return false;
+  return next.feature != nullptr;
 }
 
 OGRFeatureUniquePtr FeatureSource::next_of_layers(SourceFeature& next) {
@@ -112,9 +126,24 @@ OGRFeatureUniquePtr FeatureSource::next_of_layers(SourceFeature& next) {
     next.layer = &layers_[current_layer_];
     next.layer_index = current_layer_;
     OGRFeatureUniquePtr feature(next.layer->layer->GetNextFeature());
+    if (feature != nullptr) ++read_of_layer_;
     if (feature != nullptr || messages_.has_failure()) return feature;
+    check_all_was_read();
+    read_of_layer_ = 0;
   }
   return nullptr;
+}
+
+/// A format may end anywhere without GDAL noticing, such as a FlatGeobuf between two features.
+void FeatureSource::check_all_was_read() {
+  OGRLayer& layer = *layers_[current_layer_].layer;
+  const GIntBig stored = stored_[current_layer_];
+  if (read_of_layer_ >= stored) return;
+  const GIntBig readable = has_condition_ ? count_readable(layer) : read_of_layer_;
+  if (readable >= stored || messages_.has_failure()) return;
+  throw SourceError("is cut off or damaged: " + std::to_string(readable) + " of the " +
+                    std::to_string(stored) + " features of its layer \"" + layer.GetName() +
+                    "\" can be read");
 }
 
 OGRFeatureUniquePtr FeatureSource::next_interleaved(SourceFeature& next) {

@@ -32,8 +32,8 @@ struct SourceFeature {
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming the source, if it cannot be opened or lacks what is
-  /// selected.
+  /// Throws std::runtime_error, naming the source, if it cannot be opened, lacks what is selected,
+  /// or is known to be cut off.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
@@ -41,7 +41,8 @@ class FeatureSource {
   /// The number of features in layers that cannot hold polygons; next() skips them.
   std::size_t passed_over() const { return passed_over_; }
 
-  /// Reads the next feature; false at the end. Throws SourceError if the source breaks off.
+  /// Reads the next feature; false at the end. Throws SourceError if the source breaks off, or if
+  /// fewer features of a layer can be read than it says it has.
   bool next(SourceFeature& next);
 
   /// Share of the features that have been read, 0 to 1, or < 0 if unknown.
@@ -52,9 +53,11 @@ class FeatureSource {
   void find_only_layer(const std::string& name);
   void add_layer(OGRLayer& layer, int geometry_field);
   void apply_condition(const std::string& where);
+  void count_stored();
   OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
   OGRFeatureUniquePtr next_interleaved(SourceFeature& next);
   void expect(OGRLayer& layer);
+  void check_all_was_read();
 
   ReadingSettings settings_;
   GDALDatasetUniquePtr dataset_;
@@ -64,9 +67,13 @@ class FeatureSource {
   std::size_t passed_over_ = 0;
   GdalMessages messages_;
 
+  bool has_condition_ = false;
+  std::vector<GIntBig> stored_;  // by layer: the features it says it has, < 0 if it does not say
+
   std::size_t current_layer_ = 0;
   std::size_t read_ = 0;
-  double expected_ = 0;  // features in layers(), < 0 if unknown
+  GIntBig read_of_layer_ = 0;  // of the current one
+  double expected_ = 0;        // features in layers(), < 0 if unknown
   double interleaved_share_ = -1;
 };
 

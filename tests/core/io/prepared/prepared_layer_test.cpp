@@ -473,6 +473,24 @@ TEST_F(PreparedLayerTest, ThatCannotBeWrittenLeavesNothingBehind) {
                                                            ": No such file or directory"));
 }
 
+TEST_F(PreparedLayerTest, WrittenIntoWhileItIsMappedItIsNotWhole) {
+  prepare(kMixed, prepared_);
+  std::filesystem::permissions(prepared_, std::filesystem::perms::owner_all);
+  std::string bytes(std::filesystem::file_size(prepared_), '\0');
+  std::ifstream(prepared_, std::ios::binary)
+      .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  const auto before = std::filesystem::last_write_time(prepared_) - std::chrono::seconds(1);
+  std::filesystem::last_write_time(prepared_, before);
+  for (const std::string& written : {bytes, std::string(bytes.size(), '\0'), bytes + "more"}) {
+    std::ofstream(prepared_, std::ios::binary) << bytes;
+    std::filesystem::last_write_time(prepared_, before);
+    const LoadedLayer opened = open_prepared_layer(prepared_);
+    ASSERT_TRUE(opened.file->is_whole());
+    std::ofstream(prepared_, std::ios::binary) << written;
+    EXPECT_FALSE(opened.file->is_whole()) << written.size();
+  }
+}
+
 TEST_F(PreparedLayerTest, CutOffWhileItIsMappedReadsAsZerosAndIsNotWhole) {
   prepare(kMixed, prepared_);
   const std::uintmax_t size = std::filesystem::file_size(prepared_);

@@ -1,0 +1,209 @@
+#include "core/io/source/source_shortage.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <ogrsf_frmts.h>
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint64_t kShapeHeader = 100;  // bytes before the first record of .shp and .shx
+constexpr std::uint64_t kIndexRecord = 8;    // bytes of one of .shx: offset and length in words
+constexpr std::uint64_t kRecordHeader = 8;   // bytes of a record of .shp before what is counted
+constexpr std::size_t kIndexBlock = 8192;    // records of .shx that are read at once
+
+struct CloseFile {
+  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+};
+
+/// A file as GDAL finds it, which may lie in an archive.
+class SourceFile {
+ public:
+  explicit SourceFile(const std::string& path) : file_(VSIFOpenL(path.c_str(), "rb")) {}
+
+  bool is_open() const { return file_ != nullptr; }
+  std::uint64_t size() {
+    VSIFSeekL(file_.get(), 0, SEEK_END);
+    return VSIFTellL(file_.get());
+  }
+  /// As many bytes as there are.
+  std::vector<std::uint8_t> read(std::uint64_t offset, std::size_t bytes) {
+    std::vector<std::uint8_t> read(bytes);
+    VSIFSeekL(file_.get(), offset, SEEK_SET);
+    read.resize(VSIFReadL(read.data(), 1, bytes, file_.get()));
+    return read;
+  }
+
+ private:
+  std::unique_ptr<VSILFILE, CloseFile> file_;
+};
+
+std::uint32_t big_endian(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 |
+         std::uint32_t{bytes[2]} << 8 | bytes[3];
+}
+
+std::uint32_t little_endian_16(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
+}
+
+std::uint32_t little_endian_32(const std::uint8_t* bytes) {
+  return little_endian_16(bytes) | little_endian_16(bytes + 2) << 16;
+}
+
+std::string of_all(std::uint64_t part, std::uint64_t all, const std::string& what) {
+  return std::to_string(part) + " of its " + std::to_string(all) + " " + what;
+}
+
+/// How many of the records that a .shx lists end beyond so many bytes.
+std::uint64_t records_beyond(SourceFile& index, std::uint64_t records, std::uint64_t size) {
+  std::uint64_t beyond = 0;
+  for (std::uint64_t first = 0; first < records; first += kIndexBlock) {
+    const std::vector<std::uint8_t> block =
+        index.read(kShapeHeader + first * kIndexRecord, kIndexBlock * kIndexRecord);
+    for (std::size_t at = 0; at + kIndexRecord <= block.size(); at += kIndexRecord) {
+      const std::uint64_t offset = std::uint64_t{big_endian(&block[at])} * 2;
+      const std::uint64_t length = std::uint64_t{big_endian(&block[at + 4])} * 2;
+      if (length > 0 && offset + kRecordHeader + length > size) ++beyond;
+    }
+  }
+  return beyond;
+}
+
+/// The records of a .shx; it is whole, or GDAL would not have opened it.
+std::uint64_t records_of(SourceFile& index) {
+  const std::vector<std::uint8_t> header = index.read(0, kShapeHeader);
+  if (header.size() < kShapeHeader) return 0;
+  const std::uint64_t bytes = std::uint64_t{big_endian(&header[24])} * 2;
+  return bytes < kShapeHeader ? 0 : (bytes - kShapeHeader) / kIndexRecord;
+}
+
+struct TableSize {
+  std::uint64_t rows = 0;
+  std::uint64_t row_bytes = 0;
+  std::uint64_t header_bytes = 0;
+
+  /// Of a file of so many bytes.
+  std::uint64_t rows_in(std::uint64_t bytes) const {
+    if (bytes <= header_bytes || row_bytes == 0) return 0;
+    return std::min((bytes - header_bytes) / row_bytes, rows);
+  }
+};
+
+/// Nothing if the file is too short to say.
+std::optional<TableSize> size_of_table(SourceFile& table) {
+  constexpr std::size_t kFixedHeader = 32;
+  const std::vector<std::uint8_t> header = table.read(0, kFixedHeader);
+  if (header.size() < kFixedHeader) return std::nullopt;
+  return TableSize{little_endian_32(&header[4]), little_endian_16(&header[10]),
+                   little_endian_16(&header[8])};
+}
+
+std::string shortage_of_table(const std::string& path, std::optional<std::uint64_t> shapes) {
+  SourceFile table(path);
+  if (!table.is_open()) return {};
+  const std::uint64_t bytes = table.size();
+  const auto size = size_of_table(table);
+  if (!size || bytes < size->header_bytes) return "its .dbf is cut off within the header";
+  if (const std::uint64_t there = size->rows_in(bytes); there < size->rows) {
+    return "its .dbf is cut off: it holds " + of_all(there, size->rows, "rows");
+  }
+  if (shapes && *shapes != size->rows) {
+    return "its files do not belong together: the .shx lists " + std::to_string(*shapes) +
+           " shapes, the .dbf has " + std::to_string(size->rows) + " rows";
+  }
+  return {};
+}
+
+/// The file beside the shapes that ends so, in small or capital letters; empty if there is none.
+/// GDAL does not list one that it could not open.
+std::string beside(const std::string& shapes, const std::array<const char*, 2>& endings) {
+  for (const char* ending : endings) {
+    const std::string path = CPLResetExtension(shapes.c_str(), ending);
+    VSIStatBufL status;
+    if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0) return path;
+  }
+  return {};
+}
+
+std::string shortage_of_shapefile(const std::string& path) {
+  SourceFile shapes(path);
+  SourceFile index(beside(path, {"shx", "SHX"}));
+  std::optional<std::uint64_t> records;
+  if (shapes.is_open() && index.is_open()) {
+    records = records_of(index);
+    const std::uint64_t beyond = records_beyond(index, *records, shapes.size());
+    if (beyond > 0) {
+      return "its .shp is cut off: it holds " + of_all(*records - beyond, *records, "shapes");
+    }
+  }
+  const std::string table = beside(path, {"dbf", "DBF"});
+  return table.empty() ? std::string() : shortage_of_table(table, records);
+}
+
+std::string shortage_of_shapefiles(GDALDataset& dataset) {
+  const CPLStringList files(dataset.GetFileList());
+  for (int i = 0; i < files.Count(); ++i) {
+    if (!EQUAL(CPLGetExtension(files[i]), "shp")) continue;
+    std::string shortage = shortage_of_shapefile(files[i]);
+    if (!shortage.empty()) return shortage;
+  }
+  return {};
+}
+
+/// SQLite takes what is missing of its last page for zeros.
+std::string shortage_of_database(const std::string& path) {
+  constexpr std::string_view kBegin("SQLite format 3\0", 16);
+  SourceFile file(path);
+  if (!file.is_open()) return {};
+  const std::vector<std::uint8_t> header = file.read(0, 18);
+  if (header.size() < 18 || !std::equal(kBegin.begin(), kBegin.end(), header.begin())) return {};
+  const std::uint64_t stored = std::uint64_t{header[16]} << 8 | header[17];
+  const std::uint64_t page = stored == 1 ? 65536 : stored;
+  const std::uint64_t over = page == 0 ? 0 : file.size() % page;
+  if (over == 0) return {};
+  return "is cut off: its last page lacks " + of_all(page - over, page, "bytes");
+}
+
+}  // namespace
+
+std::string shortage_of_files(GDALDataset& dataset) {
+  const std::string driver = dataset.GetDriverName();
+  if (driver == "ESRI Shapefile") return shortage_of_shapefiles(dataset);
+  if (driver == "GPKG" || driver == "SQLite") return shortage_of_database(dataset.GetDescription());
+  return {};
+}
+
+// A Shapefile is not among them: it counts rows that are marked as deleted, which are not read.
+bool tells_feature_count(const std::string& driver) {
+  constexpr std::array<std::string_view, 5> kDrivers = {"FlatGeobuf", "GPKG", "SQLite",
+                                                        "OpenFileGDB", "Parquet"};
+  return std::ranges::find(kDrivers, driver) != kDrivers.end();
+}
+
+GIntBig count_readable(OGRLayer& layer) {
+  OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  CPLStringList ignored;
+  for (int i = 0; i < definition.GetFieldCount(); ++i) {
+    ignored.AddString(definition.GetFieldDefn(i)->GetNameRef());
+  }
+  ignored.AddString("OGR_GEOMETRY");
+  layer.SetAttributeFilter(nullptr);
+  layer.SetIgnoredFields(const_cast<const char**>(ignored.List()));
+  layer.ResetReading();
+  GIntBig count = 0;
+  while (OGRFeatureUniquePtr(layer.GetNextFeature()) != nullptr) ++count;
+  layer.SetIgnoredFields(nullptr);
+  return count;
+}
+
+}  // namespace trapeze
