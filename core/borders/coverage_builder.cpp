@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -15,12 +16,17 @@
 namespace trapeze {
 namespace {
 
-std::vector<OwnedSegment> node(const std::vector<OwnedSegment>& segments, HotCells cells) {
+/// None if they meet too often.
+std::optional<std::vector<OwnedSegment>> node(const std::vector<OwnedSegment>& segments,
+                                              HotCells cells) {
   std::vector<Segment> alone;
   alone.reserve(segments.size());
   for (const OwnedSegment& s : segments) alone.push_back(s.segment);
+  const std::optional<std::vector<Piece>> noded = node_pieces(alone, cells);
+  if (!noded) return std::nullopt;
   std::vector<OwnedSegment> pieces;
-  for (const Piece& piece : node_pieces(alone, cells)) {
+  pieces.reserve(noded->size());
+  for (const Piece& piece : *noded) {
     pieces.push_back({piece.segment, segments[piece.source].owner});
   }
   return pieces;
@@ -106,8 +112,14 @@ struct SetMap {
     for (int pass = 0; pass <= kMaxPasses; ++pass) {
       if (pass > 0) {
         outcome.noded = true;
-        pieces = node(
+        std::optional<std::vector<OwnedSegment>> noded = node(
             pieces, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+        if (!noded) {
+          outcome.failure = "their borders cross more than " +
+                            std::to_string(most_meetings(pieces.size())) + " times";
+          return false;
+        }
+        pieces = std::move(*noded);
       }
       borders = unite(pieces, sets);
       if (borders.segments.empty()) return false;

@@ -58,7 +58,7 @@ class PlacedSegments {
   /// Calls visit(number) for every segment whose box meets `box`.
   template <class Visit>
   void query(const Box& box, const Visit& visit) const {
-    tree_.query(box, 0, [&](std::size_t leaf) {
+    tree_.query(box, [&](std::size_t leaf) {
       for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree_.leaf_end(leaf); ++i) {
         if (box_of(ordered_[i]).intersects(box)) visit(order_[i].second);
       }
