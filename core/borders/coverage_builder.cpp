@@ -353,7 +353,9 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
   }
   const auto is_narrow = [&](RegionId hole) {
     const Gap& gap = gaps[hole.value];
-    return gap.neighbours.faces() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
+    return gap.neighbours.faces() > 1 &&
+           regions.area[hole] <=
+               gap.reach * std::min(gap.border / 2, gap.neighbours.greatest_length());
   };
   for (std::size_t e = 0; e < sides.size(); ++e) {
     for (const Side s : {kLeft, kRight}) {
@@ -435,6 +437,17 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
 }
 
 }  // namespace
+
+Overlay overlay(std::span<const Rings* const> features) {
+  CoverageOutcome outcome;
+  outcome.areas.assign(features.size(), 0);
+  SetMap map{segments_of(features)};
+  Boundary boundary;
+  Trapezoidation trapezoidation;
+  TrapezoidalGraph graph;
+  if (map.sweep(boundary, trapezoidation, graph, outcome)) note_areas(graph, map.sets, outcome);
+  return {std::move(outcome.overlaps), std::move(outcome.areas), std::move(outcome.failure)};
+}
 
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
                                        const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
