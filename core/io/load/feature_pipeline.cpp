@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
+#include "core/borders/part_union.h"
 #include "core/io/load/bounded_queue.h"
 #include "core/sweep/clean_rings.h"
 
@@ -88,6 +89,7 @@ class FeaturePipeline::Lane {
     tally.rings += feature.source_rings;
     tally.source_vertices += feature.vertices;
     if (!feature.failure.empty()) return tally.skip(job.key, feature.failure);
+    unite_parts_of(job.key, feature);
     if (are_to_wait_) tally.collapsed_rings += clean_rings(feature.rings);
     if (feature.rings.empty()) {
       ++tally.empty;
@@ -119,6 +121,15 @@ class FeaturePipeline::Lane {
   FeatureTally tally;
 
  private:
+  void unite_parts_of(const FeatureKey& key, FeatureRings& feature) {
+    const PartUnion parts = unite_parts(feature.rings, feature.part_ends);
+    if (!parts.failure.empty()) {
+      tally.remark(key, "its parts cannot be united where they overlap: " + parts.failure);
+    } else if (parts.did_overlap) {
+      tally.remark(key, "united: its parts overlap");
+    }
+  }
+
   void begin(double work) {
     worker_.share().enter(0, 1);
     at_hand_ = work;
