@@ -225,13 +225,26 @@ inline Rings battlement(std::size_t vertices) {
   return rings;
 }
 
+/// A sun: spikes around a circle, whose tips are all on the convex hull.
+inline Rings spiky_star(std::size_t vertices) {
+  const double step = 2 * std::numbers::pi / static_cast<double>(vertices);
+  Rings rings;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const double angle = step * static_cast<double>(i);
+    const double radius = (i % 2 == 0 ? 1 : 0.5) * kFamilyReach;
+    rings.points.push_back(cell_at(radius * std::cos(angle), radius * std::sin(angle)));
+  }
+  rings.close_ring();
+  return rings;
+}
+
 /// A family that grows: make(n) has about n vertices, n >= 20.
 struct PolygonFamily {
   std::string_view name;
   Rings (*make)(std::size_t vertices);
 };
 
-constexpr std::array<PolygonFamily, 9> kPolygonFamilies{{
+constexpr std::array<PolygonFamily, 10> kPolygonFamilies{{
     {"wiggly_star", wiggly_star},
     {"long_edges", long_edges},
     {"comb", comb},
@@ -241,6 +254,7 @@ constexpr std::array<PolygonFamily, 9> kPolygonFamilies{{
     {"zigzag", zigzag},
     {"staircase", staircase},
     {"battlement", battlement},
+    {"spiky_star", spiky_star},
 }};
 
 }  // namespace trapeze

@@ -2,8 +2,83 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace trapeze {
+namespace {
+
+/// The greatest and the least of what is measured.
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void include(double value) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+};
+
+/// Of successive corners of a side the last one up to which each lies farther in the direction (x,
+/// y) than the one before. A side turns by less than half a circle: if it goes back first, its
+/// farthest corner is at one of its ends.
+Point climb(std::span<const Point> side, std::int64_t x, std::int64_t y) {
+  const auto goes_on = [&](std::size_t i) {
+    return static_cast<Int128>(x) * (std::int64_t{side[i + 1].x} - side[i].x) +
+               static_cast<Int128>(y) * (std::int64_t{side[i + 1].y} - side[i].y) >
+           0;
+  };
+  std::size_t from = 0;
+  std::size_t to = side.size() - 1;
+  while (from < to) {
+    const std::size_t middle = (from + to) / 2;
+    if (goes_on(middle)) {
+      from = middle + 1;
+    } else {
+      to = middle;
+    }
+  }
+  return side[from];
+}
+
+}  // namespace
+
+double SegmentDistance::squared_bound(std::span<const Point> hull) const {
+  constexpr std::size_t kFewCorners = 32;
+  if (hull.size() <= kFewCorners) {
+    double bound = 0;
+    for (const Point p : hull) bound = std::max(bound, squared(p));
+    return bound;
+  }
+  const auto bottom = std::partition_point(hull.begin() + 1, hull.end(),
+                                           [&](const Point& p) { return is_above(*(&p - 1), p); });
+  const std::span<const Point> right(hull.begin(), bottom);
+  const std::span<const Point> left(bottom - 1, hull.end());
+  // The box around the hull whose sides are parallel to the segment. Any direction will do for one
+  // that is a point.
+  const bool is_point = squared_length_ == 0;
+  const std::int64_t dx = is_point ? 1 : std::int64_t{b_.x} - a_.x;
+  const std::int64_t dy = is_point ? 0 : std::int64_t{b_.y} - a_.y;
+  Range along;
+  Range across;
+  const auto include = [&](Point p) {
+    const double px = static_cast<double>(p.x) - a_.x;
+    const double py = static_cast<double>(p.y) - a_.y;
+    along.include(px * static_cast<double>(dx) + py * static_cast<double>(dy));
+    across.include(static_cast<double>(dx) * py - static_cast<double>(dy) * px);
+  };
+  include(right.front());
+  include(right.back());
+  for (const auto& side : {right, left}) {
+    for (const std::int64_t sign : {-1, 1}) {
+      include(climb(side, sign * dx, sign * dy));
+      include(climb(side, -sign * dy, sign * dx));
+    }
+  }
+  const double beyond = std::max({0.0, -along.least, along.greatest - squared_length_});
+  const double aside = std::max(-across.least, across.greatest);
+  return (beyond * beyond + aside * aside) * (is_point ? 1 : inverse_);
+}
 
 struct FarthestVertex::Search {
   SegmentDistance distance;
@@ -116,14 +191,12 @@ void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_
   descend(top, 0, bound_of(top, 0, search), search);
 }
 
-/// No vertex in the hull is farther away, not even by rounding; negative if none is asked for. The
-/// distance is convex, so it is greatest at a corner.
+/// No vertex in the hull is farther away, not even by rounding; negative if none is asked for.
 double FarthestVertex::bound_of(std::size_t row, std::size_t index, const Search& search) const {
   const std::size_t vertices = kLeaf << row;
   if (index * vertices >= search.range_end || (index + 1) * vertices <= search.range_begin)
     return -1;
-  double bound = 0;
-  for (const Point p : rows_[row][index]) bound = std::max(bound, search.distance.squared(p));
+  const double bound = search.distance.squared_bound(rows_[row][index]);
   // Twice the greatest error of a distance by rounding.
   constexpr double kRounding = 4e-6;
   return bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding;

@@ -44,6 +44,11 @@ class SegmentDistance {
     return across * across * inverse_;
   }
 
+  /// No point of a convex hull is farther away: the greatest distance of a corner if it has few of
+  /// them, and up to half as much again if not, in logarithmic time. The corners go from the top
+  /// along the right side to the bottom and along the left side back.
+  double squared_bound(std::span<const Point> hull) const;
+
  private:
   Point a_, b_;
   double dx_, dy_, squared_length_, inverse_;

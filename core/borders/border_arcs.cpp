@@ -1,6 +1,7 @@
 #include "core/borders/border_arcs.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/sweep/boundary_walk.h"
 
@@ -27,18 +28,20 @@ void sort_around(Point centre, std::vector<Spoke>& spokes) {
 // neighbours: between them lies the region that was on both sides of the pair.
 std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spokes) {
   std::vector<std::pair<EdgeId, EdgeId>> pairs;
-  std::vector<Spoke> circle = spokes;
-  for (bool found = true; found && circle.size() > 1;) {
-    found = false;
-    for (std::size_t i = 0; i < circle.size() && !found; ++i) {
-      const std::size_t next = i + 1 < circle.size() ? i + 1 : 0;
-      if (circle[i].before != circle[next].following) continue;
-      found = true;
-      pairs.emplace_back(circle[i].edge, circle[next].edge);
-      for (const std::size_t k : {std::max(i, next), std::min(i, next)}) {
-        circle.erase(circle.begin() + static_cast<std::ptrdiff_t>(k));
-      }
+  std::vector<Spoke> left;  // those up to the present one that have no partner
+  for (const Spoke& spoke : spokes) {
+    if (!left.empty() && left.back().before == spoke.following) {
+      pairs.emplace_back(left.back().edge, spoke.edge);
+      left.pop_back();
+    } else {
+      left.push_back(spoke);
     }
+  }
+  // Where the circle closes.
+  std::span<const Spoke> open(left);
+  while (open.size() > 1 && open.back().before == open.front().following) {
+    pairs.emplace_back(open.back().edge, open.front().edge);
+    open = open.subspan(1, open.size() - 2);
   }
   return pairs;
 }

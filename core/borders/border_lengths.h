@@ -36,14 +36,22 @@ class BorderLengths {
   /// The face with the longest border, the one of the smallest number if there are several;
   /// kOutside if there is none.
   FaceId longest() const {
-    const auto found =
-        std::min_element(lengths_.begin(), lengths_.end(), [](const auto& a, const auto& b) {
-          return a.second != b.second ? a.second > b.second : a.first < b.first;
-        });
+    const auto found = find_longest();
     return found == lengths_.end() ? kOutside : found->first;
+  }
+  /// Of that border; 0 if there is none.
+  double greatest_length() const {
+    const auto found = find_longest();
+    return found == lengths_.end() ? 0 : found->second;
   }
 
  private:
+  std::vector<std::pair<FaceId, double>>::const_iterator find_longest() const {
+    return std::min_element(lengths_.begin(), lengths_.end(), [](const auto& a, const auto& b) {
+      return a.second != b.second ? a.second > b.second : a.first < b.first;
+    });
+  }
+
   std::vector<std::pair<FaceId, double>> lengths_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -15,34 +16,49 @@
 namespace trapeze {
 namespace {
 
-std::vector<OwnedSegment> node(const std::vector<OwnedSegment>& segments, HotCells cells) {
+constexpr const char* kTooManyOverEachOther = "too many of its features lie over each other";
+
+/// None if they meet too often.
+std::optional<std::vector<OwnedSegment>> node(const std::vector<OwnedSegment>& segments,
+                                              HotCells cells) {
   std::vector<Segment> alone;
   alone.reserve(segments.size());
   for (const OwnedSegment& s : segments) alone.push_back(s.segment);
+  const std::optional<std::vector<Piece>> noded = node_pieces(alone, cells);
+  if (!noded) return std::nullopt;
   std::vector<OwnedSegment> pieces;
-  for (const Piece& piece : node_pieces(alone, cells)) {
+  pieces.reserve(noded->size());
+  for (const Piece& piece : *noded) {
     pieces.push_back({piece.segment, segments[piece.source].owner});
   }
   return pieces;
 }
 
-/// Numbers for small sets of features, each in ascending order; 0 is the empty one.
+/// Numbers for small sets of features, each in ascending order; 0 is the empty one. Once they have
+/// more than kMostMembers in all, every new set is the empty one.
 class FeatureSets {
  public:
   FeatureSets() { number({}); }
 
   std::uint32_t number(const std::vector<std::uint32_t>& features) {
+    if (is_full()) return 0;
     const auto [found, is_new] =
         numbers_.try_emplace(features, static_cast<std::uint32_t>(sets_.size()));
-    if (is_new) sets_.push_back(features);
+    if (is_new) {
+      sets_.push_back(features);
+      members_ += features.size();
+    }
     return found->second;
   }
+
+  bool is_full() const { return members_ > kMostMembers; }
 
   const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
   std::size_t size() const { return sets_.size(); }
 
   /// The features that are in one of two sets and not in the other.
   std::uint32_t toggled(std::uint32_t a, std::uint32_t b) {
+    if (is_full()) return 0;
     const std::uint64_t key = std::uint64_t{a} << 32 | b;
     const auto [found, is_new] = toggled_.try_emplace(key, 0);
     if (is_new) {
@@ -54,8 +70,11 @@ class FeatureSets {
   }
 
  private:
+  static constexpr std::size_t kMostMembers = std::size_t{1} << 23;  // kept twice: 64 MiB
+
   std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
   std::vector<std::vector<std::uint32_t>> sets_;
+  std::size_t members_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
 };
 
@@ -106,13 +125,24 @@ struct SetMap {
     for (int pass = 0; pass <= kMaxPasses; ++pass) {
       if (pass > 0) {
         outcome.noded = true;
-        pieces = node(
+        std::optional<std::vector<OwnedSegment>> noded = node(
             pieces, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+        if (!noded) {
+          outcome.failure = "their borders cross more than " +
+                            std::to_string(most_meetings(pieces.size())) + " times";
+          return false;
+        }
+        pieces = std::move(*noded);
       }
       borders = unite(pieces, sets);
       if (borders.segments.empty()) return false;
       boundary.assign(borders.segments);
-      if (trapezoidation.build(boundary, toggle, graph)) return true;
+      const bool is_noded = trapezoidation.build(boundary, toggle, graph);
+      if (sets.is_full()) {
+        outcome.failure = kTooManyOverEachOther;
+        return false;
+      }
+      if (is_noded) return true;
     }
     outcome.failure =
         "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
@@ -196,7 +226,7 @@ class OverlapAreas {
 /// The areas and overlaps of the features of a subdivision. Returns false, with the reason as
 /// failure, if more features overlap than can be counted in a second or two.
 bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutcome& outcome) {
-  constexpr std::size_t kMostPairs = std::size_t{1} << 24;
+  constexpr std::size_t kMostPairs = std::size_t{1} << 23;
   OverlapAreas areas(outcome.areas.size());
   Crossing crossing;
   std::size_t pairs = 0;
@@ -206,7 +236,7 @@ bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
     crossing.assign(sets[edge.face[kLeft]], sets[edge.face[kRight]]);
     pairs += crossing.pairs();
     if (pairs > kMostPairs) {
-      outcome.failure = "too many of its features lie over each other";
+      outcome.failure = kTooManyOverEachOther;
       return false;
     }
     areas.add(crossing, doubled_strip(g, edge));
@@ -323,7 +353,9 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
   }
   const auto is_narrow = [&](RegionId hole) {
     const Gap& gap = gaps[hole.value];
-    return gap.neighbours.faces() > 1 && regions.area[hole] <= gap.reach * gap.border / 2;
+    return gap.neighbours.faces() > 1 &&
+           regions.area[hole] <=
+               gap.reach * std::min(gap.border / 2, gap.neighbours.greatest_length());
   };
   for (std::size_t e = 0; e < sides.size(); ++e) {
     for (const Side s : {kLeft, kRight}) {
@@ -368,16 +400,54 @@ void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOu
     }
   }
   outcome.gaps = static_cast<std::size_t>(std::count(is_gap.begin(), is_gap.end(), true));
+}
+
+/// The vertex of every end of an arc, in ascending order.
+std::vector<VertexId> ends_of_arcs(const TrapezoidalGraph& g) {
   std::vector<VertexId> ends;
   for (const Corner& corner : g.corners()) {
     if (corner.is_end()) ends.push_back(corner.vertex);
   }
   std::sort(ends.begin(), ends.end());
-  outcome.junctions =
-      static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+  return ends;
+}
+
+std::size_t count_distinct(const std::vector<VertexId>& sorted) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) count += i == 0 || sorted[i - 1] != sorted[i];
+  return count;
+}
+
+/// Whenever a region disappears, all arcs that end at its junctions are looked at: the squares of
+/// their numbers must not add up to more than a fraction of a second's work. The reason if they do,
+/// or empty.
+std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t edges) {
+  constexpr std::size_t kMostTogether = std::size_t{1} << 24;  // 4,096 at one vertex
+  constexpr std::size_t kMostPerEdge = 256;
+  std::size_t squares = 0;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < ends.size();) {
+    const std::size_t begin = i;
+    while (i < ends.size() && ends[i] == ends[begin]) ++i;
+    squares += (i - begin) * (i - begin);
+    most = std::max(most, i - begin);
+  }
+  if (squares <= kMostTogether + kMostPerEdge * edges) return {};
+  return "up to " + std::to_string(most) + " borders meet at one vertex";
 }
 
 }  // namespace
+
+Overlay overlay(std::span<const Rings* const> features) {
+  CoverageOutcome outcome;
+  outcome.areas.assign(features.size(), 0);
+  SetMap map{segments_of(features)};
+  Boundary boundary;
+  Trapezoidation trapezoidation;
+  TrapezoidalGraph graph;
+  if (map.sweep(boundary, trapezoidation, graph, outcome)) note_areas(graph, map.sets, outcome);
+  return {std::move(outcome.overlaps), std::move(outcome.areas), std::move(outcome.failure)};
+}
 
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
                                        const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
@@ -415,9 +485,13 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     BorderArcs::name_faces(sides, graph);
   }
   tell(0.8);
-  outcome.built = true;
   const Regions regions(graph);
   arcs_.trace(boundary_, static_cast<FaceId>(features.size()), regions, graph);
+  const std::vector<VertexId> ends = ends_of_arcs(graph);
+  outcome.failure = crowd_at_a_junction(ends, graph.edges().size());
+  if (!outcome.failure.empty()) return outcome;
+  outcome.built = true;
+  outcome.junctions = count_distinct(ends);
   count_borders(graph, regions, outcome);
   return outcome;
 }

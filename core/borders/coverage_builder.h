@@ -50,16 +50,27 @@ struct CoverageTolerance {
   double widest_gap = 0;    // metres on the ground
 };
 
+/// Where features lie over each other.
+struct Overlay {
+  std::vector<Overlap> overlaps;  // in order of their features
+  std::vector<double> areas;      // of each feature by itself, cells squared
+  std::string failure;            // why it could not be found, empty otherwise
+};
+
+/// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
+Overlay overlay(std::span<const Rings* const> features);
+
 /// Holds working memory for reuse; one thread at a time.
 class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
   /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the area
   /// belongs to the last one. Gaps whose mean width (area over half of the border) is at most
-  /// `widest_gap` become a part of the feature with the longest border. Of features that overlap by
-  /// more than is tolerated, those that share the fewest edges with neighbours are left out. If
-  /// fewer than two remain, nothing is built. Never throws for bad geometry: `graph` is meaningful
-  /// only if the outcome says built. Tells `share`, if there is one, how far it is.
+  /// `widest_gap` become a part of the feature with the longest border, if their area is at most
+  /// that border times `widest_gap`. Of features that overlap by more than is tolerated, those that
+  /// share the fewest edges with neighbours are left out. If fewer than two remain, nothing is
+  /// built. Never throws for bad geometry: `graph` is meaningful only if the outcome says built.
+  /// Tells `share`, if there is one, how far it is.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
                         TrapezoidalGraph& graph, WorkShare* share = nullptr);
 

@@ -8,7 +8,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/grid/rings.h"
 
@@ -17,18 +20,27 @@ namespace trapeze {
 /// The greatest width of a gap that may be closed, in metres.
 constexpr double kWidestGap = 1000;
 
-/// What close_gaps() has done.
+/// What close_gaps() has done. Features are given by their positions, in ascending order.
 struct GapClosing {
-  std::size_t moved = 0;  // vertices moved to a vertex of another feature
-  std::size_t led = 0;    // vertices through which edges of other features were routed
+  std::size_t moved = 0;              // vertices moved to a vertex of another feature
+  std::size_t led = 0;                // vertices through which edges of other features were routed
+  std::vector<Rings> drawn;           // by feature: its rings as they were, empty if unchanged
+  std::vector<std::uint32_t> narrow;  // took no part: their area is less than their boundary's
+                                      // length times the distance
+  std::vector<std::uint32_t> kept;  // took no part: they would have overlapped, or changed by more
+  std::string failure;              // why nothing was closed, empty otherwise
 };
 
 /// Makes borders of different features coincide where they are at most `metres` apart on the
 /// ground; 0 < metres <= kWidestGap. A vertex moves by no more than that, and not to a place where
 /// one of its features already has a vertex, so that the shape of a feature is not simplified; the
-/// edges beside it may bend by as much again. Rings are clean before and after (see clean_rings.h);
-/// features that were narrower than a gap may have none left. The result depends on the features
-/// and their order only.
+/// edges beside it may bend by as much again. No feature changes its area by more than the length
+/// of its boundary times the distance, and no two come to overlap by more than before, but for a
+/// strip of one cell: features that would, and those so narrow that nothing of their shape is
+/// certain to be left, stay as they are, with all that others have in common with them, and attract
+/// no others. Closes nothing if too much lies within the distance to be looked at in a few seconds,
+/// or if it comes to no end. Rings are clean before and after (see clean_rings.h). The result
+/// depends on the features and their order only.
 GapClosing close_gaps(std::span<Rings* const> features, double metres);
 
 }  // namespace trapeze

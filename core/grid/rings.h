@@ -33,6 +33,8 @@ struct Rings {
   }
   /// Ends the ring whose points have been appended to `points` since the last one.
   void close_ring() { ends.push_back(static_cast<std::uint32_t>(points.size())); }
+
+  friend bool operator==(const Rings&, const Rings&) = default;
 };
 
 }  // namespace trapeze

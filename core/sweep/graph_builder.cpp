@@ -1,5 +1,6 @@
 #include "core/sweep/graph_builder.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,8 +38,14 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
   constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
-    segments = node_segments(
+    std::optional<std::vector<Segment>> noded = node_segments(
         segments, pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+    if (!noded) {
+      outcome.failure =
+          "crosses itself more than " + std::to_string(most_meetings(segments.size())) + " times";
+      return false;
+    }
+    segments = std::move(*noded);
     if (segments.empty()) return false;  // everything cancelled: no area
     boundary_.assign(segments);
     if (trapezoidation_.build(boundary_, graph)) {

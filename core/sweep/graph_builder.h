@@ -26,8 +26,9 @@ struct BuildOutcome {
 class GraphBuilder {
  public:
   /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed
-  /// rings; nodes crossings, touches and overlaps on the grid. `rings` are cleaned in place. Never
-  /// throws for bad geometry: `graph` is meaningful only if the outcome says built.
+  /// rings; nodes crossings, touches and overlaps on the grid, as long as there are not too many
+  /// (see most_meetings() in noding.h). `rings` are cleaned in place. Never throws for bad
+  /// geometry: `graph` is meaningful only if the outcome says built.
   BuildOutcome build(Rings& rings, TrapezoidalGraph& graph);
 
  private:

@@ -3,57 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/sweep/meetings.h"
 #include "core/sweep/segment_tree.h"
 
 namespace trapeze {
 namespace {
-
-/// floor(a / b + 1/2) for b > 0.
-Int128 round_half_up(Int128 a, Int128 b) {
-  const Int128 n = 2 * a + b;
-  const Int128 d = 2 * b;
-  Int128 q = n / d;
-  if (n % d < 0) --q;
-  return q;
-}
-
-int sign(std::int64_t v) {
-  return (v > 0) - (v < 0);
-}
-
-/// Appends where two segments meet, other than at a common end: the rounded crossing of their
-/// interiors, or the ends of one that lie on the other.
-void add_meetings(const Segment& s, const Segment& t, std::vector<Point>& points) {
-  const std::int64_t s1 = orientation(t.first, t.second, s.first);
-  const std::int64_t s2 = orientation(t.first, t.second, s.second);
-  if (sign(s1) * sign(s2) > 0) return;
-  const std::int64_t t1 = orientation(s.first, s.second, t.first);
-  const std::int64_t t2 = orientation(s.first, s.second, t.second);
-  if (sign(t1) * sign(t2) > 0) return;
-  if (sign(s1) * sign(s2) < 0 && sign(t1) * sign(t2) < 0) {
-    // Along s the orientation to t goes linearly from s1 to s2: it is 0 at the share s1 / (s1 -
-    // s2).
-    Int128 num = s1;
-    Int128 den = static_cast<Int128>(s1) - s2;
-    if (den < 0) {
-      num = -num;
-      den = -den;
-    }
-    const auto at = [&](std::int32_t a, std::int32_t b) {
-      return static_cast<std::int32_t>(a + round_half_up((static_cast<Int128>(b) - a) * num, den));
-    };
-    points.push_back({at(s.first.x, s.second.x), at(s.first.y, s.second.y)});
-    return;
-  }
-  const auto add_end = [&points](Point p, std::int64_t side, const Segment& other) {
-    if (side != 0 || p == other.first || p == other.second) return;
-    if (box_of(other).intersects(Box{p.x, p.y, p.x, p.y})) points.push_back(p);
-  };
-  add_end(s.first, s1, t);
-  add_end(s.second, s2, t);
-  add_end(t.first, t1, s);
-  add_end(t.second, t2, s);
-}
 
 /// The segment meets the cell around `centre`, which owns its upper and left side but not its lower
 /// and right one, so that the cells share no point: like the rounding of crossings.
@@ -83,77 +37,101 @@ bool passes_cell(const Segment& s, Point centre) {
   return left && right;
 }
 
-/// A hot cell that a segment passes through.
-struct Pass {
-  std::uint32_t segment;
-  Point hot;
+/// The points at which a segment may be routed, as a region of the map: cells reach half a cell
+/// beyond their centres, so a segment that passes a cell away is looked at as well.
+class Reach {
+ public:
+  explicit Reach(const Segment& s) : from_(s.first), to_(s.second), box_(widened(box_of(s))) {}
+
+  /// Whether it may meet the box; exact but for the cell around it.
+  bool intersects(const Box& box) const {
+    if (!box_.intersects(box)) return false;
+    // The line separates the box from itself if two opposite corners, those farthest across the
+    // line, lie on one side.
+    const Box wide = widened(box);
+    const bool falls = (from_.x < to_.x) == (from_.y < to_.y);
+    const Point a{wide.min_x, falls ? wide.max_y : wide.min_y};
+    const Point b{wide.max_x, falls ? wide.min_y : wide.max_y};
+    const std::int64_t side_a = orientation(from_, to_, a);
+    const std::int64_t side_b = orientation(from_, to_, b);
+    return !(side_a > 0 && side_b > 0) && !(side_a < 0 && side_b < 0);
+  }
+
+ private:
+  static Box widened(const Box& box) {
+    return {box.min_x - 1, box.min_y - 1, box.max_x + 1, box.max_y + 1};
+  }
+
+  Point from_;
+  Point to_;
+  Box box_;
 };
 
-std::vector<Point> hot_cells(const std::vector<Segment>& segments, const SegmentTree& tree,
-                             HotCells cells) {
-  std::vector<Point> hot;
-  // A leaf at a time: its segments are near each other and have the same neighbours.
-  for (std::size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
-    tree.query(tree.leaf_box(leaf), leaf, [&](std::size_t other) {
-      for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
-        const Box box = box_of(segments[i]);
-        if (!box.intersects(tree.leaf_box(other))) continue;
-        for (std::size_t k = std::max(i + 1, SegmentTree::leaf_begin(other));
-             k < tree.leaf_end(other); ++k) {
-          if (box_of(segments[k]).intersects(box)) add_meetings(segments[i], segments[k], hot);
-        }
-      }
-    });
-  }
-  if (cells == HotCells::crossings_and_vertices) {
+std::optional<std::vector<Point>> hot_cells(const std::vector<Segment>& segments, HotCells cells) {
+  std::optional<std::vector<Point>> hot = find_meetings(segments, most_meetings(segments.size()));
+  if (hot && cells == HotCells::crossings_and_vertices) {
     for (const Segment& segment : segments) {
-      hot.push_back(segment.first);
-      hot.push_back(segment.second);
+      hot->push_back(segment.first);
+      hot->push_back(segment.second);
     }
+    std::sort(hot->begin(), hot->end(), is_above);
+    hot->erase(std::unique(hot->begin(), hot->end()), hot->end());
   }
-  std::sort(hot.begin(), hot.end(), is_above);
-  hot.erase(std::unique(hot.begin(), hot.end()), hot.end());
   return hot;
 }
 
-/// All passes, by segment.
-std::vector<Pass> find_passes(const std::vector<Segment>& segments, const SegmentTree& tree,
-                              const std::vector<Point>& hot) {
-  std::vector<Pass> passes;
-  for (const Point p : hot) {
-    // A cell reaches half a cell beyond its centre, so a segment that ends a cell away can touch
-    // it.
-    const Box around{p.x - 1, p.y - 1, p.x + 1, p.y + 1};
-    tree.query(around, 0, [&](std::size_t leaf) {
-      for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree.leaf_end(leaf); ++i) {
-        if (passes_cell(segments[i], p)) passes.push_back({static_cast<std::uint32_t>(i), p});
+/// Hot cells, in an order and under a tree in which those near each other are found together.
+class HotTree {
+ public:
+  explicit HotTree(const std::vector<Point>& hot) : cells_(in_order(hot)), tree_(cells_) {}
+
+  /// Appends the cells through which the segment passes.
+  void append_passed(const Segment& segment, std::vector<Point>& passed) const {
+    tree_.query(Reach(segment), [&](std::size_t leaf) {
+      for (std::size_t i = SegmentTree::leaf_begin(leaf); i < tree_.leaf_end(leaf); ++i) {
+        if (passes_cell(segment, cells_[i].first)) passed.push_back(cells_[i].first);
       }
     });
   }
-  std::stable_sort(passes.begin(), passes.end(),
-                   [](const Pass& a, const Pass& b) { return a.segment < b.segment; });
-  return passes;
-}
+
+ private:
+  static std::vector<Segment> in_order(const std::vector<Point>& hot) {
+    std::vector<Segment> cells;
+    cells.reserve(hot.size());
+    for (const Point p : hot) cells.emplace_back(p, p);
+    std::vector<Segment> ordered;
+    ordered.reserve(cells.size());
+    for (const auto& [place, i] : order_by_place(cells)) ordered.push_back(cells[i]);
+    return ordered;
+  }
+
+  std::vector<Segment> cells_;
+  SegmentTree tree_;
+};
 
 void add_piece(Point a, Point b, std::uint32_t source, std::vector<Piece>& pieces) {
   if (a != b) pieces.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, source});
 }
 
-/// Appends the pieces of a segment that passes the cells of [begin, end), which are put in order
-/// along the segment: by the distance of the centre in its direction.
-void add_pieces(const Segment& s, std::uint32_t source, std::vector<Pass>::iterator begin,
-                std::vector<Pass>::iterator end, std::vector<Piece>& pieces) {
-  const auto along = [&s](const Pass& pass) {
+/// Appends the pieces of a segment that passes the cells, which are put in order along the segment:
+/// by the distance of the centre in its direction.
+void add_pieces(const Segment& s, std::uint32_t source, std::vector<Point>& passed,
+                std::vector<Piece>& pieces) {
+  const auto along = [&s](Point p) {
     return static_cast<Int128>(std::int64_t{s.second.x} - s.first.x) *
-               (std::int64_t{pass.hot.x} - s.first.x) +
+               (std::int64_t{p.x} - s.first.x) +
            static_cast<Int128>(std::int64_t{s.second.y} - s.first.y) *
-               (std::int64_t{pass.hot.y} - s.first.y);
+               (std::int64_t{p.y} - s.first.y);
   };
-  std::sort(begin, end, [&](const Pass& a, const Pass& b) { return along(a) < along(b); });
+  std::sort(passed.begin(), passed.end(), [&](Point a, Point b) {
+    const Int128 along_a = along(a);
+    const Int128 along_b = along(b);
+    return along_a != along_b ? along_a < along_b : is_above(a, b);
+  });
   Point last = s.first;
-  for (auto pass = begin; pass != end; ++pass) {
-    add_piece(last, pass->hot, source, pieces);
-    last = pass->hot;
+  for (const Point p : passed) {
+    add_piece(last, p, source, pieces);
+    last = p;
   }
   add_piece(last, s.second, source, pieces);
 }
@@ -186,27 +164,40 @@ std::vector<Segment> segments_of(const Rings& rings) {
   return segments;
 }
 
-std::vector<Piece> node_pieces(const std::vector<Segment>& segments, HotCells cells) {
-  const auto order = order_by_place(segments);
-  std::vector<Segment> ordered;
-  ordered.reserve(segments.size());
-  for (const auto& [place, source] : order) ordered.push_back(segments[source]);
-  const SegmentTree tree(ordered);
-  std::vector<Pass> passes = find_passes(ordered, tree, hot_cells(ordered, tree, cells));
+std::size_t most_meetings(std::size_t segments) {
+  constexpr std::size_t kLeast = std::size_t{1} << 18;  // about a second's work, from rings to a mesh
+  constexpr std::size_t kMost = std::size_t{1} << 22;   // some gigabytes
+  return std::clamp(2 * segments, kLeast, kMost);
+}
+
+std::optional<std::vector<Piece>> node_pieces(const std::vector<Segment>& segments,
+                                              HotCells cells) {
+  const std::optional<std::vector<Point>> hot = hot_cells(segments, cells);
+  if (!hot) return std::nullopt;
+  const HotTree tree(*hot);
+  // A crossing is passed by two segments, an end of a segment by itself; rounding adds some.
+  constexpr std::size_t kPassesOfEach = 4;
+  const std::size_t most_pieces =
+      kPassesOfEach * (segments.size() + most_meetings(segments.size()));
   std::vector<Piece> pieces;
-  pieces.reserve(ordered.size() + passes.size());
-  auto pass = passes.begin();
-  for (std::size_t i = 0; i < ordered.size(); ++i) {
-    const auto begin = pass;
-    while (pass != passes.end() && pass->segment == i) ++pass;
-    add_pieces(ordered[i], order[i].second, begin, pass, pieces);
+  pieces.reserve(segments.size() + 2 * hot->size());
+  std::vector<Point> passed;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    passed.clear();
+    tree.append_passed(segments[i], passed);
+    add_pieces(segments[i], static_cast<std::uint32_t>(i), passed, pieces);
+    if (pieces.size() > most_pieces) return std::nullopt;
   }
   return pieces;
 }
 
-std::vector<Segment> node_segments(const std::vector<Segment>& segments, HotCells cells) {
+std::optional<std::vector<Segment>> node_segments(const std::vector<Segment>& segments,
+                                                  HotCells cells) {
+  const std::optional<std::vector<Piece>> noded = node_pieces(segments, cells);
+  if (!noded) return std::nullopt;
   std::vector<Segment> pieces;
-  for (const Piece& piece : node_pieces(segments, cells)) pieces.push_back(piece.segment);
+  pieces.reserve(noded->size());
+  for (const Piece& piece : *noded) pieces.push_back(piece.segment);
   cancel_pairs(pieces);
   return pieces;
 }

@@ -6,7 +6,9 @@
 // half a cell in x and in y. Pieces that then coincide cancel in pairs (even-odd).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/grid/grid.h"
@@ -32,11 +34,19 @@ struct Piece {
   std::uint32_t source = 0;  // the index of the segment
 };
 
+/// How often so many segments may meet (see meetings.h) for noding to be worth its time: crossings
+/// are quadratic by nature, those of real data a fraction of its vertices.
+std::size_t most_meetings(std::size_t segments);
+
 /// Routes the segments through the hot cells and returns all pieces, including those that coincide.
-std::vector<Piece> node_pieces(const std::vector<Segment>& segments, HotCells cells);
+/// None if the segments meet more often than most_meetings(), or pass through hot cells so much
+/// more often than that that time and memory would not be bounded.
+std::optional<std::vector<Piece>> node_pieces(const std::vector<Segment>& segments, HotCells cells);
 
 /// Routes the segments through the hot cells and returns the pieces, upper end first. Of an odd
-/// number of coinciding pieces one is returned, of an even number none.
-std::vector<Segment> node_segments(const std::vector<Segment>& segments, HotCells cells);
+/// number of coinciding pieces one is returned, of an even number none. None under the same
+/// conditions.
+std::optional<std::vector<Segment>> node_segments(const std::vector<Segment>& segments,
+                                                  HotCells cells);
 
 }  // namespace trapeze

@@ -1,4 +1,4 @@
-// Finds the segments whose bounding boxes meet a box.
+// Finds the segments whose bounding boxes meet a region.
 #pragma once
 
 #include <algorithm>
@@ -43,35 +43,28 @@ class SegmentTree {
     }
   }
 
-  std::size_t leaf_count() const { return segments_.empty() ? 0 : heights_.front().size(); }
-  const Box& leaf_box(std::size_t leaf) const { return heights_.front()[leaf]; }
   static std::size_t leaf_begin(std::size_t leaf) { return leaf * kFanout; }
   std::size_t leaf_end(std::size_t leaf) const {
     return std::min((leaf + 1) * kFanout, segments_.size());
   }
 
-  /// Calls visit(leaf) for every leaf whose box meets `box` and whose number is >= `from`.
-  template <class Visit>
-  void query(const Box& box, std::size_t from, const Visit& visit) const {
-    if (!segments_.empty()) descend(heights_.size() - 1, 0, box, from, visit);
+  /// Calls visit(leaf) for every leaf whose box meets the region: region.intersects(box) tells.
+  template <class Region, class Visit>
+  void query(const Region& region, const Visit& visit) const {
+    if (!segments_.empty()) descend(heights_.size() - 1, 0, region, visit);
   }
 
  private:
   static constexpr std::size_t kFanout = 8;
 
-  template <class Visit>
-  void descend(std::size_t height, std::size_t index, const Box& box, std::size_t from,
+  template <class Region, class Visit>
+  void descend(std::size_t height, std::size_t index, const Region& region,
                const Visit& visit) const {
-    if (!heights_[height][index].intersects(box)) return;
+    if (!region.intersects(heights_[height][index])) return;
     if (height == 0) return visit(index);
-    // Subtrees that end before leaf `from` are skipped.
-    std::size_t span = 1;
-    for (std::size_t l = 1; l < height; ++l) span *= kFanout;
     const std::size_t begin = index * kFanout;
     const std::size_t end = std::min(begin + kFanout, heights_[height - 1].size());
-    for (std::size_t i = begin; i < end; ++i) {
-      if ((i + 1) * span > from) descend(height - 1, i, box, from, visit);
-    }
+    for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, region, visit);
   }
 
   const std::vector<Segment>& segments_;

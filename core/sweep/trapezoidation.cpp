@@ -35,7 +35,7 @@ bool Trapezoidation::sweep() {
     if (!sweep_vertex(VertexId(v))) return false;
   }
   // Only the frame remains; its last node ends at infinity.
-  close(0, VertexId(count + 1));
+  close(Status::kFirst, VertexId(count + 1));
   return true;
 }
 
@@ -59,17 +59,9 @@ void Trapezoidation::start() {
   }
   slot_of_.resize(count + 2);
   status_.clear();
-  free_.clear();
-  root_ = kNoSlot;
-  random_ = 0x9e3779b9u;
-  // The frame's edges are slots 0 and 1, ends of the list and not in the tree.
-  const Status blank{{kNoSlot, kNoSlot}, kNoSlot, 0, kNoSlot, kNoSlot, {}, {}};
-  status_.assign(2, blank);
-  status_[0].edge = g.frame_[kLeft];
-  status_[0].next = 1;
-  status_[1].edge = g.frame_[kRight];
-  status_[1].prev = 0;
-  open(0, VertexId(0));
+  status_[Status::kFirst].edge = g.frame_[kLeft];
+  status_[Status::kLast].edge = g.frame_[kRight];
+  open(Status::kFirst, VertexId(0));
 }
 
 bool Trapezoidation::sweep_vertex(VertexId v) {
@@ -92,8 +84,8 @@ bool Trapezoidation::sweep_vertex(VertexId v) {
 bool Trapezoidation::sweep_regular(VertexId v, EdgeId ending, EdgeId starting) {
   TrapezoidalGraph& g = *graph_;
   const Slot slot = slot_of_[ending.value];
-  const Slot left = status_[slot].prev;
-  const Slot right = status_[slot].next;
+  const Slot left = status_.prev(slot);
+  const Slot right = status_.next(slot);
   const NodeId upper_left = close(left, v);
   const NodeId upper_right = close(slot, v);
   status_[slot].edge = starting;
@@ -122,37 +114,38 @@ bool Trapezoidation::sweep_general(VertexId v) {
   Slot left;
   if (ending_.empty()) {
     left = locate(v);
-    if (left == kNoSlot) return false;
+    if (left == Status::kNoSlot) return false;
   } else {
     const Slot first = first_of_run(v, ending_.size());
-    if (first == kNoSlot) return false;
-    left = status_[first].prev;
+    if (first == Status::kNoSlot) return false;
+    left = status_.prev(first);
   }
   TrapezoidalGraph& g = *graph_;
   const NodeId upper_left = close(left, v);
   NodeId upper_right = upper_left;
   for (std::size_t i = 0; i < ending_.size(); ++i) {
-    const Slot slot = status_[left].next;
+    const Slot slot = status_.next(left);
     upper_right = close(slot, v);
-    remove(slot);
+    status_.remove(slot);
   }
-  const Slot right = status_[left].next;
+  const Slot right = status_.next(left);
 
   // Unless the caller gives faces, they alternate from left to right (even-odd).
   Slot last = left;
   FaceId face = g.edges_[status_[left].edge].face[kRight];
   for (const EdgeId e : starting_) {
-    last = insert_after(last, e);
+    last = status_.insert_after(last, {e, {}});
+    slot_of_[e.value] = last;
     g.edges_[e].face[kLeft] = face;
     face = face_beyond_ != nullptr ? (*face_beyond_)(e, face) : (face == kOutside ? 1 : kOutside);
     g.edges_[e].face[kRight] = face;
   }
   link(kLeft, upper_left, open(left, v));
-  for (Slot slot = status_[left].next; slot != right; slot = status_[slot].next) open(slot, v);
+  for (Slot slot = status_.next(left); slot != right; slot = status_.next(slot)) open(slot, v);
   link(kRight, upper_right, status_[last].right);
 
   if (last == left) return is_apart(left, right);
-  return is_apart(left, status_[left].next) && is_apart(last, right);
+  return is_apart(left, status_.next(left)) && is_apart(last, right);
 }
 
 bool Trapezoidation::sort_starting_edges(VertexId v) {
@@ -168,14 +161,14 @@ bool Trapezoidation::sort_starting_edges(VertexId v) {
 
 Trapezoidation::Slot Trapezoidation::first_of_run(VertexId v, std::size_t count) const {
   const auto ends_at_v = [&](Slot slot) {
-    return slot > 1 && boundary_->edges[status_[slot].edge].lower == v;
+    return slot > Status::kLast && boundary_->edges[status_[slot].edge].lower == v;
   };
   Slot first = slot_of_[ending_.front().value];
-  while (ends_at_v(status_[first].prev)) first = status_[first].prev;
+  while (ends_at_v(status_.prev(first))) first = status_.prev(first);
   Slot slot = first;
   for (std::size_t i = 1; i < count; ++i) {
-    slot = status_[slot].next;
-    if (!ends_at_v(slot)) return kNoSlot;
+    slot = status_.next(slot);
+    if (!ends_at_v(slot)) return Status::kNoSlot;
   }
   return first;
 }
@@ -194,7 +187,7 @@ NodeId Trapezoidation::open(Slot slot, VertexId v) {
   Node node;
   node.end[kUp] = v;
   node.edge[kLeft] = status_[slot].edge;
-  node.edge[kRight] = status_[status_[slot].next].edge;
+  node.edge[kRight] = status_[status_.next(slot)].edge;
   const NodeId n = g.nodes_.push_back(node);
   Edge& left = g.edges_[node.edge[kLeft]];
   Edge& right = g.edges_[node.edge[kRight]];
@@ -211,95 +204,21 @@ void Trapezoidation::link(Side side, NodeId upper, NodeId lower) {
 
 Trapezoidation::Slot Trapezoidation::locate(VertexId v) const {
   const Point p = boundary_->vertices[v];
-  Slot left = 0;
-  for (Slot slot = root_; slot != kNoSlot;) {
-    const Boundary::Ends e = boundary_->edges[status_[slot].edge];
-    const std::int64_t side =
-        side_of(boundary_->vertices[e.upper], boundary_->vertices[e.lower], p);
-    if (side == 0) return kNoSlot;
-    if (side > 0) left = slot;
-    slot = status_[slot].child[side > 0];
-  }
-  return left;
+  const Status::Location found = status_.locate([&](const Crossing& crossing) {
+    const Boundary::Ends e = boundary_->edges[crossing.edge];
+    return side_of(boundary_->vertices[e.upper], boundary_->vertices[e.lower], p);
+  });
+  return found.on == Status::kNoSlot ? found.left : Status::kNoSlot;
 }
 
 bool Trapezoidation::is_apart(Slot left, Slot right) const {
-  if (left == 0 || right == 1) return true;
+  if (left == Status::kFirst || right == Status::kLast) return true;
   const Boundary::Ends a = boundary_->edges[status_[left].edge];
   const Boundary::Ends b = boundary_->edges[status_[right].edge];
   if (a.lower == b.lower) return true;
   const auto& at = boundary_->vertices;
   return a.lower < b.lower ? side_of(at[b.upper], at[b.lower], at[a.lower]) < 0
                            : side_of(at[a.upper], at[a.lower], at[b.lower]) > 0;
-}
-
-// The status is a treap: a search tree from left to right that is a heap by random priority.
-
-Trapezoidation::Slot Trapezoidation::insert_after(Slot left, EdgeId edge) {
-  Slot slot;
-  if (free_.empty()) {
-    slot = static_cast<Slot>(status_.size());
-    status_.emplace_back();
-  } else {
-    slot = free_.back();
-    free_.pop_back();
-  }
-  random_ ^= random_ << 13;
-  random_ ^= random_ >> 17;
-  random_ ^= random_ << 5;
-  const Slot right = status_[left].next;
-  status_[slot] = Status{{kNoSlot, kNoSlot}, kNoSlot, random_, left, right, edge, {}};
-  status_[left].next = slot;
-  status_[right].prev = slot;
-  slot_of_[edge.value] = slot;
-  // Of two neighbours in order one has no child on the side between them.
-  if (root_ == kNoSlot) {
-    root_ = slot;
-  } else if (left != 0 && status_[left].child[1] == kNoSlot) {
-    status_[left].child[1] = slot;
-    status_[slot].parent = left;
-  } else {
-    status_[right].child[0] = slot;
-    status_[slot].parent = right;
-  }
-  while (status_[slot].parent != kNoSlot &&
-         status_[status_[slot].parent].priority < status_[slot].priority) {
-    rotate_up(slot);
-  }
-  return slot;
-}
-
-void Trapezoidation::remove(Slot slot) {
-  while (status_[slot].child[0] != kNoSlot && status_[slot].child[1] != kNoSlot) {
-    const Slot a = status_[slot].child[0];
-    const Slot b = status_[slot].child[1];
-    rotate_up(status_[a].priority > status_[b].priority ? a : b);
-  }
-  const Slot child = status_[slot].child[status_[slot].child[0] == kNoSlot];
-  replace_child(status_[slot].parent, slot, child);
-  status_[status_[slot].prev].next = status_[slot].next;
-  status_[status_[slot].next].prev = status_[slot].prev;
-  free_.push_back(slot);
-}
-
-void Trapezoidation::replace_child(Slot parent, Slot old_child, Slot new_child) {
-  if (parent == kNoSlot) {
-    root_ = new_child;
-  } else {
-    status_[parent].child[status_[parent].child[1] == old_child] = new_child;
-  }
-  if (new_child != kNoSlot) status_[new_child].parent = parent;
-}
-
-void Trapezoidation::rotate_up(Slot slot) {
-  const Slot parent = status_[slot].parent;
-  const int side = status_[parent].child[1] == slot;
-  const Slot inner = status_[slot].child[1 - side];
-  replace_child(status_[parent].parent, parent, slot);
-  status_[parent].child[side] = inner;
-  if (inner != kNoSlot) status_[inner].parent = parent;
-  status_[slot].child[1 - side] = parent;
-  status_[parent].parent = slot;
 }
 
 }  // namespace trapeze

@@ -14,6 +14,7 @@
 
 #include "core/graph/trapezoidal_graph.h"
 #include "core/sweep/boundary.h"
+#include "core/sweep/sweep_order.h"
 
 namespace trapeze {
 
@@ -33,19 +34,13 @@ class Trapezoidation {
   bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph);
 
  private:
-  // An entry of the status structure: an edge that crosses the sweep line, and the open node to its
-  // right.
-  using Slot = std::uint32_t;
-  static constexpr Slot kNoSlot = 0xffffffff;
-  struct Status {
-    Slot child[2];
-    Slot parent;
-    std::uint32_t priority;
-    Slot prev;
-    Slot next;
+  // An edge that crosses the sweep line, and the open node to its right.
+  struct Crossing {
     EdgeId edge;
-    NodeId right;  // the open node between this edge and the next
+    NodeId right;  // between this edge and the next
   };
+  using Status = SweepOrder<Crossing>;
+  using Slot = Status::Slot;
 
   bool sweep();
   void start();
@@ -67,19 +62,11 @@ class Trapezoidation {
   /// The neighbours `left` and `right` do not meet below the sweep line, but for a common end.
   bool is_apart(Slot left, Slot right) const;
 
-  Slot insert_after(Slot left, EdgeId edge);
-  void remove(Slot slot);
-  void rotate_up(Slot slot);
-  void replace_child(Slot parent, Slot old_child, Slot new_child);
-
   const Boundary* boundary_ = nullptr;
   const FaceBeyond* face_beyond_ = nullptr;  // none: even-odd
   TrapezoidalGraph* graph_ = nullptr;
-  std::vector<Status> status_;
-  std::vector<Slot> free_;
+  Status status_;              // its ends are the edges of the frame
   std::vector<Slot> slot_of_;  // by edge
-  Slot root_ = kNoSlot;
-  std::uint32_t random_ = 1;
   // At the current vertex: edges that end there and that start there, from left to right.
   std::vector<EdgeId> ending_;
   std::vector<EdgeId> starting_;

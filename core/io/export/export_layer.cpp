@@ -66,7 +66,8 @@ class Exporter : public FeatureWorker {
         assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
                  coverage_builder_, graph_);
     if (!assembly.together.empty()) adapt_together(features, assembly);
-    for (const std::uint32_t i : assembly.apart) build_apart(features[i]->key, features[i]->rings);
+    for (const std::uint32_t i : assembly.apart)
+      build_apart(features[i]->key, features[i]->rings_apart());
   }
 
   /// What became of features since the last call, in any order.

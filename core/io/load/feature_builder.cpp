@@ -44,7 +44,8 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
     tally_.remark(features.front()->key, "built apart from " + std::to_string(features.size() - 1) +
                                              " neighbours: " + assembly.outcome.failure);
   }
-  for (const std::uint32_t i : assembly.apart) build_apart(features[i]->key, features[i]->rings);
+  for (const std::uint32_t i : assembly.apart)
+    build_apart(features[i]->key, features[i]->rings_apart());
   if (!assembly.together.empty()) count(features, assembly);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
+#include "core/borders/part_union.h"
 #include "core/io/load/bounded_queue.h"
 #include "core/sweep/clean_rings.h"
 
@@ -63,6 +64,13 @@ std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode co
   return tasks;
 }
 
+std::string with_others(std::size_t others) {
+  const std::string gaps = "its gaps are not closed";
+  if (others == 0) return gaps + ": ";
+  return gaps + ", nor those of " + std::to_string(others) +
+         (others == 1 ? " other feature: " : " other features: ");
+}
+
 }  // namespace
 
 unsigned thread_count(unsigned wanted) {
@@ -81,6 +89,7 @@ class FeaturePipeline::Lane {
     tally.rings += feature.source_rings;
     tally.source_vertices += feature.vertices;
     if (!feature.failure.empty()) return tally.skip(job.key, feature.failure);
+    unite_parts_of(job.key, feature);
     if (are_to_wait_) tally.collapsed_rings += clean_rings(feature.rings);
     if (feature.rings.empty()) {
       ++tally.empty;
@@ -96,12 +105,12 @@ class FeaturePipeline::Lane {
   void take(const Task& task) {
     begin(work_of(task));
     if (task.size() == 1) {
-      worker_.build_apart(task.front()->key, task.front()->rings);
+      worker_.build_apart(task.front()->key, task.front()->rings_apart());
     } else {
       worker_.build_together(task);
     }
     end();
-    for (WaitingFeature* feature : task) feature->rings = Rings();
+    for (WaitingFeature* feature : task) feature->rings = feature->drawn = Rings();
   }
 
   /// In the unit of what begin() got. Any thread may ask.
@@ -112,6 +121,15 @@ class FeaturePipeline::Lane {
   FeatureTally tally;
 
  private:
+  void unite_parts_of(const FeatureKey& key, FeatureRings& feature) {
+    const PartUnion parts = unite_parts(feature.rings, feature.part_ends);
+    if (!parts.failure.empty()) {
+      tally.remark(key, "its parts cannot be united where they overlap: " + parts.failure);
+    } else if (parts.did_overlap) {
+      tally.remark(key, "united: its parts overlap");
+    }
+  }
+
   void begin(double work) {
     worker_.share().enter(0, 1);
     at_hand_ = work;
@@ -245,16 +263,31 @@ std::vector<WaitingFeature> FeaturePipeline::take_waiting() {
   return waiting;
 }
 
+void FeaturePipeline::close_gaps_between(std::vector<WaitingFeature>& waiting) {
+  if (waiting.empty()) return;
+  std::vector<Rings*> rings;
+  rings.reserve(waiting.size());
+  for (WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
+  GapClosing done = close_gaps(rings, options_.close_gaps);
+  tally_.coverage.snapped += done.moved + done.led;
+  for (std::size_t i = 0; i < waiting.size(); ++i) waiting[i].drawn = std::move(done.drawn[i]);
+  if (!done.failure.empty()) {
+    tally_.remark(waiting.front().key, "no gaps are closed: " + done.failure);
+  }
+  const auto remark = [&](const std::vector<std::uint32_t>& features, const std::string& why) {
+    if (features.empty()) return;
+    tally_.remark(waiting[features.front()].key, with_others(features.size() - 1) + why);
+  };
+  remark(done.narrow, "narrower than the distance");
+  remark(done.kept, "would change or overlap by too much");
+}
+
 /// Builds all features that wait, with those with which they share borders. What comes of it does
 /// not depend on the number of lanes.
 void FeaturePipeline::build_waiting() {
   std::vector<WaitingFeature> waiting = take_waiting();
   if (options_.close_gaps > 0) {
-    std::vector<Rings*> rings;
-    rings.reserve(waiting.size());
-    for (WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
-    const GapClosing done = close_gaps(rings, options_.close_gaps);
-    tally_.coverage.snapped += done.moved + done.led;
+    close_gaps_between(waiting);
     are_gaps_closed_ = true;
     show_progress();
   }

@@ -26,7 +26,11 @@ namespace trapeze {
 /// A feature that waits for the others, with which it may share borders.
 struct WaitingFeature {
   FeatureKey key;
-  Rings rings;  // clean, not empty
+  Rings rings;       // clean, not empty
+  Rings drawn = {};  // as they were before gaps were closed; empty if that did not change them
+
+  /// What is to be drawn where no border is shared.
+  Rings& rings_apart() { return drawn.empty() ? rings : drawn; }
 };
 
 /// Makes something of features. Each is used by one thread at a time.
@@ -34,8 +38,7 @@ class FeatureWorker {
  public:
   virtual ~FeatureWorker() = default;
 
-  /// Takes a feature by itself. `rings` may be used as scratch memory, and are empty if gaps have
-  /// been closed that were wider than the feature.
+  /// Takes a feature by itself. `rings` may be used as scratch memory.
   virtual void build_apart(const FeatureKey& feature, Rings& rings) = 0;
   /// Takes two or more that share borders, in ascending order of rows.
   virtual void build_together(std::span<WaitingFeature* const> features) = 0;
@@ -98,6 +101,7 @@ class FeaturePipeline {
   bool read(const Take& take, const RoundLimit& limit, Pool& pool);
   void accept(SourceFeature& next, const Take& take);
   std::vector<WaitingFeature> take_waiting();
+  void close_gaps_between(std::vector<WaitingFeature>& waiting);
   void build_waiting();
   void wait_for(std::vector<std::future<void>>& running);
   void show_progress();

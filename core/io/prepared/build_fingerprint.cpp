@@ -18,7 +18,7 @@ namespace {
 
 // To be raised when another polygon or attribute is read from the same source, or when what was
 // read is given another revision.
-constexpr std::uint64_t kReadingVersion = 2;
+constexpr std::uint64_t kReadingVersion = 3;
 
 constexpr int kShapes = 12;
 constexpr int kVertices = 9;

@@ -110,6 +110,7 @@ Extent extent_of(const PositionRing& ring) {
 
 void FeatureRings::clear() {
   rings.clear();
+  part_ends.clear();
   polygons = source_rings = vertices = 0;
   failure.clear();
   has_wrong_units = false;
@@ -141,15 +142,20 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
   x_.clear();
   y_.clear();
   ends_.clear();
+  part_ends_.clear();
   collect(geometry, feature);
   check_coordinates(feature);
   if (feature.failure.empty() && transform_ != nullptr) to_lonlat(feature);
   if (!feature.failure.empty()) return;
   feature.rings.points.reserve(x_.size());
   std::size_t begin = 0;
-  for (const std::size_t end : ends_) {
-    append_ring(begin, end, feature.rings);
-    begin = end;
+  std::size_t part = 0;
+  for (std::size_t ring = 0; ring < ends_.size(); ++ring) {
+    append_ring(begin, ends_[ring], feature.rings);
+    begin = ends_[ring];
+    if (part == part_ends_.size() || ring + 1 < part_ends_[part]) continue;
+    feature.part_ends.push_back(static_cast<std::uint32_t>(feature.rings.size()));
+    ++part;
   }
 }
 
@@ -171,7 +177,9 @@ void RingReader::collect_polygon(const OGRPolygon& polygon, FeatureRings& featur
   if (polygon.IsEmpty()) return;
   const std::size_t polygons_before = feature.polygons;
   for (const OGRLinearRing* ring : polygon) collect_ring(*ring, feature);
-  if (!options_.shells_are_clockwise) feature.polygons = polygons_before + 1;
+  if (options_.shells_are_clockwise) return;
+  feature.polygons = polygons_before + 1;
+  if (part_ends_.empty() || part_ends_.back() < ends_.size()) part_ends_.push_back(ends_.size());
 }
 
 void RingReader::collect_ring(const OGRLinearRing& ring, FeatureRings& feature) {

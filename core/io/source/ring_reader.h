@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +17,10 @@ namespace trapeze {
 
 /// The rings of one feature on the grid, and what they came from.
 struct FeatureRings {
-  Rings rings;                   // clipped to the world; may be empty
+  Rings rings;  // clipped to the world; may be empty
+  // The parts of a multipolygon: part i is rings part_ends[i - 1] .. part_ends[i] - 1. Formats that
+  // store rings alone do not say which belong together: none.
+  std::vector<std::uint32_t> part_ends;
   std::size_t polygons = 0;      // in the source
   std::size_t source_rings = 0;  // in the source
   std::size_t vertices = 0;      // in the source, closing ones included
@@ -68,6 +72,7 @@ class RingReader {
   std::vector<double> x_;
   std::vector<double> y_;
   std::vector<std::size_t> ends_;
+  std::vector<std::size_t> part_ends_;  // rings, in the same way
   std::vector<double> source_x_;
   // Of the current ring: degrees, then cells.
   PositionRing ring_;

@@ -7,12 +7,14 @@ namespace trapeze {
 SourceRingReader::SourceRingReader(const FeatureSource& source)
     : layers_(source.layers()),
       options_{.shells_are_clockwise = has_clockwise_shells(source.driver())},
+      stores_rings_alone_(source.driver() == "OSM"),
       readers_(source.layers().size()) {}
 
 FeatureRings& SourceRingReader::read(const OGRGeometry& geometry, std::size_t layer_index) {
   std::unique_ptr<RingReader>& reader = readers_[layer_index];
   if (reader == nullptr) reader = std::make_unique<RingReader>(layers_[layer_index].crs, options_);
   reader->read(geometry, feature_);
+  if (stores_rings_alone_) feature_.part_ends.clear();
   if (feature_.has_wrong_units) {
     throw SourceError("names no coordinate reference system, and its coordinates are not degrees");
   }

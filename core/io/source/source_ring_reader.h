@@ -26,6 +26,7 @@ class SourceRingReader {
  private:
   const std::vector<SourceLayer>& layers_;
   RingReader::Options options_;
+  bool stores_rings_alone_;  // which of them belong together is not said
   std::vector<std::unique_ptr<RingReader>> readers_;  // by layer, made when first needed
   FeatureRings feature_;                              // memory kept between calls
 };

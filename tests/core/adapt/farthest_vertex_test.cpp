@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -84,6 +85,34 @@ TEST(FarthestVertex, ForgetsTheRingBefore) {
       const auto found = farthest.find(3, 1950);
       ASSERT_EQ(found.vertex, wanted.vertex);
       ASSERT_EQ(found.squared, wanted.squared);
+    }
+  }
+}
+
+/// A convex polygon from its top along the right side.
+std::vector<Point> convex(std::size_t corners) {
+  const Rings rings = spiky_star(2 * corners);
+  std::vector<Point> hull;
+  for (std::size_t i = 0; i < 2 * corners; i += 2) hull.push_back(rings[0][i]);
+  const auto top = std::min_element(hull.begin(), hull.end(), is_above);
+  std::rotate(hull.begin(), top, hull.end());
+  return hull;
+}
+
+TEST(SegmentDistance, BoundOfAHullIsNoLessThanItsFarthestCornerAndAtMostHalfAsMuchAgain) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<std::int32_t> at(kGridMin, kGridMax);
+  for (const std::size_t corners : {3, 20, 33, 100, 5001}) {
+    const std::vector<Point> hull = convex(corners);
+    for (int i = 0; i < 300; ++i) {
+      const Point a{at(random), at(random)};
+      const Point b = i % 10 == 0 ? a : Point{at(random), at(random)};
+      const SegmentDistance distance(a, b);
+      double farthest = 0;
+      for (const Point p : hull) farthest = std::max(farthest, distance.squared(p));
+      const double bound = std::sqrt(distance.squared_bound(hull));
+      ASSERT_GE(bound, std::sqrt(farthest) - 1e-5);
+      ASSERT_LE(bound, 1.5 * std::sqrt(farthest));
     }
   }
 }

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <utility>
+
 #include "core/graph/check_graph.h"
 #include "core/layer/layer_builder.h"
 #include "core/layer/untested_layer.h"
@@ -18,7 +22,13 @@ class Features {
  public:
   explicit Features(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) rings_.push_back(rings_from_text(text));
-    for (const Rings& rings : rings_) pointers_.push_back(&rings);
+    point_at_rings();
+  }
+  static Features of(std::vector<Rings> rings) {
+    Features features(std::vector<std::string>{});
+    features.rings_ = std::move(rings);
+    features.point_at_rings();
+    return features;
   }
 
   std::vector<std::vector<std::uint32_t>> groups(CoverageMode coverage) const {
@@ -32,6 +42,10 @@ class Features {
   TrapezoidalGraph graph;
 
  private:
+  void point_at_rings() {
+    for (const Rings& rings : rings_) pointers_.push_back(&rings);
+  }
+
   std::vector<Rings> rings_;
   std::vector<const Rings*> pointers_;
 };
@@ -148,6 +162,66 @@ TEST(CoverageGroups, TooManyOverEachOtherStayApartInWords) {
     EXPECT_EQ(assembly.outcome.failure, "too many of its features lie over each other");
     EXPECT_EQ(assembly.apart.size(), texts.size());
   }
+}
+
+TEST(CoverageGroups, TooManyWithinEachOtherStayApartInWords) {
+  // Squares around each other: each feature lies over all the smaller ones.
+  std::vector<std::string> texts;
+  for (int i = 1; i <= 4200; ++i) texts.push_back(rectangle(-i, -i, 2 * i, 2 * i));
+  const Assembly assembly = Features(texts).assembly(CoverageMode::on);
+  EXPECT_EQ(assembly.outcome.failure, "too many of its features lie over each other");
+  EXPECT_EQ(assembly.apart.size(), texts.size());
+}
+
+/// A comb with teeth to the right, or, turned, downwards.
+Rings comb(std::int32_t teeth, bool is_turned) {
+  Rings rings;
+  const std::int32_t length = 20 * teeth;
+  rings.points.push_back({-10, 20 * teeth});
+  rings.points.push_back({-10, 0});
+  for (std::int32_t i = 0; i < teeth; ++i) {
+    rings.points.push_back({length, 20 * i + 5});
+    rings.points.push_back({0, 20 * i + 10});
+  }
+  rings.close_ring();
+  if (is_turned) {
+    for (Point& p : rings.points) std::swap(p.x, p.y);
+  }
+  return rings;
+}
+
+TEST(CoverageGroups, WhatCrossesTooOftenStaysApartInWords) {
+  const Assembly few = Features::of({comb(50, false), comb(50, true)}).assembly(CoverageMode::on);
+  EXPECT_EQ(few.outcome.failure, "");
+  EXPECT_EQ(few.together.size(), 2u);
+  const Assembly many =
+      Features::of({comb(300, false), comb(300, true)}).assembly(CoverageMode::on);
+  EXPECT_EQ(many.outcome.failure, "their borders cross more than 262144 times");
+  EXPECT_EQ(many.apart.size(), 2u);
+}
+
+/// Sectors of a circle that meet in its middle.
+std::vector<Rings> sectors(int count) {
+  const auto at = [count](int i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    return Point{static_cast<std::int32_t>(std::lround(1e7 * std::cos(angle))),
+                 static_cast<std::int32_t>(std::lround(1e7 * std::sin(angle)))};
+  };
+  std::vector<Rings> features(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    features[static_cast<std::size_t>(i)].add(
+        std::vector<Point>{{0, 0}, at(i), at(i + 1 < count ? i + 1 : 0)});
+  }
+  return features;
+}
+
+TEST(CoverageGroups, TooManyAroundOneVertexStayApartInWords) {
+  const Assembly few = Features::of(sectors(400)).assembly(CoverageMode::automatic);
+  EXPECT_EQ(few.outcome.failure, "");
+  EXPECT_EQ(few.together.size(), 400u);
+  const Assembly many = Features::of(sectors(5000)).assembly(CoverageMode::automatic);
+  EXPECT_EQ(many.outcome.failure, "up to 5000 borders meet at one vertex");
+  EXPECT_EQ(many.apart.size(), 5000u);
 }
 
 TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {

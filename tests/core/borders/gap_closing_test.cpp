@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <string>
 
 #include "core/borders/coverage_builder.h"
 #include "core/graph/check_graph.h"
@@ -14,6 +18,7 @@
 namespace trapeze {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
 /// So many metres on the ground as these cells are near the equator.
@@ -112,13 +117,157 @@ TEST(GapClosing, DetailOfASinglePolygonIsNotTouched) {
   EXPECT_EQ(both.features[1].points, rings_from_text(below).points);
 }
 
-TEST(GapClosing, PolygonNarrowerThanTheGapMayGo) {
-  const Closing c(Texts{"0 0, 100 0, 100 100, 0 100", "101 0, 102 0, 102 100, 101 100",
-                        "103 0, 200 0, 200 100, 103 100"},
-                  4);
+TEST(GapClosing, PolygonNarrowerThanTheGapStaysAsItIsAndIsNotCovered) {
+  const Texts texts{"0 0, 1000 0, 1000 1000, 0 1000", "1010 0, 1020 0, 1020 1000, 1010 1000",
+                    "1030 0, 2000 0, 2000 1000, 1030 1000"};
+  const Closing c(texts, 40);
+  EXPECT_THAT(c.done.narrow, ElementsAre(1));
+  EXPECT_EQ(c.features[1], rings_from_text(texts[1]));
   const CoverageOutcome outcome = c.build();
-  EXPECT_EQ(outcome.gaps, 0u);
   EXPECT_EQ(outcome.failure, "");
+  EXPECT_TRUE(outcome.overlaps.empty());
+}
+
+/// Squares of 100 cells, turned a little, with 50 between them: buildings along streets.
+std::vector<Rings> buildings(int columns) {
+  std::vector<Rings> features;
+  for (int y = 0; y < columns; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const Point p{150 * x, 150 * y};
+      const int turn = 10 * ((x * 7 + y * 3) % 3);
+      features.emplace_back().add(std::vector<Point>{{p.x + turn, p.y},
+                                                     {p.x + 100, p.y + turn},
+                                                     {p.x + 100 - turn, p.y + 100},
+                                                     {p.x, p.y + 100 - turn}});
+    }
+  }
+  return features;
+}
+
+std::vector<const Rings*> pointers_to(const std::vector<Rings>& features) {
+  std::vector<const Rings*> pointers;
+  for (const Rings& rings : features) pointers.push_back(&rings);
+  return pointers;
+}
+
+TEST(GapClosing, FeaturesOfItsOwnSizeAreLeftAsTheyAre) {
+  const std::vector<Rings> drawn = buildings(12);
+  const Closing c(drawn, 50);
+  EXPECT_EQ(c.done.narrow.size(), drawn.size());
+  EXPECT_EQ(c.features, drawn);
+}
+
+double length_of(const Rings& rings) {
+  double length = 0;
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    for (std::size_t i = 0; i < rings[r].size(); ++i) {
+      const Point a = rings[r][i];
+      const Point b = rings[r][(i + 1) % rings[r].size()];
+      length += std::hypot(a.x - b.x, a.y - b.y);
+    }
+  }
+  return length;
+}
+
+/// Pieces of a plane that was torn apart: between the cells of a grid with wiggly borders, gaps and
+/// overlaps of all widths, bays narrower than the distance, and islands in them.
+std::vector<Rings> torn(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto between = [&](int a, int b) {
+    return std::uniform_int_distribution<int>(a, b)(random);
+  };
+  std::vector<Rings> features;
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      const int reach = between(40, 58);
+      std::vector<Point> ring;
+      for (int i = 0; i < 24; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 24;
+        const double radius = (between(0, 6) == 0 ? 0.6 : 1) * (reach + between(-4, 4));
+        ring.push_back({100 * x + static_cast<int>(radius * std::cos(angle)),
+                        100 * y + static_cast<int>(radius * std::sin(angle))});
+      }
+      features.emplace_back().add(ring);
+      clean_rings(features.back());
+    }
+  }
+  return features;
+}
+
+TEST(GapClosing, NoFeatureChangesByMoreThanItsBoundaryAndNoneComeToOverlap) {
+  std::size_t moved = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::vector<Rings> drawn = torn(seed);
+    const double cells = 2 + seed % 14;
+    const Closing c(drawn, cells);
+    EXPECT_EQ(c.done.failure, "");
+    moved += c.done.moved;
+    const Overlay before = overlay(pointers_to(drawn));
+    const Overlay after = overlay(pointers_to(c.features));
+    ASSERT_EQ(before.failure + after.failure, "");
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      EXPECT_LE(std::abs(after.areas[i] - before.areas[i]), length_of(drawn[i]) * cells * 1.001);
+      EXPECT_EQ(c.done.drawn[i].empty() ? c.features[i] : c.done.drawn[i], drawn[i]);
+    }
+    for (const Overlap& overlap : after.overlaps) {
+      double known = 0;
+      for (const Overlap& earlier : before.overlaps) {
+        if (earlier.lower == overlap.lower && earlier.upper == overlap.upper) known = earlier.area;
+      }
+      EXPECT_LE(overlap.area,
+                known + std::min(length_of(drawn[overlap.lower]), length_of(drawn[overlap.upper])));
+    }
+  }
+  EXPECT_GT(moved, 500u) << "so something has been tested";
+}
+
+//   ______ ______     The left one is narrow and stays. What the middle one has in common with it
+//  |_|    |      |    stays as well, though the right one is near.
+//  | |____|______|
+TEST(GapClosing, BordersInCommonWithWhatTakesNoPartRemain) {
+  const Texts texts{"97 0, 100 0, 100 50, 100 100, 97 100",
+                    "100 0, 200 0, 200 100, 100 100, 100 50", "-3 3, 94 3, 94 97, -3 97"};
+  const Closing c(texts, 7);
+  EXPECT_THAT(c.done.narrow, ElementsAre(0));
+  EXPECT_EQ(c.build().shared_edges, 2u);
+}
+
+TEST(GapClosing, TooManyVerticesWithinTheDistanceAreRefusedInWords) {
+  // Two combs whose teeth are all within the distance of each other.
+  std::vector<Rings> features(2);
+  for (int side : {0, 1}) {
+    Rings& rings = features[static_cast<std::size_t>(side)];
+    const int sign = side == 0 ? -1 : 1;
+    for (int i = 0; i < 6000; ++i) rings.points.push_back({sign * (1 + i % 2), 2 * i});
+    for (const Point p : {Point{1, 1'000'000}, Point{1'000'000, 1'000'000},
+                          Point{1'000'000, -1'000'000}, Point{1, -1'000'000}}) {
+      rings.points.push_back({sign * p.x, p.y});
+    }
+    rings.close_ring();
+  }
+  const std::vector<Rings> drawn = features;
+  const Closing c(features, 13'000);
+  EXPECT_EQ(c.done.failure, "too many vertices are that near to each other");
+  EXPECT_EQ(c.features, drawn);
+}
+
+TEST(GapClosing, NarrowPlaceGoesToNobodyWhoseBorderThereIsShort) {
+  // A round place between many features, each with a small part of its border.
+  std::vector<Rings> features;
+  const auto at = [](int i, double radius) {
+    const double angle = 2 * std::numbers::pi * i / 12;
+    return Point{static_cast<int>(radius * std::cos(angle)),
+                 static_cast<int>(radius * std::sin(angle))};
+  };
+  for (int i = 0; i < 12; ++i) {
+    features.emplace_back().add(
+        std::vector<Point>{at(i, 100), at(i, 1000), at(i + 1, 1000), at(i + 1, 100)});
+  }
+  // Its mean width is 97 cells.
+  const Closing c(features, 0.1);
+  EXPECT_EQ(c.build(110).filled, 0u);
+  EXPECT_EQ(c.build(600).filled, 1u);
 }
 
 TEST(GapClosing, DistancesAreOfTheGround) {

@@ -172,6 +172,37 @@ TEST(GraphBuilder, RandomScribblesAreNodedToValidGraphs) {
   }
 }
 
+/// A ring that goes to and fro between the sides of a square, then up and down.
+Rings lattice(std::int32_t lines) {
+  Rings rings;
+  const std::int32_t side = 10 * lines + 10;
+  for (std::int32_t i = 1; i <= lines; ++i) {
+    for (const std::int32_t x : {0, side})
+      rings.points.push_back({i % 2 == 0 ? side - x : x, 10 * i});
+  }
+  rings.points.push_back({-10, side});
+  for (std::int32_t i = 1; i <= lines; ++i) {
+    for (const std::int32_t y : {0, side})
+      rings.points.push_back({10 * i, i % 2 == 0 ? y : side - y});
+  }
+  rings.points.push_back({side, -10});
+  rings.close_ring();
+  return rings;
+}
+
+TEST(GraphBuilder, CrossesItselfAsOftenAsCanBeRepairedInASecond) {
+  const Built b = build(lattice(60));
+  EXPECT_EQ(b.outcome.failure, "");
+  EXPECT_TRUE(b.outcome.noded);
+  EXPECT_GT(b.outcome.vertices, 60u * 60u);
+}
+
+TEST(GraphBuilder, RefusesWhatCrossesItselfMoreOften) {
+  const Built b = build(lattice(600));
+  EXPECT_FALSE(b.outcome.built);
+  EXPECT_EQ(b.outcome.failure, "crosses itself more than 262144 times");
+}
+
 TEST(GraphBuilder, IsTheSameWhateverWasBuiltBefore) {
   GraphBuilder builder;
   TrapezoidalGraph used;

@@ -26,7 +26,7 @@ std::multiset<std::vector<std::int32_t>> as_set(const std::vector<Segment>& segm
 
 void expect_noded(const std::vector<Segment>& segments, const std::vector<Segment>& wanted) {
   for (const HotCells cells : {HotCells::crossings, HotCells::crossings_and_vertices}) {
-    EXPECT_EQ(as_set(node_segments(segments, cells)), as_set(wanted));
+    EXPECT_EQ(as_set(node_segments(segments, cells).value()), as_set(wanted));
   }
 }
 
@@ -117,7 +117,7 @@ TEST(Noding, NothingCrossesOrTouchesAfterwards) {
       const Segment s{{at(random), at(random)}, {at(random), at(random)}};
       if (s.first != s.second) segments.push_back(s);
     }
-    const auto pieces = node_segments(segments, HotCells::crossings_and_vertices);
+    const auto pieces = node_segments(segments, HotCells::crossings_and_vertices).value();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         ASSERT_FALSE(cross_or_touch(pieces[i], pieces[k]));
@@ -139,7 +139,8 @@ TEST(Noding, RingsStayClosed) {
     std::vector<Segment> segments = segments_of(rings);
     std::erase_if(segments, [](const Segment& s) { return s.first == s.second; });
     std::multiset<std::pair<std::int32_t, std::int32_t>> ends;
-    for (const Segment& s : node_segments(segments, HotCells::crossings)) {
+    const auto pieces = node_segments(segments, HotCells::crossings).value();
+    for (const Segment& s : pieces) {
       for (const Point p : {s.first, s.second}) ends.insert({p.x, p.y});
     }
     for (const auto& p : ends) ASSERT_EQ(ends.count(p) % 2, 0u);

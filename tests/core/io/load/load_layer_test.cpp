@@ -553,6 +553,45 @@ TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {
   EXPECT_EQ(closed.features, 40u);
 }
 
+//   _____             The corner goes to that of the square, but no border is shared: the triangle
+//  |     |\           is as it was drawn.
+//  |_____| \.
+TEST_F(LoadLayerTest, WhatSharesNoBorderAfterGapsAreClosedIsAsItWasDrawn) {
+  const std::string path = folder_.file("corner.fgb");
+  const std::string square = "POLYGON((0 0,0.01 0,0.01 0.01,0 0.01,0 0))";
+  const std::string triangle = "POLYGON((0.01005 0.01,0.02 0.02,0.03 0.01,0.01005 0.01))";
+  write_source(path, "FlatGeobuf", {{.features = {{square, 0, ""}, {triangle, 1, ""}}}});
+  const auto outlines = [&](CoverageMode coverage, double close_gaps) {
+    LoadOptions options;
+    options.generalization.coverage = coverage;
+    options.generalization.close_gaps = close_gaps;
+    const LoadedLayer loaded = load_layer(path, options);
+    EXPECT_EQ(loaded.report.coverage.snapped, close_gaps > 0 ? 1u : 0u);
+    Rings rings;
+    for (const std::uint32_t row : {0, 1}) loaded.layer->append_outline(row, rings);
+    return rings;
+  };
+  EXPECT_EQ(outlines(CoverageMode::automatic, 20), outlines(CoverageMode::off, 0));
+}
+
+TEST_F(LoadLayerTest, WhoseGapsAreNotClosedIsSaidInOneNote) {
+  const std::string path = folder_.file("small.fgb");
+  TestLayer layer;
+  for (const std::string x : {"0.0", "0.1", "0.2"}) {
+    const std::string row =
+        "POLYGON((" + x + "000 0," + x + "001 0," + x + "001 1," + x + "000 0))";
+    layer.features.push_back({row, 0, ""});
+  }
+  write_source(path, "FlatGeobuf", {layer});
+  LoadOptions options;
+  options.generalization.coverage = CoverageMode::automatic;
+  options.generalization.close_gaps = 100;
+  const LoadReport report = load_layer(path, options).report;
+  ASSERT_EQ(report.notes.size(), 1u);
+  EXPECT_EQ(report.notes[0].reason,
+            "its gaps are not closed, nor those of 2 other features: narrower than the distance");
+}
+
 TEST_F(LoadLayerTest, ReportsProgressThatRisesToOne) {
   const std::string path = folder_.file("a.fgb");
   TestLayer layer;
