@@ -66,6 +66,14 @@ double Stroke::reach(int scale) const {
   return (join == LineJoin::miter ? kMiterLimit * half : half) + 0.5;
 }
 
+std::uint64_t Stroke::most_values(std::uint64_t edges, const View& view, int scale) const {
+  const double pixels = static_cast<double>(view.width) * view.height;
+  const double across = 2 * reach(scale);
+  // A line as long as it is wide, and a join of that size, at either end.
+  const double around_edge = std::min(3 * across * across, 3 * pixels);
+  return static_cast<std::uint64_t>(static_cast<double>(edges) * around_edge);
+}
+
 Stroker::Line Stroker::Line::turned() const {
   return {to, from, -dx, -dy, length, along + length};
 }

@@ -37,6 +37,9 @@ struct Stroke {
   /// The greatest distance from the edge at which the line covers anything, in pixels of a picture
   /// of that scale.
   double reach(int scale) const;
+  /// At most so many values of pixels are computed for lines along so many edges, each not longer
+  /// than the line is wide, in a picture of that view and scale.
+  std::uint64_t most_values(std::uint64_t edges, const View& view, int scale) const;
 
   friend bool operator==(const Stroke&, const Stroke&) = default;
 };
