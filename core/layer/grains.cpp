@@ -31,4 +31,12 @@ GrainIndex::GrainIndex(StoredArray<FeatureGrain> grains)
   }
 }
 
+std::size_t GrainIndex::count_near(const Box& box, Level level) const {
+  const auto is_near = [&](const Block& block) {
+    return block.min_born <= level && block.box.intersects(box);
+  };
+  const auto blocks = static_cast<std::size_t>(std::ranges::count_if(blocks_, is_near));
+  return std::min(blocks * kBlock, grains_.size());
+}
+
 }  // namespace trapeze

@@ -55,6 +55,9 @@ class GrainIndex {
     }
   }
 
+  /// As many grains as visit() looks at: at least those that it visits.
+  std::size_t count_near(const Box& box, Level level) const;
+
   std::span<const FeatureGrain> grains() const { return grains_; }
   std::size_t memory() const { return grains_.memory() + blocks_.capacity() * sizeof(Block); }
 

@@ -42,6 +42,25 @@ void Layer::select_horizontal_edges(const Box& box, Level level,
   contents_->horizontal_edge_index.select(box, level, level, contents_->lifespans, ranges);
 }
 
+Layer::Counts Layer::count(const Selection& selection, std::uint64_t most) const {
+  const LayerContents& c = *contents_;
+  const auto count_in = [&](const MeshIndex& index, Level born, Level alive, std::uint64_t up_to) {
+    return index.count(selection.box, born, alive, c.lifespans, up_to);
+  };
+  Counts counts;
+  counts.trapezoids = count_in(c.polygon_index, selection.level, selection.level, most);
+  counts.horizontal_edges =
+      count_in(c.horizontal_edge_index, selection.level, selection.level, most);
+  counts.grains = std::min(c.grains.count_near(selection.box, selection.level), most);
+  if (selection.small != SmallPolygons::dust) return counts;
+  const Level resolution = std::min(selection.level, selection.pixel_level);
+  counts.trapezoids +=
+      count_in(c.mote_index, selection.level, resolution, most - counts.trapezoids);
+  counts.trapezoids +=
+      count_in(c.merged_mote_index, resolution, resolution, most - counts.trapezoids);
+  return counts;
+}
+
 const GrainIndex& Layer::grains() const {
   return contents_->grains;
 }

@@ -70,6 +70,15 @@ class Layer {
   void select_horizontal_edges(const Box& box, Level level,
                                std::vector<TrapezoidRange>& ranges) const;
 
+  /// How many trapezoids select() would find, and select_horizontal_edges(), and an upper bound of
+  /// the grains near the box; each is counted no further than `most`.
+  struct Counts {
+    std::uint64_t trapezoids = 0;
+    std::uint64_t horizontal_edges = 0;
+    std::uint64_t grains = 0;
+  };
+  Counts count(const Selection& selection, std::uint64_t most) const;
+
   /// What small polygons and holes left behind, feature by feature: the same dust that select()
   /// finds, before any of it is merged.
   const GrainIndex& grains() const;

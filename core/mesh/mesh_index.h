@@ -50,6 +50,10 @@ class MeshIndex {
   void select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
 
+  /// How many trapezoids select() would append; counts no further than `most`.
+  std::uint64_t count(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
+                      std::uint64_t most) const;
+
   TrapezoidRange range() const { return range_; }
   /// One height of the tree after the other, beginning with the one directly above the trapezoids.
   std::span<const Entry> entries() const { return entries_; }
@@ -63,9 +67,9 @@ class MeshIndex {
     Level born;
     Level alive;
     std::span<const Lifespan> lifespans;
-    std::vector<TrapezoidRange>& ranges;
   };
-  void descend(std::size_t height, std::size_t index, const Query& query) const;
+  template <typename Take>
+  bool descend(std::size_t height, std::size_t index, const Query& query, const Take& take) const;
 
   TrapezoidRange range_;
   StoredArray<Entry> entries_;

@@ -4,6 +4,13 @@
 // the pixel, that lies within the width of the line; where several edges are near, the greatest
 // value counts. So a line is no darker where edges meet. Outlines are always drawn on the CPU, and
 // are the same whichever renderer draws the fill.
+//
+// What a picture costs is bounded by its pixels and the length of its outlines, and not by the
+// width of its lines: where lines are so crowded that kCrowd values would be computed for every
+// pixel, their ends are moved to a grid of 1/32 pixel, which leaves out the shortest edges, and
+// equal ones are drawn once. If that does not suffice, lines of four pixels and wider are drawn by
+// the nearest edge of every pixel: their ends and joins are round then, and where outlines lie upon
+// each other the dashes of the nearest one are seen.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +18,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/cancellation.h"
 #include "core/grid/grid.h"
 #include "core/grid/name_table.h"
 #include "render/mask/mask.h"
+#include "render/mask/outline_field.h"
 
 namespace trapeze {
 
@@ -37,6 +46,10 @@ struct Stroke {
   /// The greatest distance from the edge at which the line covers anything, in pixels of a picture
   /// of that scale.
   double reach(int scale) const;
+  /// About how many values of pixels are computed at most for lines along so many edges that are
+  /// not longer than wide, in a picture of that view and scale. Never less for more edges, or for
+  /// wider lines.
+  std::uint64_t most_values(std::uint64_t edges, const View& view, int scale) const;
 
   friend bool operator==(const Stroke&, const Stroke&) = default;
 };
@@ -52,21 +65,24 @@ struct OutlineEdge {
 /// time may use it.
 class Stroker {
  public:
+  /// Values that are computed for a pixel, on average, before a picture counts as crowded.
+  static constexpr std::uint64_t kCrowd = 64;
+
   /// Draws lines along the edges into `mask`: each value becomes the greater of what it was and
   /// what the lines cover. No edge is given twice; edges that share a vertex are joined there.
-  /// Throws std::invalid_argument if the mask is not of the size of the view.
+  /// Throws std::invalid_argument if the mask is not of the size of the view, and Cancelled.
   void draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-            const Stroke& stroke, const View& view, int scale, Mask& mask);
+            const Stroke& stroke, const View& view, int scale, Mask& mask,
+            const Cancellation* cancellation = nullptr);
+
+  /// The work of the last call: values of pixels that were computed, and steps of OutlineField.
+  std::uint64_t values() const { return values_; }
 
  private:
-  struct Place {
-    double x;
-    double y;
-  };
   // An edge in pixels, with its direction.
   struct Line {
-    Place from;
-    Place to;
+    PicturePlace from;
+    PicturePlace to;
     double dx;
     double dy;
     double length;
@@ -74,22 +90,35 @@ class Stroker {
 
     Line turned() const;
   };
-  // The lines found so far at a vertex, while lines are joined.
+  // What tells the ends of a line from other places.
+  struct Ends {
+    std::uint64_t from;
+    std::uint64_t to;
+  };
+  // The lines found so far at a place, while lines are joined.
   struct Meeting {
-    std::uint32_t vertex = 0;
+    std::uint64_t place = 0;
+    std::uint32_t line = 0;   // the index of the first line
     std::uint16_t count = 0;  // of lines found there
     bool is_end = false;      // whether it is the end of the first line, or else its beginning
-    std::uint32_t line = 0;   // the index of the first line
   };
   class Pen;
 
   void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                const View& view);
-  void meet(std::uint32_t vertex, std::uint32_t line, bool is_end, Pen& pen);
+  static Line line_between(PicturePlace from, PicturePlace to, double along);
+  double values_of_lines(const Pen& pen, const View& view) const;
+  void merge_lines();
+  void draw_each(Pen& pen, const Cancellation* cancellation);
+  void meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pen);
   Line leaving(std::uint32_t line, bool is_end) const;
+  void draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cancellation);
 
   std::vector<Line> lines_;
-  std::vector<Meeting> meet_;  // by vertex, open addressing
+  std::vector<Ends> ends_;     // by line
+  std::vector<Meeting> meet_;  // by place, open addressing
+  OutlineField field_;
+  std::uint64_t values_ = 0;
 };
 
 }  // namespace trapeze

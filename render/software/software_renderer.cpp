@@ -53,6 +53,8 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   const View& view = task.view;
   view.check();
   prepare(view);
+  // From here on nothing can fail, so that no areas are left behind for the next picture.
+  task.out->resize(view.width, view.height);
   const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
                     static_cast<double>(view.width), static_cast<double>(view.height)};
   {
@@ -60,7 +62,6 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
     for (const MeshPart& part : task.parts) add(part, frame);
   }
   const Stopwatch stopwatch(times.resolve_ms);
-  task.out->resize(view.width, view.height);
   resolve(*task.out);
 }
 
@@ -70,11 +71,12 @@ std::string SoftwareRenderer::description() const {
 
 void SoftwareRenderer::prepare(const View& view) {
   if (view.width == width_ && view.height == height_) return;
+  width_ = height_ = 0;  // what there is no memory for is prepared anew the next time
+  stride_ = static_cast<std::size_t>(view.width) + 2;
+  differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0.0f);
+  touched_.assign(static_cast<std::size_t>(view.height), Touched{view.width, -1});
   width_ = view.width;
   height_ = view.height;
-  stride_ = static_cast<std::size_t>(width_) + 2;
-  differences_.assign(stride_ * static_cast<std::size_t>(height_), 0.0f);
-  touched_.assign(static_cast<std::size_t>(height_), Touched{width_, -1});
 }
 
 void SoftwareRenderer::add(const MeshPart& part, const Frame& frame) {

@@ -62,6 +62,15 @@ void LayerDrawing::ClassDrawing::add_place(const Box& place, bool is_hole) {
   if (is_hole) std::swap(place_trapezoids.back().left, place_trapezoids.back().right);
 }
 
+Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
+  const Stroke& stroke = paint.style.stroke;
+  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+  // Dust that many features share has no class.
+  const bool has_classes = !paint.style.classing.is_plain();
+  return {with_margin(view.box(), reach), paint.level, plan.pixel_level(),
+          has_classes ? SmallPolygons::drop : paint.small};
+}
+
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
                           const FeatureClasses* classes, DrawingTools& tools) {
   paint_ = &paint;
@@ -69,11 +78,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   class_count_ = 0;
   line_count_ = 0;
   by_number_.assign(style().paints.size(), nullptr);
-  const double reach = has_lines() ? style().stroke.reach(plan.scale) * view.cells_per_pixel : 0;
-  Layer::Selection selection{with_margin(view.box(), reach), paint.level, plan.pixel_level(),
-                             paint.small};
-  // Dust that many features share has no class.
-  if (classes != nullptr) selection.small = SmallPolygons::drop;
+  const Layer::Selection selection = selection_of(plan, paint, view);
   layer_->select(selection, tools.ranges);
   if (classes == nullptr) {
     if (!tools.ranges.empty()) {

@@ -30,6 +30,9 @@ struct DrawingTools {
   std::vector<Box> places;
 };
 
+/// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
+Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
+
 class LayerDrawing {
  public:
   /// Selects what is to be drawn. `classes` has the class of every feature; null if the style is

@@ -111,9 +111,17 @@ DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketche
     sketches[i].tasks = tasks_.size() - tasks_before;
   }
   if (tasks_.empty()) return {};
-  const DrawTimes times = renderer_->draw(tasks_);
-  for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
-  return times;
+  const auto forget_places = [this] {
+    for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
+  };
+  try {
+    const DrawTimes times = renderer_->draw(tasks_);
+    forget_places();
+    return times;
+  } catch (...) {
+    forget_places();
+    throw;
+  }
 }
 
 PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {

@@ -97,6 +97,10 @@ TEST(MeshIndexTest, SelectsWhatMeetsTheBoxAndIsAlive) {
     const auto level = static_cast<Level>(below(40));
     std::vector<TrapezoidRange> ranges;
     index.select(box, level, level, lifespans, ranges);
+    std::uint64_t selected = 0;
+    for (const TrapezoidRange& range : ranges) selected += range.count;
+    EXPECT_EQ(index.count(box, level, level, lifespans, 1000), selected);
+    EXPECT_EQ(index.count(box, level, level, lifespans, 3), std::min<std::uint64_t>(selected, 3));
     std::vector<bool> is_selected(1000, false);
     for (const TrapezoidRange& range : ranges) {
       for (std::uint32_t i = range.first; i < range.first + range.count; ++i) is_selected[i] = true;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 
 namespace trapeze {
@@ -150,6 +152,124 @@ TEST(StrokeTest, EdgesFarOffTheViewAreNoTrouble) {
   const Mask mask = draw_edges({{-9e5, 50}, {9e5, 50}, {-9e5, -9e5}, {9e5, -8e5}},
                                {{0, 1, 0}, {2, 3, 0}}, {2, {}, LineJoin::round});
   EXPECT_NEAR(area(mask), 2 * kSide, 0.5);
+}
+
+TEST(StrokeTest, DashesTooFineToBeSeenAreATint) {
+  const double solid = area(draw_ring(kSquare, {2, {}, LineJoin::bevel}));
+  for (const double length : {0.4, 0.1, 0.01, 1e-300}) {
+    const Mask half = draw_ring(kSquare, {2, {length, length}, LineJoin::bevel});
+    EXPECT_NEAR(area(half) / solid, 0.5, 0.01) << length;
+    const Mask quarter = draw_ring(kSquare, {2, {length, 3 * length}, LineJoin::bevel});
+    EXPECT_NEAR(area(quarter) / solid, 0.25, 0.01) << length;
+  }
+}
+
+// Outlines of so many edges that they are not drawn one by one.
+class CrowdTest : public ::testing::Test {
+ protected:
+  /// A rough coast around the middle, all of it within four pixels of a circle: edges of about a
+  /// fifth of a pixel.
+  void add_coast(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> roughness(-2, 2);
+    constexpr std::uint32_t kEdges = 2000;
+    const auto first = static_cast<std::uint32_t>(vertices_.size());
+    for (std::uint32_t i = 0; i < kEdges; ++i) {
+      const double angle = 2 * M_PI * i / kEdges;
+      const double radius = 25 + roughness(random);
+      vertices_.push_back({static_cast<std::int32_t>((50 + radius * std::cos(angle)) * kCells),
+                           static_cast<std::int32_t>((50 + radius * std::sin(angle)) * kCells)});
+      edges_.push_back({first + i, first + (i + 1) % kEdges, i * 0.2 * kCells});
+    }
+  }
+
+  Mask draw(const Stroke& stroke, const Cancellation* cancellation = nullptr) {
+    View view;
+    view.cells_per_pixel = kCells;
+    view.width = view.height = kSide;
+    Mask mask(kSide, kSide);
+    mask.fill(0);
+    stroker_.draw(vertices_, edges_, stroke, view, 1, mask, cancellation);
+    return mask;
+  }
+
+  /// The distance of a place from the nearest edge, in pixels.
+  double distance(double x, double y) const {
+    double least = 1e9;
+    for (const OutlineEdge& edge : edges_) {
+      const double ax = 1.0 * vertices_[edge.from].x / kCells;
+      const double ay = 1.0 * vertices_[edge.from].y / kCells;
+      const double bx = 1.0 * vertices_[edge.to].x / kCells - ax;
+      const double by = 1.0 * vertices_[edge.to].y / kCells - ay;
+      const double part = ((x - ax) * bx + (y - ay) * by) / (bx * bx + by * by);
+      const double on_edge = std::clamp(part, 0.0, 1.0);
+      least = std::min(least, std::hypot(x - ax - on_edge * bx, y - ay - on_edge * by));
+    }
+    return least;
+  }
+
+  std::vector<Point> vertices_;
+  std::vector<OutlineEdge> edges_;
+  Stroker stroker_;
+};
+
+constexpr std::uint64_t kPixels = kSide * kSide;
+
+TEST_F(CrowdTest, IsDrawnAsFarAsTheNearestEdge) {
+  add_coast(1);
+  for (const double width : {7.0, 16.0, 32.0}) {
+    const Mask mask = draw({width, {}, LineJoin::round});
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const double off = distance(column + 0.5, row + 0.5);
+        const double expected = std::clamp(width / 2 + 0.5 - off, 0.0, 1.0) * 255;
+        ASSERT_NEAR(mask.at(column, row), expected, 26) << column << " " << row << " " << width;
+      }
+    }
+    EXPECT_LT(stroker_.values(), Stroker::kCrowd * kPixels) << width;
+  }
+}
+
+TEST_F(CrowdTest, CostsNoMoreForWiderLines) {
+  for (unsigned seed = 0; seed < 5; ++seed) add_coast(seed);
+  draw({16, {}, LineJoin::miter});
+  EXPECT_LT(stroker_.values(), Stroker::kCrowd * kPixels);
+  draw({128, {6, 4}, LineJoin::bevel});
+  EXPECT_LT(stroker_.values(), Stroker::kCrowd * kPixels);
+}
+
+TEST_F(CrowdTest, OfEqualOutlinesOneIsDrawn) {
+  add_coast(1);
+  draw({2, {6, 4}, LineJoin::round});
+  const std::uint64_t once = stroker_.values();
+  for (int i = 0; i < 50; ++i) add_coast(1);
+  draw({2, {6, 4}, LineJoin::round});
+  EXPECT_LT(stroker_.values(), 2 * once) << "and not 50 times as much";
+}
+
+TEST_F(CrowdTest, DashesAreThoseOfTheNearestEdge) {
+  // A line across the picture in small steps, many times over.
+  for (std::uint32_t i = 0; i <= 10'000; ++i) {
+    const auto x = static_cast<std::int32_t>(i * 100 * kCells / 10'000);
+    vertices_.push_back({x, 50 * kCells});
+    if (i > 0) edges_.push_back({i - 1, i, 1.0 * vertices_[i - 1].x});
+  }
+  const Mask mask = draw({16, {20, 10}, LineJoin::bevel});
+  EXPECT_LT(stroker_.values(), Stroker::kCrowd * kPixels);
+  EXPECT_EQ(mask.at(40, 50), 255);
+  EXPECT_EQ(mask.at(40, 43), 255);
+  EXPECT_EQ(mask.at(25, 50), 0);
+  EXPECT_EQ(mask.at(25, 43), 0);
+  EXPECT_NEAR(area(mask) / kPixels, 0.16 * 2 / 3, 0.01);
+}
+
+TEST_F(CrowdTest, EndsWhenItIsNotWantedAnyLonger) {
+  for (unsigned seed = 0; seed < 5; ++seed) add_coast(seed);
+  Cancellation cancellation;
+  cancellation.cancel();
+  EXPECT_THROW(draw({1, {}, LineJoin::round}, &cancellation), Cancelled);
+  EXPECT_THROW(draw({32, {}, LineJoin::round}, &cancellation), Cancelled);
+  EXPECT_GT(area(draw({1, {}, LineJoin::round})), 0) << "and draws what is asked for next";
 }
 
 TEST(StrokeTest, LevelsOfAnotherSizeAreRefused) {

@@ -1,0 +1,46 @@
+#include "server/tiles/drawing_cost.h"
+
+#include <algorithm>
+
+#include "server/tiles/layer_drawing.h"
+
+namespace trapeze {
+namespace {
+
+std::uint64_t pixels_of(const View& view) {
+  return static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
+}
+
+std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const View& view,
+                               int scale) {
+  return edges + stroke.most_values(edges, view, scale) / kPixelsPerSide;
+}
+
+std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view,
+                            std::uint64_t most) {
+  const Layer& layer = *plan.dataset->layers()[paint.layer].layer;
+  const Layer::Counts counts = layer.count(selection_of(plan, paint, view), most);
+  const bool has_classes = !paint.style.classing.is_plain();
+  const std::uint64_t shapes = counts.trapezoids + (has_classes ? counts.grains : 0);
+  const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
+  std::uint64_t cost = counts.trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
+  if (paint.style.stroke.width > 0) {
+    const std::uint64_t edges = 2 * counts.trapezoids + counts.horizontal_edges;
+    cost += cost_of_outlines(edges, paint.style.stroke, view, plan.scale);
+  }
+  return cost;
+}
+
+}  // namespace
+
+std::uint64_t drawing_cost(const TilePlan& plan, std::uint64_t most) {
+  const View view = View::of_tile(plan.tile, plan.scale);
+  std::uint64_t cost = pixels_of(view) / kPixelsPerSide;
+  for (const LayerPaint& paint : plan.layers) {
+    if (cost > most) return cost;
+    cost += cost_of_layer(plan, paint, view, most);
+  }
+  return cost;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,53 @@
+#include "server/tiles/drawing_cost.h"
+
+#include <gtest/gtest.h>
+
+#include "server/tiles/layer_drawing.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+class DrawingCostTest : public ::testing::Test {
+ protected:
+  TilePlan plan(const std::string& target) const {
+    const auto parsed = parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook());
+    return *plan_tile(std::get<TileRequest>(*parsed), dataset_);
+  }
+  std::uint64_t cost(const std::string& target) const { return drawing_cost(plan(target)); }
+
+  const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
+};
+
+TEST_F(DrawingCostTest, IsNeverLessForMore) {
+  const std::uint64_t plain = cost("rings/0/0/0.png");
+  EXPECT_LT(plain, cost("rings,west/0/0/0.png"));
+  EXPECT_LT(plain, cost("rings/0/0/0@2x.png"));
+  EXPECT_LT(plain, cost("rings/0/0/0.png?stroke=000"));
+  EXPECT_LT(cost("rings/0/0/0.png?stroke=000"), cost("rings/0/0/0.png?stroke=000&stroke-width=32"));
+  EXPECT_LE(cost("rings/4/0/0.png"), plain) << "nothing is there";
+}
+
+TEST_F(DrawingCostTest, IsThatOfTheSidesAndThePixelsOfAPlainTile) {
+  const TilePlan tile = plan("rings/0/0/0.png");
+  const LayerPaint& paint = tile.layers.front();
+  const View view = View::of_tile(tile.tile, tile.scale);
+  std::vector<TrapezoidRange> ranges;
+  tile.layer_of(paint).select(selection_of(tile, paint, view), ranges);
+  std::uint64_t sides = 0;
+  for (const TrapezoidRange& range : ranges) sides += 2 * range.count;
+  EXPECT_GT(sides, 0u);
+  // A mask and a picture.
+  EXPECT_EQ(drawing_cost(tile), sides + 2 * 256 * 256 / kPixelsPerSide);
+}
+
+TEST_F(DrawingCostTest, CountsNoFurtherThanAsked) {
+  const TilePlan tile = plan("rings,west/0/0/0.png?stroke=000");
+  const std::uint64_t all = drawing_cost(tile);
+  EXPECT_GT(drawing_cost(tile, 10), 10u);
+  EXPECT_LT(drawing_cost(tile, 10), all);
+  EXPECT_EQ(drawing_cost(tile, all), all);
+}
+
+}  // namespace
+}  // namespace trapeze
