@@ -1,6 +1,7 @@
 #include "core/io/source/open_source.h"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <string_view>
 
 #include <cpl_conv.h>
+#include <cpl_http.h>
 #include <cpl_vsi.h>
 
 #include "core/io/file/prepared_file.h"
@@ -40,20 +42,42 @@ std::string allowed_drivers_in_words() {
   return words;
 }
 
-void register_drivers() {
-  static std::once_flag once;
-  std::call_once(once, GDALAllRegister);
-}
-
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw std::runtime_error(name_of_source(path) + ": " + what);
-}
-
 bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> prefixes) {
   for (const std::string_view prefix : prefixes) {
     if (text.substr(0, prefix.size()) == prefix) return true;
   }
   return false;
+}
+
+// Files kept in a cloud, for whose credentials GDAL asks the cloud.
+bool is_in_cloud(std::string_view path) {
+  return starts_with_any(path,
+                         {"/vsis3", "/vsigs", "/vsiaz", "/vsiadls", "/vsioss", "/vsiswift"});
+}
+
+std::atomic<bool> may_ask_cloud = false;  // a file in a cloud was opened
+
+/// In the place of GDAL's own downloads, such as of the reference system that a GeoJSON links to.
+CPLHTTPResult* refuse_download(const char* url, CSLConstList, GDALProgressFunc, void*,
+                               CPLHTTPFetchWriteFunc, void*, void*) {
+  if (may_ask_cloud) return nullptr;  // GDAL downloads it
+  auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+  result->nStatus = 1;
+  result->pszErrBuf = CPLStrdup("nothing is fetched that a file refers to");
+  CPLError(CE_Failure, CPLE_NotSupported, "refers to %s, which is not fetched", url);
+  return result;
+}
+
+void register_drivers() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALAllRegister();
+    CPLHTTPSetFetchCallback(refuse_download, nullptr);
+  });
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw std::runtime_error(name_of_source(path) + ": " + what);
 }
 
 bool is_database_connection(std::string_view path) {
@@ -139,6 +163,7 @@ CPLStringList options_for(const std::string& path, const CPLStringList& drivers)
 
 GDALDatasetUniquePtr open_source(const std::string& path) {
   register_drivers();
+  if (is_in_cloud(path)) may_ask_cloud = true;
   GdalMessages messages;
   if (!is_database_connection(path)) check_readable(path);
   const CPLStringList drivers = allowed_drivers();

@@ -3,7 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <arpa/inet.h>
 #include <cpl_conv.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -102,6 +108,27 @@ TEST_F(OpenSourceTest, RefusesVrtThatPointsElsewhere) {
 TEST_F(OpenSourceTest, RefusesFormatsThatAreNotOnTheList) {
   const std::string path = folder_.write("points.csv", "a,WKT\n1,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
   EXPECT_THAT(refusal(path), AllOf(HasSubstr("CSV"), HasSubstr("not allowed")));
+}
+
+TEST_F(OpenSourceTest, OpensNoConnectionThatAFileAsksFor) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listener, 8), 0);
+  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string url = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/crs";
+  const std::string path = folder_.write(
+      "link.geojson",
+      R"({"type":"FeatureCollection","crs":{"type":"link","properties":{"href":")" + url +
+          R"(","type":"ogcwkt"}},"features":[{"type":"Feature","properties":{},"geometry":)"
+          R"({"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}}]})");
+  refusal(path);
+  pollfd waiting{listener, POLLIN, 0};
+  EXPECT_EQ(poll(&waiting, 1, 100), 0) << "somebody connects";
+  close(listener);
 }
 
 TEST_F(OpenSourceTest, LeavesNothingBesideAGmlFile) {
