@@ -103,7 +103,7 @@ void paint(benchmark::State& state, const std::string& query) {
   TilePainter painter(make_renderer({RendererKind::software, {}}).renderer);
   std::size_t next = 0;
   for (auto _ : state) {
-    const TilePainter::Job job{&plans[next], TilePainter::Deadline::max()};
+    const TilePainter::Job job{&plans[next]};
     benchmark::DoNotOptimize(painter.paint({&job, 1}));
     next = (next + 1) % plans.size();
   }

@@ -146,6 +146,7 @@ void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
 // the band might have more trapezoids than its sums can hold, and the band continues in the next
 // one.
 void GlRenderer::draw_band(Band band, DrawTimes& times) {
+  if (band.task->cancellation != nullptr) band.task->cancellation->check();
   if (used_ + band.pixels() > room_) finish_pass(times);
   band.place = used_;
   used_ += band.pixels();

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/grid/cancellation.h"
 #include "core/grid/grid.h"
 #include "core/grid/web_mercator.h"
 #include "core/mesh/trapezoid_mesh.h"
@@ -94,6 +95,7 @@ struct MaskTask {
   std::span<const MeshPart> parts;  // drawn as if they were one mesh
   View view;
   Mask* out = nullptr;  // is resized to the view
+  const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
 };
 
 /// Milliseconds that the steps of drawing took.
@@ -112,9 +114,9 @@ class MaskRenderer {
   virtual ~MaskRenderer() = default;
 
   /// Draws every task. A mask does not depend on which other tasks are drawn in the same call.
-  /// Throws std::invalid_argument if View::check() refuses a view, and std::runtime_error if the
-  /// device fails (out of memory, context lost); the masks are then unspecified, and the renderer
-  /// remains usable.
+  /// Throws std::invalid_argument if View::check() refuses a view, Cancelled if one of the tasks is
+  /// not wanted any longer, and std::runtime_error if the device fails (out of memory, context
+  /// lost); the masks are then unspecified, and the renderer remains usable.
   virtual DrawTimes draw(std::span<const MaskTask> tasks) = 0;
 
   void draw(std::span<const MeshPart> parts, const View& view, Mask& out) {

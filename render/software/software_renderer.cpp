@@ -57,12 +57,16 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   task.out->resize(view.width, view.height);
   const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
                     static_cast<double>(view.width), static_cast<double>(view.height)};
+  bool is_wanted = true;
   {
     const Stopwatch stopwatch(times.draw_ms);
-    for (const MeshPart& part : task.parts) add(part, frame);
+    for (const MeshPart& part : task.parts) {
+      is_wanted = is_wanted && add(part, frame, task.cancellation);
+    }
   }
   const Stopwatch stopwatch(times.resolve_ms);
   resolve(*task.out);
+  if (!is_wanted) throw Cancelled();
 }
 
 std::string SoftwareRenderer::description() const {
@@ -79,12 +83,20 @@ void SoftwareRenderer::prepare(const View& view) {
   height_ = view.height;
 }
 
-void SoftwareRenderer::add(const MeshPart& part, const Frame& frame) {
+bool SoftwareRenderer::add(const MeshPart& part, const Frame& frame,
+                           const Cancellation* cancellation) {
+  constexpr std::uint32_t kTrapezoids = 4096;  // between two looks at whether they are wanted
+  std::uint32_t since_look = 0;
   for (const TrapezoidRange& range : part.ranges) {
     for (const MeshTrapezoid& trapezoid : part.mesh.trapezoids.subspan(range.first, range.count)) {
       add_trapezoid(part.mesh, trapezoid, frame);
     }
+    since_look += range.count;
+    if (since_look < kTrapezoids) continue;
+    since_look = 0;
+    if (cancellation != nullptr && cancellation->is_over()) return false;
   }
+  return true;
 }
 
 void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid,

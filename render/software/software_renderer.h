@@ -37,7 +37,8 @@ class SoftwareRenderer final : public MaskRenderer {
 
   void draw(const MaskTask& task, DrawTimes& times);
   void prepare(const View& view);
-  void add(const MeshPart& part, const Frame& frame);
+  /// False if it ended early because the mask is not wanted any longer.
+  bool add(const MeshPart& part, const Frame& frame, const Cancellation* cancellation);
   void add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Frame& frame);
   void add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
                 const Frame& frame);

@@ -99,7 +99,7 @@ int run_render(const RenderArguments& arguments) {
   auto renderers = start_renderers({kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
   const TilePlan plan = style_or_throw(plan_tile(request, Dataset::load(layers)));
-  const TilePainter::Job job{&plan, TilePainter::Deadline::max()};
+  const TilePainter::Job job{&plan};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();
   write_file(arguments.output, *tile.bytes);
   const PaintTimes& times = tile.times;

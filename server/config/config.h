@@ -50,7 +50,7 @@ struct ServerConfig {
   unsigned threads = defaults::kThreads;               // for sockets
   unsigned workers = 0;                                // for drawing; 0: one a core
   std::size_t queue = defaults::kQueue;                // tiles that may wait for a worker
-  unsigned deadline_ms = defaults::kDeadline.count();  // a tile that waits longer is given up
+  unsigned deadline_ms = defaults::kDeadline.count();  // a tile that takes longer is given up
   unsigned batch = defaults::kBatch;                   // tiles drawn in one pass, at most
   unsigned cache_mb = 256;  // of memory for tiles that were drawn; 0: none are kept
   std::string cache_control{defaults::kCacheControl};  // of tiles
@@ -84,6 +84,9 @@ struct LimitsConfig {
   unsigned write_timeout_ms = defaults::kWriteTimeout.count();  // for a whole response
   double drawn_per_second = 0;  // tiles not in the cache, for one address; 0: as many as it likes
   double drawn_burst = 2000;    // so many of them at once
+  std::uint64_t tile_cost = defaults::kTileCost;      // as drawing_cost() counts; 0: no limit
+  double cost_per_second = defaults::kCostPerSecond;  // of dear tiles, for one address; 0: no limit
+  double cost_burst = defaults::kCostBurst;
 };
 
 struct TextConfig {

@@ -11,6 +11,7 @@
 
 #include "server/base/problem.h"
 #include "server/http/client_address.h"
+#include "server/http/disconnection.h"
 
 namespace trapeze {
 
@@ -21,6 +22,7 @@ struct HttpRequest {
   std::string if_none_match;  // as sent; empty if none was
   std::string body = {};      // untrusted
   ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
+  std::shared_ptr<Disconnection> disconnection = {};  // null: it is not watched for
 };
 
 struct HttpResponse {

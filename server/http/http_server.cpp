@@ -2,12 +2,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <cerrno>
 #include <csignal>
 #include <ctime>
 #include <exception>
@@ -42,6 +45,9 @@ constexpr std::size_t kMaxLingerBytes = std::size_t{256} << 10;
 // Connections above the limit that are told so; those beyond are dropped without a word.
 constexpr std::size_t kMaxRefusals = 64;
 constexpr auto kRefusalPause = std::chrono::seconds(1);
+// A client that has closed its sending side has gone, most likely, but some still read an answer
+// that comes at once.
+constexpr auto kHalfClosedTime = std::chrono::seconds(1);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kWarningPause = std::chrono::seconds(1);
 
@@ -151,7 +157,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
       : state_(state),
         peer_(peer),
         is_trusted_(state.is_trusted(peer)),
-        stream_(std::move(socket)) {}
+        stream_(std::move(socket)),
+        half_closed_timer_(stream_.get_executor()) {}
   ~Connection() { state_.leave(*this); }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -178,6 +185,10 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   Problem target_too_long() const;
   void handle(const http::request<http::string_body>& message);
   ClientAddress client_of(const http::request<http::string_body>& message) const;
+  /// Watches for the client to go until the response is sent.
+  void watch_for_disconnection();
+  void on_readable_while_watching();
+  void stop_watching();
   void send(HttpResponse response);
   template <typename Body>
   void write(http::response<Body> message, std::shared_ptr<const std::string> bytes);
@@ -192,6 +203,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMaxBuffer};
   std::optional<http::request_parser<http::string_body>> parser_;
+  net::steady_timer half_closed_timer_;
+  bool is_watching_ = false;
   bool is_reading_ = false;  // and nobody has asked for anything yet, if the buffer is empty
 
   // The request being answered.
@@ -320,7 +333,8 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
               text(message[http::field::host]),
               text(message[http::field::if_none_match]),
               message.body(),
-              client_of(message)};
+              client_of(message),
+              std::make_shared<Disconnection>()};
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
@@ -344,7 +358,40 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
   } catch (const std::exception& error) {
     spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
     send(problem_response({500, "The request could not be answered."}));
+    return;
   }
+  if (request_.disconnection->is_awaited()) watch_for_disconnection();
+}
+
+void HttpServer::Connection::watch_for_disconnection() {
+  is_watching_ = true;
+  stream_.socket().async_wait(tcp::socket::wait_read,
+                              [self = shared_from_this()](const ErrorCode& error) {
+                                if (!error && self->is_watching_)
+                                  self->on_readable_while_watching();
+                              });
+}
+
+void HttpServer::Connection::on_readable_while_watching() {
+  char byte = 0;
+  const auto received = ::recv(stream_.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+  if (received > 0) return;  // the next request, behind which nothing can be seen
+  if (received < 0) {
+    if (errno == EAGAIN || errno == EINTR) return watch_for_disconnection();
+    return request_.disconnection->happen();
+  }
+  half_closed_timer_.expires_after(kHalfClosedTime);
+  half_closed_timer_.async_wait([self = shared_from_this()](const ErrorCode& error) {
+    if (!error && self->is_watching_) self->request_.disconnection->happen();
+  });
+}
+
+void HttpServer::Connection::stop_watching() {
+  if (!is_watching_) return;
+  is_watching_ = false;
+  half_closed_timer_.cancel();
+  ErrorCode ignored;  // then there is nothing to cancel
+  stream_.socket().cancel(ignored);
 }
 
 ClientAddress HttpServer::Connection::client_of(
@@ -360,6 +407,7 @@ ClientAddress HttpServer::Connection::client_of(
 }
 
 void HttpServer::Connection::send(HttpResponse response) {
+  stop_watching();
   tell(response);
   http::response_header<> header;
   header.version(version_);

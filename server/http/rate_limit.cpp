@@ -10,7 +10,7 @@ constexpr auto kClearingPause = std::chrono::seconds(1);
 }  // namespace
 
 std::optional<std::chrono::duration<double>> RateLimit::take(const ClientAddress& address,
-                                                             Clock::time_point now) {
+                                                             Clock::time_point now, double tokens) {
   if (per_second_ <= 0) return std::nullopt;
   const std::lock_guard lock(mutex_);
   Bucket& bucket = bucket_of(address, now);
@@ -18,7 +18,7 @@ std::optional<std::chrono::duration<double>> RateLimit::take(const ClientAddress
   if (bucket.tokens < 1) {
     return std::chrono::duration<double>((1 - bucket.tokens) / per_second_);
   }
-  bucket.tokens -= 1;
+  bucket.tokens -= tokens;
   return std::nullopt;
 }
 

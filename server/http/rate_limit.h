@@ -21,10 +21,10 @@ class RateLimit {
   /// is no limit.
   RateLimit(double per_second, double burst) : per_second_(per_second), burst_(burst) {}
 
-  /// Takes a token of the address and returns nothing; or, if it has none left, the time after
-  /// which it will have one.
+  /// Takes tokens of the address and returns nothing; or, if it has not one left, the time after
+  /// which it will have one. Who has one may take more than there are: they are missing afterwards.
   std::optional<std::chrono::duration<double>> take(const ClientAddress& address,
-                                                    Clock::time_point now);
+                                                    Clock::time_point now, double tokens = 1);
 
   /// Addresses that are remembered: never more than kMostAddresses. Those that come when there are
   /// so many share one bucket.

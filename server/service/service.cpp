@@ -42,6 +42,9 @@ SiteOptions site_options(const Config& config) {
   options.max_zoom = config.limits.zoom;
   options.drawn_per_second = config.limits.drawn_per_second;
   options.drawn_burst = config.limits.drawn_burst;
+  options.tile_cost = config.limits.tile_cost;
+  options.cost_per_second = config.limits.cost_per_second;
+  options.cost_burst = config.limits.cost_burst;
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "server/base/content_hash.h"
@@ -19,6 +20,7 @@
 #include "server/documents/wmts.h"
 #include "server/service/metrics.h"
 #include "server/styles/style_document.h"
+#include "server/tiles/drawing_cost.h"
 #include "server/tiles/paint_stages.h"
 
 namespace trapeze {
@@ -28,14 +30,34 @@ namespace {
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
+constexpr std::uint64_t kDocumentCost = 200'000;  // as drawing_cost() counts: most take 20 ms
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
+constexpr int kClientGone = 499;  // as nginx logs it; there is nobody to read it
+
+// An address may post an eighth of the styles that are kept, and as much again each hour: so others
+// keep theirs.
+constexpr double kShareSeconds = 3600;
+
+double share_of_styles(const SiteOptions& options) {
+  return static_cast<double>(options.posted_styles) / 8;
+}
+
+Problem too_dear(std::uint64_t most) {
+  return {400,
+          fmt::format("This tile takes more drawing than the {} units that one may take here. "
+                      "Ask for a coarser simplify, a smaller scale, fewer layers or no outlines.",
+                      most)};
+}
+
 Problem still_loading() {
   return {503, "The data is still being loaded."};
 }
 
 void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  response.headers.emplace_back("Access-Control-Expose-Headers",
-                                "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache");
+  response.headers.emplace_back(
+      "Access-Control-Expose-Headers",
+      "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache, X-Tile-Cost");
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
@@ -72,16 +94,18 @@ HttpResponse document(const HttpRequest& request, std::string_view content_type,
   return response;
 }
 
-HttpResponse fresh_document(const HttpRequest& request, Document made) {
+HttpResponse document_response(const HttpRequest& request,
+                               const std::shared_ptr<const Document>& made) {
   ContentHash hash;
-  hash.add(made.content_type);
-  hash.add(made.bytes);
-  return document(request, made.content_type, fmt::format("\"{}\"", hash.hex()),
-                  std::make_shared<const std::string>(std::move(made.bytes)));
+  hash.add(made->content_type);
+  hash.add(made->bytes);
+  return document(request, made->content_type, fmt::format("\"{}\"", hash.hex()),
+                  std::shared_ptr<const std::string>(made, &made->bytes));
 }
 
 HttpResponse json_document(const HttpRequest& request, std::string json) {
-  return fresh_document(request, {"application/json", std::move(json)});
+  return document_response(
+      request, std::make_shared<const Document>(Document{"application/json", std::move(json)}));
 }
 
 std::string server_timing(const PaintTimes& times) {
@@ -118,6 +142,8 @@ HttpResponse undrawn_response(TileOutcome outcome) {
   switch (outcome) {
     case TileOutcome::saturated:
       return problem_response({503, "There is more to draw than can be drawn. Ask again."});
+    case TileOutcome::withdrawn:
+      return problem_response({kClientGone, "The client has gone."});
     case TileOutcome::late:
       return problem_response({504, "The tile was not drawn in time."});
     default:
@@ -132,10 +158,14 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
     : options_(std::move(options)),
       files_(std::move(files)),
       draw_limit_(std::make_unique<RateLimit>(options_.drawn_per_second, options_.drawn_burst)),
+      cost_limit_(std::make_unique<RateLimit>(options_.cost_per_second, options_.cost_burst)),
+      post_limit_(std::make_unique<RateLimit>(share_of_styles(options_) / kShareSeconds,
+                                              share_of_styles(options_))),
       data_(data),
       tiles_(tiles),
       cache_(cache),
-      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)) {}
+      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)),
+      documents_(std::make_unique<DocumentWorker>()) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {
   const auto respond_to_all = [respond = std::move(respond)](HttpResponse response) {
@@ -248,6 +278,14 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   auto style = parse_style_document(request.body);
   if (!style) return problem_response(style.problem());
   const std::string query = style->canonical_text();
+  if (styles_->find(StyleBook::id_of(*style)) == nullptr) {
+    const auto pause = post_limit_->take(limited_address(request.client), RateLimit::Clock::now(),
+                                         static_cast<double>(StyleBook::memory_of(*style)));
+    if (pause) {
+      return problem_response({429, "These are more styles than one address may post. Ask again."},
+                              *pause);
+    }
+  }
   const auto id = styles_->post(*std::move(style));
   if (!id) return problem_response(id.problem());
   const std::string& name = *id;
@@ -297,6 +335,7 @@ void Site::handle_document(const Documents& documents, const Target& target,
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
+  std::string key = fmt::format("{} {}", *base, request.target);
   const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
                               *std::move(base), std::move(*path), *std::move(query)};
   if (const auto tile = documents.find_tile ? documents.find_tile(asked) : std::nullopt) {
@@ -304,9 +343,31 @@ void Site::handle_document(const Documents& documents, const Target& target,
     return found ? handle_tile(*found, request, respond)
                  : respond(problem_response(found.problem()));
   }
-  auto made = documents.make(asked);
-  if (!made) return respond(problem_response(made.problem()));
-  respond(fresh_document(request, *std::move(made)));
+  if (const auto kept = documents_->find(dataset, key)) {
+    return respond(document_response(request, kept));
+  }
+  if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
+  documents_->submit(
+      dataset, std::move(key), [asked, make = documents.make] { return make(asked); },
+      [request, respond](const DocumentWorker::Answer& made) {
+        respond(made ? document_response(request, *made) : problem_response(made.problem()));
+      });
+}
+
+std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
+                                                  std::uint64_t cost) const {
+  const ClientAddress address = limited_address(request.client);
+  const auto now = RateLimit::Clock::now();
+  if (const auto pause = draw_limit_->take(address, now)) {
+    return problem_response(
+        {429, "These are more tiles at once than one address may have drawn. Ask again."}, *pause);
+  }
+  if (cost <= defaults::kOrdinaryTile) return std::nullopt;
+  if (const auto pause = cost_limit_->take(address, now, static_cast<double>(cost))) {
+    return problem_response(
+        {429, "These tiles take more drawing than one address may ask for. Ask again."}, *pause);
+  }
+  return std::nullopt;
 }
 
 std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
@@ -339,31 +400,36 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   auto& plan = *planned;
   std::string key = plan.key();
   const std::string entity_tag = entity_tag_of(key);
+  if (const ServedLayer* damaged = plan.damaged_layer()) {
+    return respond(problem_response(damaged_layer(*damaged)));
+  }
   if (matches_entity_tag(request.if_none_match, entity_tag)) {
     return respond(tile_headers(304, entity_tag, options_.cache_control));
   }
   if (const auto kept = cache_.find(key); kept.bytes != nullptr) {
     return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
   }
-  if (const ServedLayer* damaged = plan.damaged_layer()) {
-    return respond(problem_response(damaged_layer(*damaged)));
-  }
-  if (const auto pause =
-          draw_limit_->take(limited_address(request.client), RateLimit::Clock::now())) {
-    return respond(problem_response(
-        {429, "These are more tiles at once than one address may have drawn. Ask again."}, *pause));
-  }
+  const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
+  const std::uint64_t cost = drawing_cost(plan, most);
+  if (cost > most) return respond(problem_response(too_dear(most)));
+  if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   // The last answers come while the service ends, when this site may be gone.
   auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond, key,
-                      entity_tag, format = tile.format](const TileAnswer& answer) {
+                      entity_tag, cost, format = tile.format](const TileAnswer& answer) {
     if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
     const TileCache::Tile drawn{answer.tile.bytes, answer.tile.hint};
     cache.insert(key, drawn);
     auto response = tile_response(drawn, entity_tag, cache_control, format, "MISS");
     response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
+    response.headers.emplace_back("X-Tile-Cost", std::to_string(cost));
     respond(std::move(response));
   };
-  tiles_.submit(std::move(plan), std::move(key), std::move(answer_with));
+  const auto ticket =
+      tiles_.submit(std::move(plan), std::move(key),
+                    cost > defaults::kDearTile ? TileService::Cost::dear : TileService::Cost::cheap,
+                    std::move(answer_with));
+  if (request.disconnection == nullptr) return;
+  request.disconnection->act([&tiles = tiles_, ticket] { tiles.withdraw(ticket); });
 }
 
 Result<std::string> Site::base_url(const HttpRequest& request) const {

@@ -21,6 +21,7 @@
 #include "server/http/http_message.h"
 #include "server/http/rate_limit.h"
 #include "server/http/static_files.h"
+#include "server/service/document_worker.h"
 #include "server/styles/style_book.h"
 #include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_service.h"
@@ -40,6 +41,12 @@ struct SiteOptions {
   /// Tiles that one address may have drawn, as RateLimit takes them; 0: as many as it likes.
   double drawn_per_second = 0;
   double drawn_burst = 1;
+  /// What one tile may cost at most, as drawing_cost() counts; 0: whatever it does.
+  std::uint64_t tile_cost = defaults::kTileCost;
+  /// What the dear tiles and the documents of one address may cost, as RateLimit takes it; 0:
+  /// whatever they do.
+  double cost_per_second = 0;
+  double cost_burst = 1;
   /// What /metrics answers; empty: it is not there.
   std::function<std::string()> metrics = {};
   /// Whether the server is about to end, and so not ready any more; empty: never.
@@ -57,7 +64,7 @@ class Site {
   Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
        TileCache& cache);
 
-  /// Calls `respond` exactly once: within this call, or later from a worker of the tile service.
+  /// Calls `respond` exactly once: within this call, or later from a worker.
   void handle(const HttpRequest& request, Respond respond) const;
 
  private:
@@ -81,6 +88,9 @@ class Site {
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;
   HttpResponse answer_metrics() const;
+  /// The response to a client that has asked for too much lately; null if it has not. Counts what
+  /// it asks for now.
+  std::optional<HttpResponse> find_impatience(const HttpRequest& request, std::uint64_t cost) const;
   /// What of a tile is beyond the limits of this site.
   std::optional<Problem> find_excess(const TileRequest& tile) const;
   /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
@@ -90,10 +100,13 @@ class Site {
   const SiteOptions options_;
   const StaticFiles files_;
   const std::unique_ptr<RateLimit> draw_limit_;
+  const std::unique_ptr<RateLimit> cost_limit_;
+  const std::unique_ptr<RateLimit> post_limit_;  // in bytes of styles
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;
   const std::unique_ptr<StyleBook> styles_;
+  const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the others
 };
 
 }  // namespace trapeze

@@ -58,16 +58,24 @@ Problem StyleBook::unknown(const std::string& name) const {
       "style", name, takes};
 }
 
-Result<std::string> StyleBook::post(StyleQuery style) {
+std::string StyleBook::id_of(const StyleQuery& style) {
+  return digest_of(style.canonical_text());
+}
+
+std::size_t StyleBook::memory_of(const StyleQuery& style) {
   constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
+  return kOverhead + 4 * style.canonical_text().size();
+}
+
+Result<std::string> StyleBook::post(StyleQuery style) {
   const std::string text = style.canonical_text();
   if (text.size() > kMaxStyleLength) {
     return Problem{400, fmt::format("A style is at most {} bytes long, written as a query; this "
                                     "one has {}.",
                                     kMaxStyleLength, text.size())};
   }
-  const std::size_t bytes = kOverhead + 4 * text.size();
-  std::string id = digest_of(text);
+  const std::size_t bytes = memory_of(style);
+  std::string id = id_of(style);
   const std::lock_guard lock(mutex_);
   if (bytes > posted_.budget()) {
     return Problem{403,

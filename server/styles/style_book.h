@@ -44,8 +44,13 @@ class StyleBook {
   /// not.
   Result<StyledQuery> read(std::vector<QueryPair> query) const;
 
-  /// Keeps the style under an id made from what it says: equal styles have equal ids, on every
-  /// server. The problem is a style that is too long, or larger than the budget.
+  /// The id of a style that is posted.
+  static std::string id_of(const StyleQuery& style);
+  /// About how many bytes of the budget it takes.
+  static std::size_t memory_of(const StyleQuery& style);
+
+  /// Keeps the style under id_of() it, from what it says: equal styles have equal ids, on
+  /// every server. The problem is a style that is too long, or larger than the budget.
   Result<std::string> post(StyleQuery style);
 
   /// Null if there is none of that name or id.

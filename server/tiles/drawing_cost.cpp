@@ -18,7 +18,7 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
 
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view,
                             std::uint64_t most) {
-  const Layer& layer = *plan.dataset->layers()[paint.layer].layer;
+  const Layer& layer = plan.layer_of(paint);
   const Layer::Counts counts = layer.count(selection_of(plan, paint, view), most);
   const bool has_classes = !paint.style.classing.is_plain();
   const std::uint64_t shapes = counts.trapezoids + (has_classes ? counts.grains : 0);

@@ -20,8 +20,7 @@ constexpr std::uint64_t kPixelsPerSide = 16;
 /// From the counts of the indexes alone: microseconds for most tiles, and for the greatest about a
 /// tenth of the time that it takes to select what is drawn. Never less for a picture that shows
 /// more, or has wider lines. A cost beyond `most` is told as any number beyond it, so that the
-/// counting ends early. Waits for nothing: a layer without the topological consistency test counts
-/// as if it were made with it.
+/// counting ends early.
 std::uint64_t drawing_cost(const TilePlan& plan,
                            std::uint64_t most = std::numeric_limits<std::uint32_t>::max());
 

@@ -34,6 +34,8 @@ Box with_margin(const Box& box, double margin) {
           cell(box.max_y + cells)};
 }
 
+constexpr unsigned kStepsBetweenChecks = 16'384;
+
 /// To ranges in ascending order.
 void append(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
   if (!ranges.empty() && ranges.back().first + ranges.back().count == trapezoid) {
@@ -79,15 +81,21 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   line_count_ = 0;
   by_number_.assign(style().paints.size(), nullptr);
   const Layer::Selection selection = selection_of(plan, paint, view);
+  const auto check = [&tools] {
+    if (tools.cancellation != nullptr) tools.cancellation->check();
+  };
+  check();
   layer_->select(selection, tools.ranges);
+  check();
   if (classes == nullptr) {
     if (!tools.ranges.empty()) {
       class_drawing(0).ranges.assign(tools.ranges.begin(), tools.ranges.end());
     }
   } else {
-    part_by_class(tools.ranges, *classes);
+    part_by_class(*classes, tools);
   }
   add_places(selection, view, classes, tools);
+  check();
   for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
   if (has_lines()) collect_edges(selection, classes, tools);
   return class_count_ > 0 || line_count_ > 0;
@@ -102,9 +110,10 @@ LayerDrawing::ClassDrawing& LayerDrawing::class_drawing(std::uint8_t number) {
   return *drawing;
 }
 
-void LayerDrawing::part_by_class(std::span<const TrapezoidRange> ranges,
-                                 const FeatureClasses& classes) {
-  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+void LayerDrawing::part_by_class(const FeatureClasses& classes, const DrawingTools& tools) {
+  CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
+  for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+    check();
     const std::uint8_t number = classes[layer_->feature_of(i)];
     if (number != kNotDrawn) append(i, class_drawing(number).ranges);
   });
@@ -228,6 +237,7 @@ void LayerDrawing::take_dashed_sides(Lines& lines, DrawingTools& tools) const {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const auto [side, row] = sides[i];
     if (i == 0 || sides[i - 1].second != row) {
+      if (tools.cancellation != nullptr) tools.cancellation->check();
       loops = &tools.loop_lengths.find(*layer_, paint_->level, row);
     }
     const auto found = std::ranges::lower_bound(*loops, side, {}, &LoopEdge::edge);
@@ -247,10 +257,11 @@ bool LayerDrawing::is_constant() const {
   return class_count_ == 1 && classes_[0].is_full && line_count_ == 0 && !has_pattern();
 }
 
-void LayerDrawing::add_tasks(const View& view, std::vector<MaskTask>& tasks) {
+void LayerDrawing::add_tasks(const View& view, const Cancellation* cancellation,
+                             std::vector<MaskTask>& tasks) {
   for (std::size_t i = 0; i < class_count_; ++i) {
     ClassDrawing& drawing = classes_[i];
-    if (drawing.is_drawn) tasks.push_back({drawing.parts, view, &drawing.mask});
+    if (drawing.is_drawn) tasks.push_back({drawing.parts, view, &drawing.mask, cancellation});
   }
 }
 
@@ -261,7 +272,7 @@ void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools
     lines.mask.resize(view.width, view.height);
     lines.mask.fill(0);
     tools.stroker.draw(layer_->mesh().vertices, lines.edges, style().stroke, view, scale,
-                       lines.mask);
+                       lines.mask, tools.cancellation);
   }
 }
 

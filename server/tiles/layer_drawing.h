@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grid/cancellation.h"
 #include "core/layer/class_dust.h"
 #include "core/layer/layer.h"
 #include "render/mask/mask.h"
@@ -20,8 +21,9 @@
 
 namespace trapeze {
 
-/// Memory that drawings share, kept from tile to tile.
+/// What the drawings of one tile have in common. The memory is kept from tile to tile.
 struct DrawingTools {
+  const Cancellation* cancellation = nullptr;  // of the tile; null: wanted whatever happens
   ClassDust dust;
   Stroker stroker;
   LoopLengthCache loop_lengths{std::size_t{64} << 20};
@@ -36,7 +38,8 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
 class LayerDrawing {
  public:
   /// Selects what is to be drawn. `classes` has the class of every feature; null if the style is
-  /// plain. False if there is nothing of the layer here; the drawing must then not be used.
+  /// plain. False if there is nothing of the layer here; the drawing must then not be used. Throws
+  /// Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
               const FeatureClasses* classes, DrawingTools& tools);
 
@@ -46,8 +49,8 @@ class LayerDrawing {
   bool is_constant() const;
 
   /// Appends the masks that have to be drawn; they look at memory of the drawing.
-  void add_tasks(const View& view, std::vector<MaskTask>& tasks);
-  /// Draws pattern and outlines, for a picture of that scale.
+  void add_tasks(const View& view, const Cancellation* cancellation, std::vector<MaskTask>& tasks);
+  /// Draws pattern and outlines, for a picture of that scale. Throws Cancelled.
   void draw_details(const View& view, int scale, DrawingTools& tools);
   /// Releases what was made for this picture only.
   void forget_places(MaskRenderer& renderer);
@@ -91,7 +94,7 @@ class LayerDrawing {
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
   ClassDrawing& class_drawing(std::uint8_t number);
-  void part_by_class(std::span<const TrapezoidRange> ranges, const FeatureClasses& classes);
+  void part_by_class(const FeatureClasses& classes, const DrawingTools& tools);
   void add_places(const Layer::Selection& selection, const View& view,
                   const FeatureClasses* classes, DrawingTools& tools);
   void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);

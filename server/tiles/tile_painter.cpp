@@ -43,20 +43,14 @@ std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
 std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
   drawing_count_ = 0;
   std::vector<Sketch> sketches;
-  for (const Job& job : jobs) {
-    if (Clock::now() > job.deadline) {
-      sketches.push_back({true, drawing_count_, drawing_count_, 0, {}});
-    } else {
-      sketches.push_back(sketch(*job.plan));
-    }
-  }
+  for (const Job& job : jobs) sketches.push_back(sketch(job));
   const DrawTimes drawn = draw(jobs, sketches);
   const double share = 1.0 / static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
 
   std::vector<std::optional<PaintedTile>> tiles;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     Sketch& sketch = sketches[i];
-    if (sketch.is_late) {
+    if (sketch.is_cancelled) {
       tiles.emplace_back();
       continue;
     }
@@ -69,10 +63,22 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
   return tiles;
 }
 
-// From the top down: what lies under an opaque layer that covers everything is not looked at.
-TilePainter::Sketch TilePainter::sketch(const TilePlan& plan) {
+TilePainter::Sketch TilePainter::sketch(const Job& job) {
   Sketch sketch;
   sketch.first_drawing = drawing_count_;
+  tools_.cancellation = job.cancellation;
+  try {
+    select(*job.plan, sketch);
+  } catch (const Cancelled&) {
+    sketch.is_cancelled = true;
+    drawing_count_ = sketch.first_drawing;
+  }
+  sketch.end_drawing = drawing_count_;
+  return sketch;
+}
+
+// From the top down: what lies under an opaque layer that covers everything is not looked at.
+void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const View view = View::of_tile(plan.tile, plan.scale);
   const Stopwatch stopwatch(sketch.times.select_ms);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
@@ -84,8 +90,6 @@ TilePainter::Sketch TilePainter::sketch(const TilePlan& plan) {
     ++drawing_count_;
     if (drawing.hides_all()) break;
   }
-  sketch.end_drawing = drawing_count_;
-  return sketch;
 }
 
 // Null if all features are drawn alike.
@@ -99,17 +103,7 @@ std::shared_ptr<const FeatureClasses> TilePainter::classes_for(const TilePlan& p
 
 DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketches) {
   tasks_.clear();
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const TilePlan& plan = *jobs[i].plan;
-    const View view = View::of_tile(plan.tile, plan.scale);
-    const std::size_t tasks_before = tasks_.size();
-    for (std::size_t k = sketches[i].first_drawing; k < sketches[i].end_drawing; ++k) {
-      drawings_[k].add_tasks(view, tasks_);
-      const Stopwatch stopwatch(sketches[i].times.draw_ms);
-      drawings_[k].draw_details(view, plan.scale, tools_);
-    }
-    sketches[i].tasks = tasks_.size() - tasks_before;
-  }
+  for (std::size_t i = 0; i < jobs.size(); ++i) draw_details(jobs[i], sketches[i]);
   if (tasks_.empty()) return {};
   const auto forget_places = [this] {
     for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
@@ -122,6 +116,24 @@ DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketche
     forget_places();
     throw;
   }
+}
+
+// Draws the outlines and patterns of one tile, and adds its masks to those to be drawn.
+void TilePainter::draw_details(const Job& job, Sketch& sketch) {
+  const View view = View::of_tile(job.plan->tile, job.plan->scale);
+  const std::size_t tasks_before = tasks_.size();
+  tools_.cancellation = job.cancellation;
+  try {
+    const Stopwatch stopwatch(sketch.times.draw_ms);
+    for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
+      drawings_[k].add_tasks(view, job.cancellation, tasks_);
+      drawings_[k].draw_details(view, job.plan->scale, tools_);
+    }
+  } catch (const Cancelled&) {
+    sketch.is_cancelled = true;
+    tasks_.resize(tasks_before);
+  }
+  sketch.tasks = tasks_.size() - tasks_before;
 }
 
 PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {

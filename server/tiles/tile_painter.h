@@ -3,7 +3,6 @@
 // Thread-safety: one thread at a time; every worker has its own.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/cancellation.h"
 #include "render/mask/mask.h"
 #include "render/picture/compose.h"
 #include "render/picture/png.h"
@@ -51,12 +51,9 @@ struct PaintedTile {
 
 class TilePainter {
  public:
-  using Clock = std::chrono::steady_clock;
-  using Deadline = Clock::time_point;
-
   struct Job {
     const TilePlan* plan = nullptr;
-    Deadline deadline;
+    const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
   };
 
   /// Painters may share what keeps the classes of features, and the fonts, which are for marks.
@@ -68,8 +65,8 @@ class TilePainter {
   static std::shared_ptr<FeatureClassCache> new_class_cache();
 
   /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
-  /// Nothing for those whose deadline passed before they were begun. What a tile looks like does
-  /// not depend on the others. Throws what the renderer and the encoder throw.
+  /// Nothing for those that are not wanted any longer. What a tile looks like does not depend on
+  /// the others. Throws what the renderer and the encoder throw; Cancelled is of one of the tiles.
   std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
 
   /// Whether painting several tiles at once takes less time than one after the other.
@@ -78,14 +75,16 @@ class TilePainter {
  private:
   // The drawings of one tile, and what became of it.
   struct Sketch {
-    bool is_late = false;
+    bool is_cancelled = false;
     std::size_t first_drawing = 0;
     std::size_t end_drawing = 0;
     std::size_t tasks = 0;  // of those to be drawn
     PaintTimes times;
   };
 
-  Sketch sketch(const TilePlan& plan);
+  Sketch sketch(const Job& job);
+  void select(const TilePlan& plan, Sketch& sketch);
+  void draw_details(const Job& job, Sketch& sketch);
   std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
   DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
   PaintedTile finish(const TilePlan& plan, const Sketch& sketch);

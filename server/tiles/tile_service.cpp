@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <utility>
 
 namespace trapeze {
@@ -36,42 +37,84 @@ void TileService::stop_workers() {
   {
     const std::lock_guard lock(mutex_);
     is_stopping_ = true;
+    for (const auto& [key, flight] : flights_) flight->cancellation.cancel();
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) thread.join();
 }
 
-void TileService::submit(TilePlan plan, std::string key, Callback callback) {
-  const auto now = TilePainter::Clock::now();
-  const auto deadline = now + options_.deadline;
+TileService::Ticket TileService::submit(TilePlan plan, std::string key, Cost cost,
+                                        Callback callback) {
+  const auto now = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = flights_.find(key); found != flights_.end() && !is_stopping_) {
-      found->second->deadline = deadline;
-      found->second->callbacks.push_back(std::move(callback));
-      return;
+    if (const auto found = flights_.find(key);
+        found != flights_.end() && !found->second->cancellation.is_over()) {
+      return join(found->second, now, std::move(callback));
     }
-    if (queue_.size() < options_.queue && !is_stopping_) {
+    Queue& queue = queue_of(cost);
+    if (queue.size() < options_.queue && !is_stopping_) {
       auto flight = std::make_shared<Flight>();
       flight->plan = std::move(plan);
       flight->key = std::move(key);
+      flight->cost = cost;
       flight->submitted = now;
-      flight->deadline = deadline;
-      flight->callbacks.push_back(std::move(callback));
-      flights_.emplace(flight->key, flight);
-      queue_.push_back(std::move(flight));
+      flights_.insert_or_assign(flight->key, flight);
+      queue.push_back(flight);
       wake_.notify_one();
-      return;
+      return join(flight, now, std::move(callback));
     }
   }
   const TileAnswer saturated{TileOutcome::saturated, {}};
   tell(saturated);
   callback(saturated);
+  return {};
+}
+
+TileService::Ticket TileService::join(const std::shared_ptr<Flight>& flight, Clock::time_point now,
+                                      Callback callback) const {
+  flight->cancellation.set_deadline(now + options_.deadline);
+  flight->callbacks.push_back(std::move(callback));
+  ++flight->wanted;
+  Ticket ticket;
+  ticket.flight_ = flight;
+  ticket.number_ = flight->callbacks.size() - 1;
+  return ticket;
+}
+
+void TileService::withdraw(const Ticket& ticket) {
+  const auto flight = ticket.flight_.lock();
+  if (flight == nullptr) return;
+  Callback callback;
+  {
+    const std::lock_guard lock(mutex_);
+    if (ticket.number_ >= flight->callbacks.size()) return;  // all have been answered
+    callback = std::exchange(flight->callbacks[ticket.number_], nullptr);
+    if (callback == nullptr) return;
+    if (--flight->wanted == 0) give_up(flight);
+  }
+  callback({TileOutcome::withdrawn, {}});
+}
+
+// One that waits is gone at once; a worker notices before long.
+void TileService::give_up(const std::shared_ptr<Flight>& flight) {
+  flight->cancellation.cancel();
+  Queue& queue = queue_of(flight->cost);
+  const auto waiting = std::ranges::find(queue, flight);
+  if (waiting == queue.end()) return;
+  queue.erase(waiting);
+  forget(flight);
+}
+
+void TileService::forget(const std::shared_ptr<Flight>& flight) {
+  const auto found = flights_.find(flight->key);
+  // Another one may have begun when nobody wanted this any longer.
+  if (found != flights_.end() && found->second == flight) flights_.erase(found);
 }
 
 TileService::Figures TileService::figures() const {
   const std::lock_guard lock(mutex_);
-  return {queue_.size(), flights_.size() - queue_.size()};
+  return {queue_.size() + dear_queue_.size(), drawing_};
 }
 
 void TileService::tell(const TileAnswer& answer) const {
@@ -90,15 +133,30 @@ void TileService::work(TilePainter& painter) {
 
 TileService::Flights TileService::take(std::size_t most) {
   std::unique_lock lock(mutex_);
-  wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty(); });
+  wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty() || may_take_dear(); });
   Flights flights;
   if (is_stopping_) return flights;
+  if (may_take_dear()) {
+    ++dear_drawing_;
+    ++drawing_;
+    flights.push_back(std::move(dear_queue_.front()));
+    dear_queue_.pop_front();
+    return flights;
+  }
   const std::size_t count = std::min(most, share_of_queue());
   for (std::size_t i = 0; i < count; ++i) {
     flights.push_back(std::move(queue_.front()));
     queue_.pop_front();
   }
+  drawing_ += count;
   return flights;
+}
+
+// A single worker draws cheap ones first, but not for ever.
+bool TileService::may_take_dear() const {
+  if (dear_queue_.empty() || dear_drawing_ >= std::max<std::size_t>(workers_ / 2, 1)) return false;
+  return workers_ > 1 || queue_.empty() ||
+         Clock::now() - dear_queue_.front()->submitted > options_.deadline / 4;
 }
 
 std::size_t TileService::share_of_queue() const {
@@ -113,17 +171,20 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
     if (flights.size() > 1 && answers[i].outcome == TileOutcome::failed) {
       answers[i] = paint(painter, {flights[i]}).front();
     }
-    land(flights[i], answers[i]);
+    land(flights[i], std::move(answers[i]));
+  }
+  const std::lock_guard lock(mutex_);
+  drawing_ -= flights.size();
+  if (flights.front()->cost == Cost::dear) {
+    --dear_drawing_;
+    wake_.notify_one();
   }
 }
 
 std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& flights) {
   std::vector<TilePainter::Job> jobs;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& flight : flights) jobs.push_back({&flight->plan, flight->deadline});
-  }
-  const auto begin = TilePainter::Clock::now();
+  for (const auto& flight : flights) jobs.push_back({&flight->plan, &flight->cancellation});
+  const auto begin = Clock::now();
   std::vector<TileAnswer> answers;
   // This is the boundary of a request: nothing that goes wrong in one may end the worker.
   try {
@@ -132,6 +193,9 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
                              : TileAnswer{TileOutcome::late, {}});
     }
     refuse_damaged(flights, answers);
+  } catch (const Cancelled&) {
+    const TileOutcome outcome = flights.size() > 1 ? TileOutcome::failed : TileOutcome::late;
+    answers.assign(flights.size(), TileAnswer{outcome, {}});
   } catch (const std::exception& error) {
     spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->key,
                   flights.size() > 1 ? " or one drawn with it" : "", error.what());
@@ -144,40 +208,41 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
   return answers;
 }
 
-/// What was drawn while a file was cut off may be drawn from zeros.
+/// What was drawn while a file was written into may be drawn from anything.
 void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const ServedLayer* damaged = flights[i]->plan.damaged_layer();
     if (damaged == nullptr) continue;
-    spdlog::error("{} was cut off while it was served; run `trapeze prepare` again",
+    spdlog::error("{} was written into while it was served; run `trapeze prepare` again",
                   damaged->report.path);
     answers[i] = TileAnswer{};
   }
 }
 
-void TileService::land(const std::shared_ptr<Flight>& flight, const TileAnswer& answer) {
+void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer) {
   std::vector<Callback> callbacks;
   {
     const std::lock_guard lock(mutex_);
-    const bool has_time = flight->deadline > TilePainter::Clock::now() && !is_stopping_;
-    if (answer.outcome == TileOutcome::late && has_time) {
-      queue_.push_front(flight);
-      wake_.notify_one();
-      return;
+    if (answer.outcome == TileOutcome::late && is_stopping_) {
+      answer.outcome = TileOutcome::saturated;
     }
-    flights_.erase(flight->key);
+    forget(flight);
     callbacks.swap(flight->callbacks);
   }
   tell(answer);
-  for (const Callback& callback : callbacks) callback(answer);
+  for (const Callback& callback : callbacks) {
+    if (callback != nullptr) callback(answer);
+  }
 }
 
 TileService::~TileService() {
   stop_workers();
-  while (!queue_.empty()) {
-    const auto flight = std::move(queue_.front());
-    queue_.pop_front();
-    land(flight, {TileOutcome::saturated, {}});
+  for (Queue* queue : {&queue_, &dear_queue_}) {
+    while (!queue->empty()) {
+      const auto flight = std::move(queue->front());
+      queue->pop_front();
+      land(flight, {TileOutcome::saturated, {}});
+    }
   }
 }
 

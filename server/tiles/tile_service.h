@@ -1,5 +1,8 @@
 // Draws tiles on worker threads: a plan in, bytes out. Knows nothing of HTTP.
 //
+// Dear tiles have a queue of their own, and half of the workers at most: cheap ones go on being
+// drawn beside them.
+//
 // Thread-safety: all methods may be called from any thread.
 #pragma once
 
@@ -16,6 +19,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/grid/cancellation.h"
 #include "server/base/defaults.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
@@ -25,7 +29,8 @@ namespace trapeze {
 enum class TileOutcome {
   drawn,
   saturated,  // the queue is full, or the service is stopping: worth asking again
-  late,       // past the deadline
+  late,       // past the deadline, before it was drawn or while it was
+  withdrawn,  // by who asked
   failed,     // an error of ours, which has been logged
 };
 
@@ -35,9 +40,9 @@ struct TileAnswer {
 };
 
 struct TileServiceOptions {
-  std::size_t queue = defaults::kQueue;  // distinct tiles that may wait for a worker
-  std::chrono::milliseconds deadline =
-      defaults::kDeadline;  // from submission to the beginning of drawing
+  // Distinct tiles that may wait for a worker, of the cheap ones and of the dear ones each.
+  std::size_t queue = defaults::kQueue;
+  std::chrono::milliseconds deadline = defaults::kDeadline;  // from submission to the answer
   // Tiles that a worker draws in one pass, at most, if that is faster than one by one. None is
   // waited for; but a tile waits until those of its pass are drawn too.
   std::size_t batch = defaults::kBatch;
@@ -49,20 +54,38 @@ struct TileServiceOptions {
 
 class TileService {
  public:
+  using Clock = std::chrono::steady_clock;
   using Callback = std::function<void(const TileAnswer&)>;
+  enum class Cost { cheap, dear };
+
+ private:
+  struct Flight;
+
+ public:
+  /// Of one who asked.
+  class Ticket {
+    friend class TileService;
+    std::weak_ptr<Flight> flight_;
+    std::size_t number_ = 0;
+  };
 
   /// Starts one worker for each renderer, of which there is at least one. Throws std::system_error
   /// if a thread cannot be started.
   TileService(const TileServiceOptions& options,
               std::vector<std::unique_ptr<MaskRenderer>> renderers);
-  /// Ends what is being drawn; what waits is answered as saturated.
+  /// What waits is answered as saturated, what is being drawn as late as soon as that is noticed.
   ~TileService();
   TileService(const TileService&) = delete;
   TileService& operator=(const TileService&) = delete;
 
-  /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full.
-  /// `key` is the plan's; plans of equal key that are under way together are drawn once.
-  void submit(TilePlan plan, std::string key, Callback callback);
+  /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full,
+  /// or from within withdraw(). `key` is the plan's; plans of equal key that are under way together
+  /// are drawn once.
+  Ticket submit(TilePlan plan, std::string key, Cost cost, Callback callback);
+
+  /// Answers this one who asked, if that has not been done; what nobody else asked for is not drawn
+  /// any further.
+  void withdraw(const Ticket& ticket);
 
   /// One word for what draws.
   const std::string& renderer_name() const { return renderer_name_; }
@@ -81,25 +104,34 @@ class TileService {
   struct Flight {
     TilePlan plan;
     std::string key;
-    TilePainter::Clock::time_point submitted;
-    TilePainter::Deadline deadline;  // of the last who asked
-    std::vector<Callback> callbacks;
+    Cost cost = Cost::cheap;
+    Clock::time_point submitted;
+    Cancellation cancellation;        // at the deadline of the last who asked
+    std::vector<Callback> callbacks;  // empty ones withdrew
+    std::size_t wanted = 0;           // callbacks that did not
   };
   using Flights = std::vector<std::shared_ptr<Flight>>;
+  using Queue = std::deque<std::shared_ptr<Flight>>;
 
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
   /// The next flights to draw together, up to so many; none when the service stops.
   Flights take(std::size_t most);
+  bool may_take_dear() const;
+  Queue& queue_of(Cost cost) { return cost == Cost::dear ? dear_queue_ : queue_; }
   /// How many of those that wait one worker should take, so that all workers have some.
   std::size_t share_of_queue() const;
+  /// The three below are called with the mutex locked.
+  Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now,
+              Callback callback) const;
+  void give_up(const std::shared_ptr<Flight>& flight);
+  void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
-  /// Answers all who asked; but if it is late, and somebody has joined who can still wait, it
-  /// queues once more.
-  void land(const std::shared_ptr<Flight>& flight, const TileAnswer& answer);
+  /// Answers all who asked.
+  void land(const std::shared_ptr<Flight>& flight, TileAnswer answer);
   void tell(const TileAnswer& answer) const;
 
   const TileServiceOptions options_;
@@ -110,7 +142,10 @@ class TileService {
 
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable wake_;
-  std::deque<std::shared_ptr<Flight>> queue_;
+  Queue queue_;
+  Queue dear_queue_;
+  std::size_t drawing_ = 0;       // tiles that workers have taken
+  std::size_t dear_drawing_ = 0;  // the dear ones of these
   std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // queued or being drawn
   bool is_stopping_ = false;
 };

@@ -29,6 +29,15 @@ TEST(RateLimitTest, GivesABurstAndThenSoManyASecond) {
   EXPECT_EQ(taken_at_once(limit, client(1), kStart + 1h), 25) << "rest is not saved without end";
 }
 
+TEST(RateLimitTest, WhoTakesMoreThanThereIsWaitsForIt) {
+  RateLimit limit(10, 20);
+  EXPECT_EQ(limit.take(client(1), kStart, 50), std::nullopt);
+  const auto pause = limit.take(client(1), kStart);
+  ASSERT_TRUE(pause);
+  EXPECT_DOUBLE_EQ(pause->count(), 3.1);
+  EXPECT_EQ(limit.take(client(1), kStart + 3200ms), std::nullopt);
+}
+
 TEST(RateLimitTest, SaysWhenToComeAgain) {
   RateLimit limit(2, 1);
   EXPECT_EQ(limit.take(client(1), kStart), std::nullopt);

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
-#include <functional>
 #include <future>
 
 #include "render/make_renderer.h"
@@ -25,16 +24,18 @@ class GatedRenderer final : public MaskRenderer {
     std::atomic<int> passes = 0;
     bool gains_by_batching = false;
     std::atomic<bool> fails = false;
-    std::function<void()> during_second_pass = [] {};
+    bool heeds_cancellation = true;
   };
   using MaskRenderer::draw;
   explicit GatedRenderer(Gate& gate) : gate_(gate) {}
 
   DrawTimes draw(std::span<const MaskTask> tasks) override {
     gate_.begun += static_cast<int>(tasks.size());
-    const int pass = ++gate_.passes;
-    gate_.is_open.wait();
-    if (pass == 2) gate_.during_second_pass();
+    ++gate_.passes;
+    while (gate_.is_open.wait_for(1ms) != std::future_status::ready) {
+      if (!gate_.heeds_cancellation) continue;
+      for (const MaskTask& task : tasks) task.cancellation->check();
+    }
     if (gate_.fails) throw std::runtime_error("the device is lost");
     for (const MaskTask& task : tasks) {
       task.out->resize(task.view.width, task.view.height);
@@ -54,9 +55,9 @@ class TileServiceTest : public ::testing::Test {
  protected:
   ~TileServiceTest() override { open(); }
 
-  void start(TileServiceOptions options = {}) {
+  void start(TileServiceOptions options = {}, int workers = 1) {
     std::vector<std::unique_ptr<MaskRenderer>> renderers;
-    renderers.push_back(std::make_unique<GatedRenderer>(gate_));
+    for (int i = 0; i < workers; ++i) renderers.push_back(std::make_unique<GatedRenderer>(gate_));
     service_ = std::make_unique<TileService>(options, std::move(renderers));
   }
 
@@ -67,14 +68,15 @@ class TileServiceTest : public ::testing::Test {
     return {dataset_, {}, 1, kTransparent, {paint}};
   }
 
-  std::future<TileAnswer> submit(int shade) {
+  std::future<TileAnswer> submit(int shade, TileService::Cost cost = TileService::Cost::cheap) {
     auto promise = std::make_shared<std::promise<TileAnswer>>();
     auto future = promise->get_future();
     const TilePlan tile = plan(shade);
-    service_->submit(tile, tile.key(),
-                     [promise](const TileAnswer& answer) { promise->set_value(answer); });
+    ticket_ = service_->submit(tile, tile.key(), cost,
+                               [promise](const TileAnswer& answer) { promise->set_value(answer); });
     return future;
   }
+  std::future<TileAnswer> submit_dear(int shade) { return submit(shade, TileService::Cost::dear); }
 
   void wait_until_drawing(int count) const {
     while (gate_.begun < count) std::this_thread::sleep_for(1ms);
@@ -89,6 +91,7 @@ class TileServiceTest : public ::testing::Test {
   bool is_open_ = false;
   const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
   std::unique_ptr<TileService> service_;
+  TileService::Ticket ticket_;  // of the last who asked
 };
 
 TEST_F(TileServiceTest, EqualPlansUnderWayTogetherAreDrawnOnce) {
@@ -136,6 +139,7 @@ TEST_F(TileServiceTest, AFullQueueTurnsAwayAtOnce) {
 }
 
 TEST_F(TileServiceTest, WhatWaitsPastItsDeadlineIsNotDrawn) {
+  gate_.heeds_cancellation = false;
   start({8, 50ms});
   auto drawing = submit(0);
   wait_until_drawing(1);
@@ -146,21 +150,93 @@ TEST_F(TileServiceTest, WhatWaitsPastItsDeadlineIsNotDrawn) {
   EXPECT_EQ(gate_.begun, 1);
 }
 
-TEST_F(TileServiceTest, WhoJoinsWhatIsLateWaitsOnAndDoesNotShareItsDeadline) {
-  gate_.gains_by_batching = true;
-  std::future<TileAnswer> joined;
-  gate_.during_second_pass = [&] { joined = submit(1); };
-  start({8, 1s, 2});
+TEST_F(TileServiceTest, WhoAsksForWhatIsLateDoesNotShareItsDeadline) {
+  gate_.heeds_cancellation = false;
+  start({.deadline = 1s});
+  auto late = submit(0);
+  wait_until_drawing(1);
+  std::this_thread::sleep_for(1100ms);
+  auto asked_afterwards = submit(0);
+  open();
+  EXPECT_EQ(asked_afterwards.get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(gate_.begun, 2);
+}
+
+TEST_F(TileServiceTest, DearTilesLeaveHalfOfTheWorkersToCheapOnes) {
+  start({}, 4);
+  std::vector<std::future<TileAnswer>> dear;
+  for (int shade = 1; shade <= 3; ++shade) dear.push_back(submit_dear(shade));
+  wait_until_drawing(2);
+  auto cheap = submit(10);
+  auto cheap_too = submit(11);
+  wait_until_drawing(4);
+  const TileService::Figures figures = service_->figures();
+  EXPECT_EQ(figures.drawing, 4u);
+  EXPECT_EQ(figures.waiting, 1u) << "the third of the dear ones";
+  open();
+  for (auto& answer : dear) EXPECT_EQ(answer.get().outcome, TileOutcome::drawn);
+}
+
+TEST_F(TileServiceTest, ASingleWorkerDrawsCheapTilesFirst) {
+  start();
+  auto first = submit(0);
+  wait_until_drawing(1);
+  auto dear = submit_dear(1);
+  auto cheap = submit(2);
+  open();
+  EXPECT_EQ(cheap.get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(dear.get().outcome, TileOutcome::drawn);
+}
+
+TEST_F(TileServiceTest, ADeadlineEndsWhatIsBeingDrawn) {
+  start({.deadline = 50ms});
   auto drawing = submit(0);
   wait_until_drawing(1);
-  auto late = submit(1);
-  std::this_thread::sleep_for(1100ms);
-  auto company = submit(2);  // in one pass with the late one, which is given up before it is drawn
+  EXPECT_EQ(drawing.get().outcome, TileOutcome::late) << "though its gate was never opened";
   open();
-  if (company.get().outcome == TileOutcome::late) GTEST_SKIP() << "the machine stood still";
-  ASSERT_TRUE(joined.valid());
-  EXPECT_EQ(joined.get().outcome, TileOutcome::drawn);
-  EXPECT_EQ(late.get().outcome, TileOutcome::drawn) << "it has waited anyway";
+  EXPECT_EQ(submit(1).get().outcome, TileOutcome::drawn);
+}
+
+TEST_F(TileServiceTest, WhatNobodyWantsAnyLongerIsNotDrawn) {
+  start();
+  auto drawing = submit(0);
+  wait_until_drawing(1);
+  const TileService::Ticket of_drawing = ticket_;
+  auto waiting = submit(1);
+  service_->withdraw(ticket_);
+  EXPECT_EQ(waiting.get().outcome, TileOutcome::withdrawn);
+  EXPECT_EQ(service_->figures().waiting, 0u);
+  service_->withdraw(of_drawing);
+  EXPECT_EQ(drawing.get().outcome, TileOutcome::withdrawn);
+  service_->withdraw(of_drawing);  // once more, which does nothing
+  auto next = submit(2);
+  wait_until_drawing(2);  // though the gate is shut
+  open();
+  EXPECT_EQ(next.get().outcome, TileOutcome::drawn);
+}
+
+TEST_F(TileServiceTest, WhatAnotherStillWantsIsDrawnForHim) {
+  start();
+  auto one = submit(0);
+  wait_until_drawing(1);
+  auto other = submit(0);
+  service_->withdraw(ticket_);
+  EXPECT_EQ(other.get().outcome, TileOutcome::withdrawn);
+  open();
+  EXPECT_EQ(one.get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(gate_.begun, 1);
+}
+
+TEST_F(TileServiceTest, StoppingAnswersEverybodyAndEndsWhatIsBeingDrawn) {
+  start();
+  auto drawing = submit(0);
+  wait_until_drawing(1);
+  auto waiting = submit(1);
+  auto waiting_too = submit_dear(2);
+  service_.reset();  // with the gate shut
+  for (auto* answer : {&drawing, &waiting, &waiting_too}) {
+    EXPECT_EQ(answer->get().outcome, TileOutcome::saturated);
+  }
 }
 
 TEST_F(TileServiceTest, AFailingRendererFailsTheRequestAndNotTheWorker) {
@@ -172,27 +248,13 @@ TEST_F(TileServiceTest, AFailingRendererFailsTheRequestAndNotTheWorker) {
   EXPECT_EQ(submit(0).get().outcome, TileOutcome::drawn);
 }
 
-TEST_F(TileServiceTest, StoppingAnswersEverybody) {
-  start();
-  auto drawing = submit(0);
-  wait_until_drawing(1);
-  auto waiting = submit(1);
-  std::thread stopper([this] { service_.reset(); });
-  std::this_thread::sleep_for(20ms);
-  open();
-  stopper.join();
-  EXPECT_EQ(drawing.get().outcome, TileOutcome::drawn);
-  const auto outcome = waiting.get().outcome;
-  EXPECT_TRUE(outcome == TileOutcome::saturated || outcome == TileOutcome::drawn);
-}
-
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   TileService service({}, make_renderers({RendererKind::software, {}}, 4).renderers);
   std::vector<std::promise<TileAnswer>> answers(64);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     TilePlan plan = this->plan(static_cast<int>(i) * 4);
     std::string key = plan.key();
-    service.submit(std::move(plan), std::move(key),
+    service.submit(std::move(plan), std::move(key), TileService::Cost::cheap,
                    [&answers, i](const TileAnswer& answer) { answers[i].set_value(answer); });
   }
   for (std::size_t i = 0; i < answers.size(); ++i) {
