@@ -134,6 +134,14 @@ DrawTimes GlRenderer::draw(std::span<const MaskTask> tasks) {
   return times;
 }
 
+void GlRenderer::release_memory() {
+  indices_ = {};
+  batches_ = {};
+  bands_ = {};
+  sums_ = {};
+  row_ = {};
+}
+
 void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
   task.out->resize(task.view.width, task.view.height);
   const int most_rows = static_cast<int>(room_) / task.view.width;

@@ -38,6 +38,7 @@ class GlRenderer final : public MaskRenderer {
   bool gains_by_batching() const override { return gains_by_batching_; }
   /// Whether tasks are drawn in batches; the default depends on the device.
   void set_batching(bool gains) { gains_by_batching_ = gains; }
+  void release_memory() override;
   void forget(std::uint64_t mesh_id) override { store_->forget(mesh_id); }
   std::string_view name() const override;
   std::string description() const override { return context_->info().text(); }

@@ -94,7 +94,7 @@ struct MeshPart {
 struct MaskTask {
   std::span<const MeshPart> parts;  // drawn as if they were one mesh
   View view;
-  Mask* out = nullptr;  // is resized to the view
+  Mask* out = nullptr;                         // is resized to the view
   const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
 };
 
@@ -136,6 +136,9 @@ class MaskRenderer {
   /// Frees what is kept for the mesh of that id, such as its copy on the device. To be called when
   /// a mesh is destroyed.
   virtual void forget([[maybe_unused]] std::uint64_t mesh_id) {}
+
+  /// Frees working memory that a large picture needed and most do not. As draw() is called.
+  virtual void release_memory() {}
 
   /// One word: "software", "egl" or "osmesa".
   virtual std::string_view name() const = 0;

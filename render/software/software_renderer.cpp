@@ -73,6 +73,12 @@ std::string SoftwareRenderer::description() const {
   return "software renderer (exact area, one thread)";
 }
 
+void SoftwareRenderer::release_memory() {
+  width_ = height_ = 0;
+  differences_ = {};
+  touched_ = {};
+}
+
 void SoftwareRenderer::prepare(const View& view) {
   if (view.width == width_ && view.height == height_) return;
   width_ = height_ = 0;  // what there is no memory for is prepared anew the next time

@@ -22,6 +22,7 @@ class SoftwareRenderer final : public MaskRenderer {
   using MaskRenderer::draw;
   DrawTimes draw(std::span<const MaskTask> tasks) override;
 
+  void release_memory() override;
   std::string_view name() const override { return "software"; }
   std::string description() const override;
 

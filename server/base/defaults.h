@@ -22,12 +22,12 @@ constexpr std::chrono::milliseconds kWriteTimeout{30'000};
 constexpr std::chrono::milliseconds kDrainTimeout{10'000};
 
 constexpr std::size_t kQueue = 256;  // tiles that may wait for a worker
-// As drawing_cost() counts, some ten millions for a second of a worker.
-constexpr std::uint64_t kOrdinaryTile = 100'000;  // up to which cost is not looked at
-constexpr std::uint64_t kDearTile = 300'000;      // from which on a tile waits apart
-constexpr std::uint64_t kTileCost = 30'000'000;
-constexpr double kCostPerSecond = 10'000'000;
-constexpr double kCostBurst = 100'000'000;
+// As drawing_cost() counts: 25 millions for a second of a worker.
+constexpr std::uint64_t kOrdinaryTile = 250'000;  // up to which cost is not limited
+constexpr std::uint64_t kDearTile = 500'000;      // from which on a tile waits apart
+constexpr std::uint64_t kTileCost = 100'000'000;
+constexpr double kCostPerSecond = 25'000'000;
+constexpr double kCostBurst = 250'000'000;
 constexpr std::chrono::milliseconds kDeadline{10'000};
 constexpr unsigned kBatch = 8;  // tiles
 

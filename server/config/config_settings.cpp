@@ -435,11 +435,11 @@ void append_limits(std::vector<Setting<Config>>& all) {
       "how many of them it may ask for at once after a rest"));
   all.push_back(integer<Config>(
       "limits.tile_cost", [](auto& c) -> auto& { return c.limits.tile_cost; }, 0, 4'000'000'000,
-      "what drawing one tile may cost, as the header X-Tile-Cost tells: a worker draws some ten "
-      "millions a second; more is answered with 400; 0: no limit"));
+      "what drawing one tile may cost, as the header X-Tile-Cost tells: a worker draws some 25 "
+      "million a second; more is answered with 400; 0: no limit"));
   all.push_back(number<Config>(
       "limits.cost_per_second", [](auto& c) -> auto& { return c.limits.cost_per_second; }, 0, 1e12,
-      "what tiles that cost more than 100,000 each may cost, for one IPv4 address or IPv6 /64, on "
+      "what tiles that cost more than 250,000 each may cost, for one IPv4 address or IPv6 /64, on "
       "the average; more is answered with 429; 0: no limit"));
   all.push_back(number<Config>(
       "limits.cost_burst", [](auto& c) -> auto& { return c.limits.cost_burst; }, 1, 1e12,

@@ -30,7 +30,7 @@ namespace {
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
-constexpr std::uint64_t kDocumentCost = 200'000;  // as drawing_cost() counts: most take 20 ms
+constexpr std::uint64_t kDocumentCost = 500'000;  // as drawing_cost() counts: 20 ms
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
 constexpr int kClientGone = 499;  // as nginx logs it; there is nobody to read it
 

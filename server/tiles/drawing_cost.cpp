@@ -13,7 +13,8 @@ std::uint64_t pixels_of(const View& view) {
 
 std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const View& view,
                                int scale) {
-  return edges + stroke.most_values(edges, view, scale) / kPixelsPerSide;
+  const std::uint64_t sides = stroke.is_dashed() ? kSidesPerDashedEdge : kSidesPerOutlineEdge;
+  return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view,
@@ -24,6 +25,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t shapes = counts.trapezoids + (has_classes ? counts.grains : 0);
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = counts.trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
+  if (plan.debug.any()) cost += counts.trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * counts.trapezoids + counts.horizontal_edges;
     cost += cost_of_outlines(edges, paint.style.stroke, view, plan.scale);

@@ -77,6 +77,18 @@ TilePainter::Sketch TilePainter::sketch(const Job& job) {
   return sketch;
 }
 
+void TilePainter::release_memory() {
+  drawings_.clear();
+  drawing_count_ = 0;
+  tasks_ = {};
+  painted_ = {};
+  picture_ = {};
+  LoopLengthCache loop_lengths = std::move(tools_.loop_lengths);
+  tools_ = {};
+  tools_.loop_lengths = std::move(loop_lengths);
+  renderer_->release_memory();
+}
+
 // From the top down: what lies under an opaque layer that covers everything is not looked at.
 void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const View view = View::of_tile(plan.tile, plan.scale);

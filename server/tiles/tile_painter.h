@@ -69,6 +69,9 @@ class TilePainter {
   /// the others. Throws what the renderer and the encoder throw; Cancelled is of one of the tiles.
   std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
 
+  /// Frees working memory that a giant needed and most tiles do not.
+  void release_memory();
+
   /// Whether painting several tiles at once takes less time than one after the other.
   bool gains_by_batching() const { return renderer_->gains_by_batching(); }
 

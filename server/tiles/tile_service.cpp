@@ -173,9 +173,11 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
     }
     land(flights[i], std::move(answers[i]));
   }
+  const bool is_dear = flights.front()->cost == Cost::dear;
+  if (is_dear) painter.release_memory();
   const std::lock_guard lock(mutex_);
   drawing_ -= flights.size();
-  if (flights.front()->cost == Cost::dear) {
+  if (is_dear) {
     --dear_drawing_;
     wake_.notify_one();
   }

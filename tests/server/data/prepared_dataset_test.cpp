@@ -117,6 +117,19 @@ TEST(PreparedDatasetTest, ServesThePreparedFileOfALayerAndComparesItWithItsFile)
               ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("west.geojson")));
 }
 
+TEST(PreparedDatasetTest, ADamagedLayerIsNotAnsweredFromWhatIsKeptEither) {
+  const TemporaryFolder folder;
+  const std::string file = prepare(folder, fixture("rings.geojson"));
+  testing::SampleSite site(false);
+  site.data().set(load(file));
+  const std::string target = "/tiles/rings/0/0/0.png";
+  const auto drawn = site.get(target);
+  ASSERT_EQ(drawn.status, 200);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_EQ(site.get(target).status, 503);
+  EXPECT_EQ(site.get(target, std::string(drawn.header("ETag"))).status, 503);
+}
+
 class RealPreparedDatasetTest : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RealPreparedDatasetTest, DrawsTheBytesOfTheBuiltOneUnderTheSameTags) {

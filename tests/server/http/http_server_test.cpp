@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <string>
 #include <thread>
@@ -55,6 +56,60 @@ TEST_F(HttpServerTest, ServesSeveralRequestsOverOneConnection) {
   EXPECT_EQ(client.get("/nosuch").status, 404);
   EXPECT_EQ(client.get("/health").status, 200);
   EXPECT_EQ(client.get("/tiles/rings/0/0/0.png").body, tile.body);
+}
+
+/// A server whose answers wait until the client has gone or they are let.
+class DisconnectionTest : public ::testing::Test {
+ protected:
+  DisconnectionTest()
+      : server_(options(), [this](const auto& request, Respond respond) {
+          request.disconnection->act([this] { has_gone_.set_value(); });
+          respond_ = std::move(respond);
+          asked_.set_value();
+        }) {}
+  ~DisconnectionTest() override {
+    answer();
+    server_.stop();
+    thread_.join();
+  }
+
+  static HttpServerOptions options() {
+    HttpServerOptions options;
+    options.address = "127.0.0.1";
+    options.port = 0;
+    return options;
+  }
+  void ask(const RawClient& client) {
+    client.send("GET /x HTTP/1.1\r\nHost: a\r\n\r\n");
+    asked_.get_future().wait();
+  }
+  void answer() {
+    if (!is_answered_) respond_({});
+    is_answered_ = true;
+  }
+
+  std::promise<void> has_gone_;
+  std::promise<void> asked_;
+  Respond respond_;
+  bool is_answered_ = false;
+  HttpServer server_;
+  std::thread thread_{[this] { server_.run(); }};
+};
+
+TEST_F(DisconnectionTest, AClientThatGoesIsNoticed) {
+  {
+    const RawClient client(server_.port());
+    ask(client);
+  }
+  EXPECT_EQ(has_gone_.get_future().wait_for(10s), std::future_status::ready);
+}
+
+TEST_F(DisconnectionTest, OneThatHasSaidAllStillGetsWhatComesAtOnce) {
+  RawClient client(server_.port());
+  ask(client);
+  client.end_sending();
+  answer();
+  EXPECT_EQ(client.receive().status, 200);
 }
 
 TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {

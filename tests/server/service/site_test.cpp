@@ -115,6 +115,54 @@ TEST_F(SiteTest, TilesMayBeCachedAndTimed) {
                                       "compose;dur=[0-9.]+, encode;dur=[0-9.]+"));
 }
 
+TEST_F(SiteTest, ATileThatIsDrawnSaysWhatItCost) {
+  const std::string cost(get("/tiles/rings/0/0/0.png").header("X-Tile-Cost"));
+  EXPECT_GT(std::stoul(cost), 2u * 256 * 256 / 16);
+  EXPECT_EQ(get("/tiles/rings/0/0/0.png").header("X-Tile-Cost"), "") << "a kept one costs nothing";
+}
+
+TEST(SiteLimitsTest, ATileThatCostsMoreThanOneMayIsRefusedInWords) {
+  testing::SampleSite site(true, {}, {.tile_cost = 20'000});
+  EXPECT_EQ(site.get("/tiles/rings/0/0/0.png").status, 200);
+  const auto dear = site.get("/tiles/rings/0/0/0@4x.png?stroke=000&stroke-width=32");
+  EXPECT_EQ(dear.status, 400);
+  EXPECT_THAT(*dear.body, AllOf(HasSubstr("20000 units"), HasSubstr("simplify")));
+}
+
+TEST(SiteLimitsTest, WhatDearTilesCostIsLimitedAndCheapOnesAreNot) {
+  testing::SampleSite site(true, {}, {.cost_per_second = 0.001, .cost_burst = 10'000});
+  const std::string dear =
+      "/tiles/rings,west,rings/0/0/0@4x.png?stroke=000&stroke-width=32&fill=00000";
+  const auto drawn = site.get(dear + "1");
+  EXPECT_EQ(drawn.status, 200);
+  EXPECT_GT(std::stoul(std::string(drawn.header("X-Tile-Cost"))), defaults::kOrdinaryTile);
+  const auto refused = site.get(dear + "2");
+  EXPECT_EQ(refused.status, 429);
+  EXPECT_EQ(refused.header("Retry-After"), "3600");
+  EXPECT_EQ(site.get("/tiles/rings/0/0/0.png").status, 200);
+  EXPECT_EQ(site.get("/legend/rings.png").status, 429) << "a document that is not kept";
+}
+
+TEST(SiteLimitsTest, OneAddressMayPostOnlyAShareOfTheStyles) {
+  testing::SampleSite site(true, {}, {.posted_styles = 100'000});
+  const auto post = [&site](int number, std::uint8_t client) {
+    HttpRequest request{"POST",
+                        "/styles",
+                        "maps.example",
+                        {},
+                        "{\"stroke-width\": " + std::to_string(number / 4.0) + "}"};
+    request.client.bytes[0] = client;
+    return site.handle(request).status;
+  };
+  int posted = 0;
+  while (posted < 100 && post(posted, 1) == 201) ++posted;
+  EXPECT_GT(posted, 10);
+  EXPECT_LT(posted, 40);
+  EXPECT_EQ(post(posted, 1), 429);
+  EXPECT_EQ(post(0, 1), 201) << "it is there";
+  EXPECT_EQ(post(posted, 2), 201);
+}
+
 TEST_F(SiteTest, ATileIsDrawnOnceAndThenKept) {
   const auto drawn = get("/tiles/rings/0/0/0.png");
   EXPECT_EQ(drawn.header("X-Cache"), "MISS");
