@@ -338,7 +338,7 @@ void append_server(std::vector<Setting<Config>>& all) {
       "tiles that may wait for a worker; more are answered with 503"));
   all.push_back(milliseconds(
       "server.deadline_ms", [](auto& c) -> auto& { return c.server.deadline_ms; }, 1,
-      "a tile that waited longer is answered with 504"));
+      "a tile that takes longer, waiting and being drawn, is given up and answered with 504"));
   all.push_back(integer<Config>(
       "server.batch", [](auto& c) -> auto& { return c.server.batch; }, 1, 64,
       "tiles drawn in one pass, where that is faster than one by one"));

@@ -1,5 +1,6 @@
 #include "server/service/service.h"
 
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -76,6 +77,31 @@ HttpServerOptions server_options(const Config& config) {
   return options;
 }
 
+bool is_loopback(const std::string& address) {
+  return address == "::1" || address.starts_with("127.");
+}
+
+/// What everybody may do who reaches the server, if others than this machine can.
+std::vector<std::string> what_is_open(const Config& config) {
+  std::vector<std::string> open;
+  if (is_loopback(config.server.address)) return open;
+  if (config.limits.tile_cost == 0) open.emplace_back("tiles of any cost (limits.tile_cost = 0)");
+  if (config.limits.cost_per_second == 0) {
+    open.emplace_back("any number of dear tiles (limits.cost_per_second = 0)");
+  }
+  if (config.limits.drawn_per_second == 0) {
+    open.emplace_back("any number of ordinary tiles (limits.drawn_per_second = 0)");
+  }
+  if (config.server.posted_styles_mb > 0) {
+    open.emplace_back("posting styles (server.posted_styles_mb)");
+  }
+  if (config.server.metrics) open.emplace_back("/metrics (server.metrics)");
+  if (config.server.public_url.empty() && config.server.allowed_hosts.empty()) {
+    open.emplace_back("any Host (server.public_url, server.allowed_hosts)");
+  }
+  return open;
+}
+
 void log_answer(const Answered& answered) {
   if (!spdlog::should_log(spdlog::level::debug)) return;
   spdlog::debug("{}", access_line(answered, LogFormat::text));
@@ -123,6 +149,9 @@ void Service::open_server(const Config& config) {
       [this](const Answered& answered) { observe(answered); });
   where_.push_back(fmt::format("listening on {} port {}, {} I/O threads", config.server.address,
                                server_->port(), config.server.threads));
+  if (const auto open = what_is_open(config); !open.empty()) {
+    where_.push_back(fmt::format("open to everybody who reaches it: {}", fmt::join(open, ", ")));
+  }
   address_to_open_ = address_to_open(config.server.address, server_->port());
 }
 
