@@ -32,8 +32,8 @@ View View::of_tile(const TileId& tile, int scale) {
 }
 
 Box View::box() const {
-  const double min_x = static_cast<double>(origin_x);
-  const double min_y = static_cast<double>(origin_y);
+  const auto min_x = static_cast<double>(origin_x);
+  const auto min_y = static_cast<double>(origin_y);
   const double max_x = min_x + std::ceil(width * cells_per_pixel);
   const double max_y = min_y + std::ceil(height * cells_per_pixel);
   if (is_off_grid(min_x, max_x) || is_off_grid(min_y, max_y)) return Box{};
@@ -75,7 +75,7 @@ namespace {
 // Four pixels at once, by the vector extensions of g++ and clang.
 template <class Element>
 struct Four {
-  typedef Element Type __attribute__((vector_size(4 * sizeof(Element))));
+  using Type __attribute__((vector_size(4 * sizeof(Element)))) = Element;
 };
 template <class Element>
 using FourOf = typename Four<Element>::Type;

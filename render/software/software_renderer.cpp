@@ -133,8 +133,8 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
 // that it bounds has a height, and the edge spans it.
 void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
                                 const Frame& frame) {
-  const double dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
-  const double dy = static_cast<double>(std::int64_t{lower.y} - upper.y);
+  const auto dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
+  const auto dy = static_cast<double>(std::int64_t{lower.y} - upper.y);
   const double slope = dx / dy;
   const double x = frame.x(upper.x);
   const double y = frame.y(upper.y);

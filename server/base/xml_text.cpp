@@ -32,9 +32,7 @@ std::string xml_escape(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = character_length(text);
     const char c = text.front();
-    if (length == 0) {
-      escaped += kReplacement;
-    } else if (length > 1) {
+    if (length > 1) {
       escaped += text.substr(0, length);
     } else if (c == '&') {
       escaped += "&amp;";
@@ -46,7 +44,7 @@ std::string xml_escape(std::string_view text) {
       escaped += "&quot;";
     } else if (c == '\'') {
       escaped += "&#39;";
-    } else if (c >= 0x20 || c == '\t' || c == '\n' || c == '\r') {
+    } else if (length == 1 && (c >= 0x20 || c == '\t' || c == '\n' || c == '\r')) {
       escaped += c;
     } else {
       escaped += kReplacement;

@@ -1,8 +1,8 @@
 #include "server/cli/interruption.h"
 
-#include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <string_view>
 #include <thread>
 
@@ -24,9 +24,9 @@ bool is_ignored(int signal) {
   while (sigwait(&signals, &signal) != 0) {
   }
   remove_unfinished();
-  constexpr std::string_view words = "\ntrapeze: interrupted\n";
+  constexpr std::string_view kWords = "\ntrapeze: interrupted\n";
   // The line feed ends a bar of progress.
-  const std::string_view shown = isatty(STDERR_FILENO) != 0 ? words : words.substr(1);
+  const std::string_view shown = isatty(STDERR_FILENO) != 0 ? kWords : kWords.substr(1);
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, shown.data(), shown.size());
   _exit(kStatusOfSignals + signal);  // the other threads are still at work
 }

@@ -399,7 +399,7 @@ std::string unknown_problem(const CLI::App& app, const CLI::App& command,
 /// its own which option it is about; those words begin with or contain its name.
 std::string option_problem(const CLI::App& app, const CLI::App& command,
                            const CLI::ParseError& error) {
-  const std::string words = error.what();
+  std::string words = error.what();
   if (command.get_require_subcommand_min() > 0 && command.get_subcommands().empty()) {
     return command_path(command) +
            " needs a command: " + CLI::detail::join(command_names(command), ", ");

@@ -46,8 +46,8 @@ ExpandedText expand_variables(std::string_view text, const FindVariable& find) {
       text.remove_prefix(2);
     } else if (text.starts_with("${")) {
       const std::size_t close = text.find('}');
-      if (close == std::string_view::npos) return {"", "a \"${\" has no \"}\"; write $$ for a $"};
-      const auto value = look_up(text.substr(2, close - 2), find);
+      if (close == std::string_view::npos) return {"", R"(a "${" has no "}"; write $$ for a $)"};
+      auto value = look_up(text.substr(2, close - 2), find);
       if (!value.problem.empty()) return value;
       expanded.text += value.text;
       text.remove_prefix(close + 1);

@@ -115,6 +115,7 @@ class ConfigReader {
   void fail_unknown(const toml::key& key, const std::vector<Setting<Owner>>& settings,
                     const std::string& name, std::string_view other_key) {
     std::vector<std::string> allowed;
+    allowed.reserve(settings.size() + 1);
     for (const auto& setting : settings) allowed.emplace_back(setting.key);
     if (!other_key.empty()) allowed.emplace_back(other_key);
     fail(key.source().begin,
@@ -191,8 +192,9 @@ class ConfigReader {
   }
 
   std::string expanded(const toml::node& node) {
-    auto text = expand_variables(node.as_string()->get(),
-                                 [](const std::string& name) { return std::getenv(name.c_str()); });
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing changes the environment
+    const auto variable = [](const std::string& name) { return std::getenv(name.c_str()); };
+    auto text = expand_variables(node.as_string()->get(), variable);
     if (!text.problem.empty()) fail(node, text.problem);
     return std::move(text.text);
   }

@@ -261,6 +261,7 @@ int height_of(const std::vector<LegendRow>& rows) {
 /// Labels as wide as there is room, by row.
 std::vector<std::string> fitted_labels(const std::vector<LegendRow>& rows, const Fonts& fonts) {
   std::vector<std::string> labels;
+  labels.reserve(rows.size());
   for (const LegendRow& row : rows) {
     labels.push_back(fonts.fitted(row.label, kTextSize, kMaxLabelWidth));
   }

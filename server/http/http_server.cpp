@@ -159,7 +159,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
         is_trusted_(state.is_trusted(peer)),
         stream_(std::move(socket)),
         half_closed_timer_(stream_.get_executor()) {}
-  ~Connection() { state_.leave(*this); }
+  ~Connection() { state_.leave(*this); }  // NOLINT(bugprone-exception-escape): memory may end
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 

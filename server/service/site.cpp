@@ -218,7 +218,7 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
   respond(answer_file(target, request));
 }
 
-HttpResponse Site::answer_health() const {
+HttpResponse Site::answer_health() {
   HttpResponse response;
   response.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
   response.body = std::make_shared<const std::string>("{\"status\": \"ok\"}\n");

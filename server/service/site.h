@@ -75,7 +75,7 @@ class Site {
   };
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
-  HttpResponse answer_health() const;
+  static HttpResponse answer_health();
   HttpResponse answer_ready() const;
   HttpResponse answer_catalog(const HttpRequest& request) const;
   HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;

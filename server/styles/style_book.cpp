@@ -11,7 +11,7 @@ namespace trapeze {
 namespace {
 
 std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
-    std::map<std::string, StyleQuery> named) {
+    std::map<std::string, StyleQuery>&& named) {
   std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> styles;
   for (auto& [name, style] : named) {
     styles.emplace(name, std::make_shared<const StyleQuery>(std::move(style)));

@@ -19,7 +19,7 @@ namespace trapeze {
 /// MapLibre style of type "fill", or its paint alone, is understood as far as its fill-color,
 /// fill-opacity and fill-outline-color go, if they are no expressions. The problem, 400, names what
 /// is not understood: nothing is left out in silence.
-Result<StyleQuery> parse_style_document(std::string_view json);
+Result<StyleQuery> parse_style_document(std::string_view text);
 
 /// The same style as a document.
 std::string style_document(const StyleQuery& style);

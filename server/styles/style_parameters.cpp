@@ -451,7 +451,7 @@ SettingName resolve_name(std::string_view name, std::span<const std::string> lay
 /// How the sentence about an unknown name ends.
 std::string reason_or_suggestion(std::string_view name, std::span<const std::string> layers,
                                  const std::vector<std::string>& known) {
-  const std::string suggestion = suggestion_or_stop(name, known);
+  std::string suggestion = suggestion_or_stop(name, known);
   const std::size_t dot = name.find('.');
   const StyleParameter* parameter =
       dot == std::string_view::npos ? nullptr : find_style_parameter(name.substr(dot + 1));

@@ -191,7 +191,7 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, 
   auto& bytes = constants_[{to_hex(colour), side, format}];
   if (bytes != nullptr) return bytes;
   composer_.compose({}, side, side, colour, picture_);
-  const auto made = std::make_shared<const std::string>(encode(format));
+  auto made = std::make_shared<const std::string>(encode(format));
   bytes = made;
   if (constants_.size() > kMaxConstants) constants_.clear();
   return made;

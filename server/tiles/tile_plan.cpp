@@ -37,7 +37,7 @@ SmallPolygons small_of_layer(const StyleQuery& query, const std::string& layer) 
 DebugMarks debug_marks(const StyleQuery& query) {
   const auto value = query.value_for({}, ParameterId::debug);
   if (!value) return {};
-  const std::string& words = std::get<std::string>(*value);
+  const auto& words = std::get<std::string>(*value);
   DebugMarks marks;
   for (const std::string_view name : kDebugMarkNames.names()) {
     marks.*kDebugMarkNames.find(name).value() = words.find(name) != std::string::npos;
@@ -100,17 +100,16 @@ double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {
 }
 
 Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
-  TilePlan plan{dataset,       request.tile, request.scale,
-                kTransparent,  {},           debug_marks(request.style),
-                request.format};
+  TilePlan plan{std::move(dataset),         request.tile,  request.scale, kTransparent, {},
+                debug_marks(request.style), request.format};
   if (const auto background = request.style.value_for({}, ParameterId::background)) {
     const Rgba colour = std::get<Rgba>(*background);
     if (colour.a > 0) plan.background = colour;
   }
   for (const std::string& name : request.layers) {
-    const auto layer = dataset->find(name);
-    if (!layer) return unknown_layer(name, *dataset);
-    const ServedLayer& served = dataset->layers()[*layer];
+    const auto layer = plan.dataset->find(name);
+    if (!layer) return unknown_layer(name, *plan.dataset);
+    const ServedLayer& served = plan.dataset->layers()[*layer];
     const LayerConfig& config = served.config;
     const auto query = complete_style(request.style, config);
     if (!query) return query.problem();
