@@ -77,7 +77,7 @@ class FeatureTable {
 
   void check_types(std::span<const Value> values) const;
   void check_cells() const;
-  void append_number(Column& column, const Value& value);
+  static void append_number(Column& column, const Value& value);
   std::uint32_t intern(std::string_view text);
   std::string_view text(std::uint32_t number) const;
   void grow_slots();

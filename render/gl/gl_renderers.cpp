@@ -37,7 +37,6 @@ std::vector<std::unique_ptr<MaskRenderer>> renderers_of(std::unique_ptr<GlContex
 void choose_llvmpipe_threads(int renderers) {
   constexpr int kFew = 4;
   if (renderers == 1) return;
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): before there are threads that draw
   setenv("LP_NUM_THREADS", renderers <= kFew ? "0" : std::to_string(renderers).c_str(), 0);
 }
 

@@ -80,12 +80,12 @@ void OutlineField::include(Cell& cell, CellPoint point) {
 }
 
 // From the centre of a pixel to the border around the outermost points.
-float OutlineField::squared_distance(const Cell& cell, int column, int row) const {
+float OutlineField::squared_distance(const Cell& cell, int column, int row) {
   const float x = (static_cast<float>(column - cell.column) + 0.5f) * static_cast<float>(kParts);
   const float y = (static_cast<float>(row - cell.row) + 0.5f) * static_cast<float>(kParts);
   const auto to_side = [x, y](CellPoint a, CellPoint b) {
-    const float bx = static_cast<float>(b.x - a.x);
-    const float by = static_cast<float>(b.y - a.y);
+    const auto bx = static_cast<float>(b.x - a.x);
+    const auto by = static_cast<float>(b.y - a.y);
     const float px = x - static_cast<float>(a.x);
     const float py = y - static_cast<float>(a.y);
     const float length = bx * bx + by * by;

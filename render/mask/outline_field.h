@@ -77,7 +77,7 @@ class OutlineField {
   Crossing crossing(PicturePlace from, PicturePlace to) const;
   void add_piece(int column, int row, PicturePlace from, PicturePlace to, float share);
   static void include(Cell& cell, CellPoint point);
-  float squared_distance(const Cell& cell, int column, int row) const;
+  static float squared_distance(const Cell& cell, int column, int row);
   void pull(std::size_t place, int column, int row, std::size_t from);
   void spread_row(int row, int previous_row);
   std::size_t place_of(int column, int row) const {

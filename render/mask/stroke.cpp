@@ -157,7 +157,7 @@ class Stroker::Pen {
 
   // The share of a pixel at that distance from the middle of the line that the line covers.
   float across(float distance) const {
-    const float half = static_cast<float>(half_);
+    const auto half = static_cast<float>(half_);
     const float covered = std::min(distance + 0.5f, half) - std::max(distance - 0.5f, -half);
     return std::min(std::max(covered, 0.0f), 1.0f);
   }

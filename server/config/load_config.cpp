@@ -192,7 +192,6 @@ class ConfigReader {
   }
 
   std::string expanded(const toml::node& node) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing changes the environment
     const auto variable = [](const std::string& name) { return std::getenv(name.c_str()); };
     auto text = expand_variables(node.as_string()->get(), variable);
     if (!text.problem.empty()) fail(node, text.problem);

@@ -1,7 +1,6 @@
 #include "core/io/file/mapped_file.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <mutex>
@@ -98,7 +98,7 @@ class MappingGuard {
       const std::uintptr_t begin = slot.begin;
       const std::uintptr_t end = slot.end;
       if (begin <= kTaken || address < begin || address >= end || slot.begin != begin) continue;
-      void* page = reinterpret_cast<void*>(address & ~(page_size() - 1));
+      auto* const page = static_cast<std::byte*>(info->si_addr) - address % page_size();
       const int error = errno;
       const void* zeros =
           mmap(page, page_size(), PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0);

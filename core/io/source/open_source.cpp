@@ -1,10 +1,12 @@
 #include "core/io/source/open_source.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
@@ -43,24 +45,25 @@ std::string allowed_drivers_in_words() {
 }
 
 bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> prefixes) {
-  for (const std::string_view prefix : prefixes) {
-    if (text.substr(0, prefix.size()) == prefix) return true;
-  }
-  return false;
+  return std::ranges::any_of(prefixes,
+                             [text](std::string_view prefix) { return text.starts_with(prefix); });
 }
 
 // Files kept in a cloud, for whose credentials GDAL asks the cloud.
 bool is_in_cloud(std::string_view path) {
-  return starts_with_any(path,
-                         {"/vsis3", "/vsigs", "/vsiaz", "/vsiadls", "/vsioss", "/vsiswift"});
+  return starts_with_any(path, {"/vsis3", "/vsigs", "/vsiaz", "/vsiadls", "/vsioss", "/vsiswift"});
 }
 
-std::atomic<bool> may_ask_cloud = false;  // a file in a cloud was opened
+/// Whether a file in a cloud was opened.
+std::atomic<bool>& may_ask_cloud() {
+  static std::atomic<bool> may_ask = false;
+  return may_ask;
+}
 
 /// In the place of GDAL's own downloads, such as of the reference system that a GeoJSON links to.
 CPLHTTPResult* refuse_download(const char* url, CSLConstList, GDALProgressFunc, void*,
                                CPLHTTPFetchWriteFunc, void*, void*) {
-  if (may_ask_cloud) return nullptr;  // GDAL downloads it
+  if (may_ask_cloud()) return nullptr;  // GDAL downloads it
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
   result->nStatus = 1;
   result->pszErrBuf = CPLStrdup("nothing is fetched that a file refers to");
@@ -142,8 +145,8 @@ void check_readable(const std::string& path) {
          "holds no vector data that is known here" + (message.empty() ? "" : " (" + message + ")"));
   }
   const std::string name = GDALGetDriverShortName(any);
-  for (const char* allowed : kAllowedDrivers) {
-    if (name == allowed) fail(path, "is broken (" + name + "): " + message);
+  if (std::ranges::find(kAllowedDrivers, name) != std::end(kAllowedDrivers)) {
+    fail(path, "is broken (" + name + "): " + message);
   }
   fail(path, "is of the format " + name + ", which is not allowed; allowed are " +
                  allowed_drivers_in_words());
@@ -163,7 +166,7 @@ CPLStringList options_for(const std::string& path, const CPLStringList& drivers)
 
 GDALDatasetUniquePtr open_source(const std::string& path) {
   register_drivers();
-  if (is_in_cloud(path)) may_ask_cloud = true;
+  if (is_in_cloud(path)) may_ask_cloud() = true;
   GdalMessages messages;
   if (!is_database_connection(path)) check_readable(path);
   const CPLStringList drivers = allowed_drivers();

@@ -184,7 +184,7 @@ void RingReader::collect_polygon(const OGRPolygon& polygon, FeatureRings& featur
 
 void RingReader::collect_ring(const OGRLinearRing& ring, FeatureRings& feature) {
   const std::size_t begin = x_.size();
-  const std::size_t count = static_cast<std::size_t>(ring.getNumPoints());
+  const auto count = static_cast<std::size_t>(ring.getNumPoints());
   if (count == 0) return;
   x_.resize(begin + count);
   y_.resize(begin + count);
@@ -238,7 +238,7 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, Rings& rings) {
     append_snapped(ring_, rings);
     return;
   }
-  constexpr double kTurn = static_cast<double>(kGridSize);
+  constexpr auto kTurn = static_cast<double>(kGridSize);
   for (const double shift : {0.0, -kTurn, kTurn}) {
     if (extent.min_x + shift < kGridMax && extent.max_x + shift > kGridMin) {
       append_clipped(shift, rings);

@@ -128,7 +128,7 @@ std::string shortage_of_table(const std::string& path, std::optional<std::uint64
 /// GDAL does not list one that it could not open.
 std::string beside(const std::string& shapes, const std::array<const char*, 2>& endings) {
   for (const char* ending : endings) {
-    const std::string path = CPLResetExtension(shapes.c_str(), ending);
+    std::string path = CPLResetExtension(shapes.c_str(), ending);
     VSIStatBufL status;
     if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0) return path;
   }
