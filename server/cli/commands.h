@@ -4,6 +4,7 @@
 // work.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ServeArguments {
   std::string config;                    // may be empty
   std::vector<ConfigOverride> settings;  // of the command line; they override all others
   std::vector<std::string> files;        // instead of the layers of the configuration
+  std::optional<SkipLimit> max_skipped;  // of all layers; unset: as they are configured
   bool is_verbose = false;               // whatever log.level says
 };
 /// What is configured by the file, the environment and the command line. Throws if anything is
@@ -33,6 +35,7 @@ int run_config_schema();
 struct CheckArguments {
   std::vector<std::string> files;
   CoverageArguments coverage;
+  SkipLimit max_skipped;  // of each file
 };
 int run_check(const CheckArguments& arguments);
 
@@ -42,6 +45,7 @@ struct PrepareArguments {
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
+  SkipLimit max_skipped;      // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
 

@@ -101,6 +101,8 @@ Json type_schema(SettingType type) {
     case SettingType::text:
     case SettingType::path:
       return {{"type", "string"}};
+    case SettingType::amount:
+      return {{"type", {"integer", "string"}}, {"minimum", 0}, {"pattern", "^[0-9.]+ ?%?$"}};
     case SettingType::list:
     case SettingType::paths:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};

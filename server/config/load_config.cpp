@@ -172,6 +172,9 @@ class ConfigReader {
       case SettingType::text:
       case SettingType::path:
         return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
+      case SettingType::amount:
+        if (node.is_integer()) return std::to_string(node.as_integer()->get());
+        return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
       case SettingType::list:
       case SettingType::paths:
         return list_of(node);
@@ -404,6 +407,7 @@ std::optional<SettingValue> value_in(SettingType type, const std::string& text) 
     case SettingType::number:
       return number_in<double>(text);
     case SettingType::text:
+    case SettingType::amount:
     case SettingType::path:
       return text;
     case SettingType::list:

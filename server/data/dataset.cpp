@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "core/io/prepared/open_layer.h"
@@ -126,6 +127,40 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   return std::nullopt;
 }
 
+/// The layer as it is served now, if what is taken of a source is still the same.
+const ServedLayer* find_served(const LayerConfig& layer, const Dataset* previous) {
+  if (previous == nullptr) return nullptr;
+  const auto position = previous->find(layer.name);
+  if (!position) return nullptr;
+  const ServedLayer& served = previous->layers()[*position];
+  return served.config.selection == layer.selection ? &served : nullptr;
+}
+
+/// In words, that a layer has lost most of what is served of it; empty if not.
+std::string find_loss(const ServedLayer& now, const Dataset* previous) {
+  const ServedLayer* before = find_served(now.config, previous);
+  if (now.config.may_shrink || before == nullptr) return {};
+  if (2 * now.report.loaded >= before->report.loaded) return {};
+  return fmt::format(
+      "{}: {} features can be drawn, fewer than half of the {} that are served; if that is right, "
+      "set may_shrink = true",
+      now.report.path, now.report.loaded, before->report.loaded);
+}
+
+/// Throws if layers that could be read are not to be served, with all reasons.
+void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previous) {
+  std::string problems;
+  for (const ServedLayer& layer : layers) {
+    for (const std::string& problem :
+         {find_excess(layer.report, layer.config.max_skipped), find_loss(layer, previous)}) {
+      if (problem.empty()) continue;
+      problems += fmt::format("{}layer \"{}\": {}", problems.empty() ? "" : "; ", layer.config.name,
+                              problem);
+    }
+  }
+  if (!problems.empty()) throw std::runtime_error(problems);
+}
+
 /// `progress` is called by the thread that calls this.
 ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double)>& progress) {
   ServedLayer served;
@@ -202,6 +237,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
   for (auto& [i, layer] : reading) served[i] = layer.get();
   progress.finish();
   for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
+  check_layers(served, previous);
   return std::make_shared<const Dataset>(std::move(served));
 }
 

@@ -461,6 +461,8 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"check", fixture("rings.geojson"), "--coverage", "off", "--close-gaps", "5"},
        "--close-gaps needs --coverage auto or on"},
       {{"check", fixture("rings.geojson"), "--coverage", "of"}, "did you mean o"},
+      {{"check", fixture("rings.geojson"), "--max-skipped", "101%"},
+       "--max-skipped takes a number of features, or a share of them such as \"1%\", given was"},
       {{"prepare", fixture("rings.geojson")}, "--output is missing"},
       {{"prepare", fixture("rings.geojson"), fixture("rings.geojson"), "--output", "x"},
        "both be the layer"},
@@ -556,6 +558,42 @@ TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
                     ::testing::ContainsRegex("memory of the process +[0-9]+ bytes at most")));
   Program good({"check", fixture("rings.geojson")});
   EXPECT_EQ(good.wait(), 0);
+}
+
+TEST(ProgramTest, MoreSkippedFeaturesThanAllowedEndEveryCommandThatLoads) {
+  const std::string map = scratch_path("map.geojson");
+  std::ofstream(map) << R"({"type": "FeatureCollection", "features": [)"
+                     << R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",)"
+                     << R"("coordinates": [[[0,0],[5,0],[5,5],[0,0]]]}},)"
+                     << R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",)"
+                     << R"("coordinates": [[[0,0],[1e999,0],[5,5],[0,0]]]}}]})";
+  const std::string folder = scratch_path("prepared");
+  const std::string words = map + ": 1 of 2 features were skipped (50 %), and at most ";
+  const auto strict_serve = [&map] {
+    auto arguments = serve_arguments({map});
+    arguments.push_back("--strict");
+    return arguments;
+  }();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"check", map, "--max-skipped", "49%"}, "49% may be"},
+      {{"check", map, "--strict"}, "0 may be"},
+      {{"prepare", map, "--output", folder, "--max-skipped", "0"}, "0 may be"},
+      {strict_serve, "0 may be"}};
+  for (const auto& [arguments, says] : refused) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 1) << says;
+    EXPECT_THAT(program.output(), HasSubstr(words + says));
+  }
+  EXPECT_THAT(names_in(folder), ::testing::IsEmpty()) << "what is refused is not prepared";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"check", map},
+        {"check", map, "--max-skipped", "1"},
+        {"prepare", map, "--output", folder, "--max-skipped", "50%"}}) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 0) << program.output();
+  }
+  std::filesystem::remove_all(folder);
+  std::filesystem::remove(map);
 }
 
 TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {
