@@ -26,7 +26,8 @@ struct ServeArguments {
 LoadedConfig load_serve_config(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 
-/// Prints all that is wrong with a configuration; 1 if anything is.
+/// Prints all that is wrong with a configuration and the environment; 1 if a server would not
+/// start.
 int run_config_check(const std::string& path);
 /// Prints what is configured, with the origin of each value.
 int run_config_print(const ServeArguments& arguments);

@@ -223,7 +223,10 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   CLI::App* config = app.add_subcommand("config", "Check or show a configuration");
   config->footer(kConfigFooter);
   config->require_subcommand(1);
-  config->add_subcommand("check", "Tell all that is wrong with a configuration")
+  config
+      ->add_subcommand("check",
+                       "Tell all that is wrong with a configuration, and with the files that it "
+                       "names")
       ->add_option("FILE", path, "Configuration (TOML)")
       ->required();
   CLI::App* print =

@@ -46,7 +46,7 @@ bool SkipLimit::allows(std::size_t skipped, std::size_t features) const {
 std::string find_excess(const LoadReport& report, SkipLimit limit) {
   if (limit.allows(report.skipped, report.features)) return {};
   return fmt::format(
-      "{}: {} of {} features were skipped ({:.2g} %), and at most {} may be", report.path,
+      "{}: {} of {} features were skipped ({:.3g} %), and at most {} may be", report.path,
       report.skipped, report.features,
       100.0 * static_cast<double>(report.skipped) / static_cast<double>(report.features),
       limit.text());

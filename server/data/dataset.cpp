@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_arrays.h"
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
@@ -91,16 +90,6 @@ class SharedProgress {
   std::optional<LoadProgress> progress_;
 };
 
-OpenOptions how_to_open(const LayerConfig& layer) {
-  OpenOptions options;
-  options.weights = layer.weights;
-  options.coverage = layer.coverage;
-  options.close_gaps = layer.close_gaps;
-  options.selection = layer.selection;
-  options.prepared_from = layer.prepared.empty() ? "" : layer.file;
-  return options;
-}
-
 /// Whether the same files lead to the same layer: all else is how it is shown.
 bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
   const OpenOptions how_a = how_to_open(a);
@@ -180,6 +169,16 @@ ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double
 }
 
 }  // namespace
+
+OpenOptions how_to_open(const LayerConfig& layer) {
+  OpenOptions options;
+  options.weights = layer.weights;
+  options.coverage = layer.coverage;
+  options.close_gaps = layer.close_gaps;
+  options.selection = layer.selection;
+  options.prepared_from = layer.prepared.empty() ? "" : layer.file;
+  return options;
+}
 
 std::size_t ServedLayer::memory() const {
   return layer->memory() + layer->features().memory() +

@@ -11,6 +11,7 @@
 
 #include "core/io/file/mapped_file.h"
 #include "core/io/load/load_layer.h"
+#include "core/io/prepared/open_layer.h"
 #include "core/layer/layer.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
@@ -43,6 +44,9 @@ Problem damaged_layer(const ServedLayer& layer);
 /// A hash of geometry, attributes and which feature has which polygon: equal on every machine that
 /// loaded the same layer.
 std::uint64_t revision_of(const Layer& layer);
+
+/// What of a layer's configuration decides how its file is read.
+OpenOptions how_to_open(const LayerConfig& layer);
 
 /// Thread-safety: immutable, any number of threads may read.
 class Dataset {

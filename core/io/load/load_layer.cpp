@@ -32,9 +32,6 @@ class TableReader {
     for (const SourceLayer& layer : source.layers()) {
       attributes_.add_layer(*layer.layer->GetLayerDefn());
     }
-    if (const std::vector<std::string> missing = attributes_.missing(); !missing.empty()) {
-      throw SourceError("has no attribute \"" + missing.front() + "\"");
-    }
     table_ = FeatureTable(attributes_.fields());
   }
 

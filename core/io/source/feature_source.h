@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,9 @@ struct SourceFeature {
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming the source, if it cannot be opened, lacks what is selected,
-  /// or is known to be cut off.
+  /// Throws std::runtime_error, naming the source, if it cannot be opened or is known to be cut
+  /// off; SelectionError, with all that is wrong, if it lacks what is selected. A database is asked
+  /// for the first feature for which the condition holds, to learn whether it understands it.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
@@ -49,10 +51,14 @@ class FeatureSource {
   double progress() const;
 
  private:
-  void find_layers(const SourceSelection& selection);
-  void find_only_layer(const std::string& name);
+  std::vector<SelectionProblem> select(const SourceSelection& selection);
+  void find_layers();
+  std::string find_only_layer(const std::string& name);
   void add_layer(OGRLayer& layer, int geometry_field);
-  void apply_condition(const std::string& where);
+  std::string apply_condition(const std::string& where);
+  std::string apply_condition(const std::string& where, OGRLayer& layer);
+  std::vector<SelectionProblem> find_missing_attributes(
+      const std::optional<std::vector<std::string>>& names) const;
   void count_stored();
   OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
   OGRFeatureUniquePtr next_interleaved(SourceFeature& next);

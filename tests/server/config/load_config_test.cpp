@@ -305,10 +305,10 @@ TEST_F(ConfigTest, EnvironmentGoesBeforeTheFileAndTheCommandLineBeforeBoth) {
   EXPECT_EQ(loaded.config.server.trusted_proxies.size(), 2u);
   EXPECT_FALSE(loaded.config.server.metrics);
   EXPECT_EQ(loaded.config.limits.drawn_per_second, 2.5);
-  EXPECT_EQ(loaded.origins.at("server.port"), path_ + ":2");
+  EXPECT_EQ(loaded.origins.at("server.port"), path_ + ":2:8");
   EXPECT_EQ(loaded.origins.at("server.queue"), "TRAPEZE_SERVER_QUEUE");
   EXPECT_EQ(loaded.origins.at("server.batch"), "--batch");
-  EXPECT_EQ(loaded.origins.at("layer.a.title"), path_ + ":8");
+  EXPECT_EQ(loaded.origins.at("layer.a.title"), path_ + ":8:9");
   EXPECT_FALSE(loaded.origins.contains("server.deadline_ms"));
 }
 
@@ -384,7 +384,7 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
   ASSERT_EQ(problems_text(loaded.problems), "");
   const std::string printed = print_config(loaded);
   EXPECT_THAT(printed, ::testing::ContainsRegex("port = 81 +# --port"));
-  EXPECT_THAT(printed, ::testing::ContainsRegex("queue = 9 +# [^ ]+:2\n"));
+  EXPECT_THAT(printed, ::testing::ContainsRegex("queue = 9 +# [^ ]+:2:9\n"));
   EXPECT_THAT(printed, ::testing::ContainsRegex("batch = 8 +# default\n"));
   EXPECT_THAT(printed, HasSubstr("access = \"stdout\""));
   std::ofstream(path_) << printed;

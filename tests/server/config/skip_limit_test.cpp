@@ -47,7 +47,7 @@ TEST(SkipLimitTest, AnExcessIsToldWithTheFileAndTheFigures) {
   report.features = 400;
   report.skipped = 5;
   EXPECT_THAT(find_excess(report, SkipLimit::parse("1%").value()),
-              AllOf(HasSubstr("/maps/houses.gpkg: 5 of 400 features"), HasSubstr("(1.2 %)"),
+              AllOf(HasSubstr("/maps/houses.gpkg: 5 of 400 features"), HasSubstr("(1.25 %)"),
                     HasSubstr("at most 1% may be")));
   EXPECT_THAT(find_excess(report, SkipLimit::parse("5").value()), IsEmpty());
   EXPECT_THAT(find_excess(report, SkipLimit()), IsEmpty());
