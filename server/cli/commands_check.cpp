@@ -66,6 +66,7 @@ void print_report(const LoadReport& report, const Layer& layer) {
   print_memory(layer, report);
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
              report.read_seconds);
+  for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   print_notes(report);
 }
 

@@ -57,6 +57,7 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
              static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
+  for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   if (report.repaired > 0 || report.skipped > 0) {
     fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",
                report.repaired, report.skipped, output);

@@ -63,6 +63,7 @@ void log_report(const LoadReport& report, const Layer& layer) {
     spdlog::warn("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
                  report.repaired, report.skipped, report.coverage.overlaps);
   }
+  for (const std::string& warning : report.warnings) spdlog::warn("{}: {}", report.path, warning);
   log_notes(report);
   if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
 }

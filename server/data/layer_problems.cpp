@@ -36,14 +36,14 @@ std::string find_prepared_excess(const LayerConfig& layer) {
 
 std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
   std::vector<LayerProblem> problems;
-  for (OpenFinding& found : find_open_problems(layer.file_to_open(), how_to_open(layer))) {
+  for (OpenFinding& found : examine_layer(layer.file_to_open(), how_to_open(layer))) {
     const auto index =
         found.part == OpenPart::attributes ? std::optional(found.index) : std::nullopt;
-    problems.push_back({key_of(found.part, layer), index, std::move(found.what)});
+    problems.push_back({key_of(found.part, layer), index, std::move(found.what), found.is_warning});
   }
-  if (!problems.empty()) return problems;
+  if (!problems.empty()) return problems;  // a prepared file has no warnings
   std::string excess = find_prepared_excess(layer);
-  if (!excess.empty()) problems.push_back({"max_skipped", std::nullopt, std::move(excess)});
+  if (!excess.empty()) problems.push_back({"max_skipped", std::nullopt, std::move(excess), false});
   return problems;
 }
 

@@ -102,7 +102,8 @@ class ConfigCheck {
   void check_layer(const LayerConfig& layer) {
     if (layer.file_to_open().empty()) return;  // a problem of reading the configuration
     for (const LayerProblem& problem : find_layer_problems(layer)) {
-      findings_.problems.push_back(
+      auto& list = problem.is_warning ? findings_.warnings : findings_.problems;
+      list.push_back(
           found(fmt::format("layer.{}.{}", layer.name, problem.key), problem.what, problem.index));
     }
   }

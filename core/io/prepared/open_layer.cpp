@@ -5,7 +5,6 @@
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/source/feature_source.h"
-#include "core/io/source/ring_reader.h"
 #include "core/io/source/source_name.h"
 
 namespace trapeze {
@@ -48,18 +47,23 @@ OpenPart part_of(SelectionPart part) {
 }
 
 /// Throws what is wrong with a source.
-void try_source(const std::string& path, const SourceSelection& selection) {
+void examine_source(const std::string& path, const SourceSelection& selection,
+                    std::vector<OpenFinding>& findings) {
+  const std::string name = name_of_source(path);
   const FeatureSource source(path, selection);
   try {
-    for (const SourceLayer& layer : source.layers()) const RingReader reader(layer.crs, {});
+    source.check_reference_systems();
   } catch (const SourceError& error) {
-    throw std::runtime_error(name_of_source(path) + ": " + error.what());
+    throw std::runtime_error(name + ": " + error.what());
+  }
+  for (const std::string& warning : source.warnings()) {
+    findings.push_back({OpenPart::file, 0, name + ": " + warning, true});
   }
 }
 
 }  // namespace
 
-std::vector<OpenFinding> find_open_problems(const std::string& path, const OpenOptions& options) {
+std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOptions& options) {
   std::vector<OpenFinding> findings;
   try {
     if (is_prepared_file(path)) {
@@ -68,7 +72,7 @@ std::vector<OpenFinding> find_open_problems(const std::string& path, const OpenO
     }
     const std::string idle_gaps = find_idle_gaps(path, layer_options(options));
     if (!idle_gaps.empty()) findings.push_back({OpenPart::close_gaps, 0, idle_gaps});
-    try_source(path, options.selection);
+    examine_source(path, options.selection, findings);
   } catch (const SelectionError& error) {
     for (const SelectionProblem& problem : error.problems()) {
       findings.push_back(

@@ -28,15 +28,16 @@ enum class OpenPart { file, layer, where, attributes, close_gaps };
 /// What is found out about a layer before it is read.
 struct OpenFinding {
   OpenPart part = OpenPart::file;
-  std::size_t index = 0;  // of attributes: which of them
-  std::string what;       // names the file
+  std::size_t index = 0;    // of attributes: which of them
+  std::string what;         // names the file
+  bool is_warning = false;  // open_layer() opens it all the same, and warns in its report
 };
 
-/// All that would keep open_layer() from opening the layer, as far as it can be known without
-/// reading the source: it is opened, and asked for its layers, attributes and reference systems. A
-/// prepared file is mapped and checked. Never throws for what is wrong. Thread-safety: any thread.
-std::vector<OpenFinding> find_open_problems(const std::string& path,
-                                            const OpenOptions& options = {});
+/// All that would keep open_layer() from opening the layer, and all of which it would warn, as far
+/// as it can be known without reading the source: it is opened, and asked for its layers,
+/// attributes, reference systems and extent. A prepared file is mapped and checked. Never throws
+/// for what is wrong. Thread-safety: any thread.
+std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOptions& options = {});
 
 /// Maps a prepared file, which is known by its first bytes, or loads a source. Throws as
 /// open_prepared_layer() and load_layer() do. Thread-safety: any thread.

@@ -5,6 +5,9 @@
 #include <string_view>
 #include <utility>
 
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/ring_reader.h"
 #include "core/io/source/source_name.h"
@@ -141,6 +144,45 @@ void FeatureSource::expect(OGRLayer& layer) {
   const bool is_counted = layer.TestCapability(OLCFastFeatureCount) != 0;
   const GIntBig count = is_counted ? layer.GetFeatureCount(FALSE) : -1;
   expected_ = expected_ < 0 || count < 0 ? -1 : expected_ + static_cast<double>(count);
+}
+
+std::vector<std::string> FeatureSource::warnings() const {
+  std::vector<std::string> warnings;
+  if (driver() == "TopoJSON") return warnings;  // in which coordinates are degrees, if they can be
+  for (const SourceLayer& layer : layers_) {
+    if (layer.crs.kind != SourceCrs::Kind::assumed_degrees) continue;
+    const std::string which =
+        layers_.size() == 1 ? "" : "its layer \"" + std::string(layer.layer->GetName()) + "\" ";
+    warnings.push_back(which + "names no coordinate reference system" +
+                       (has_unknown_prj() ? " that is known" : "") +
+                       ", so its coordinates are taken for degrees on WGS 84; if they are not, " +
+                       crs_advice(driver()));
+  }
+  return warnings;
+}
+
+/// Whether there is a .prj beside a Shapefile; GDAL does not tell of one that it does not
+/// understand.
+bool FeatureSource::has_unknown_prj() const {
+  if (driver() != "ESRI Shapefile") return false;
+  VSIStatBufL status;
+  return VSIStatL(CPLResetExtension(dataset_->GetDescription(), "prj"), &status) == 0 ||
+         VSIStatL(CPLResetExtension(dataset_->GetDescription(), "PRJ"), &status) == 0;
+}
+
+void FeatureSource::check_reference_systems() const {
+  for (const SourceLayer& layer : layers_) {
+    const RingReader reader(layer.crs, {});  // throws if there is no way from it
+    OGREnvelope extent;
+    if (layer.crs.kind != SourceCrs::Kind::assumed_degrees ||
+        layer.layer->GetExtent(layer.geometry_field, &extent, FALSE) != OGRERR_NONE) {
+      continue;
+    }
+    const bool are_degrees = extent.MinX >= -180 - kDegreeSlack &&
+                             extent.MaxX <= 180 + kDegreeSlack &&
+                             extent.MinY >= -90 - kDegreeSlack && extent.MaxY <= 90 + kDegreeSlack;
+    if (!are_degrees) throw SourceError(no_degrees_words(driver()));
+  }
 }
 
 bool FeatureSource::next(SourceFeature& next) {

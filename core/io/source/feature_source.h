@@ -43,6 +43,13 @@ class FeatureSource {
   /// The number of features in layers that cannot hold polygons; next() skips them.
   std::size_t passed_over() const { return passed_over_; }
 
+  /// What may be wrong with it, in words without its name: a layer whose coordinates are taken for
+  /// degrees, for it names no reference system that is known, and its format has no usual one.
+  std::vector<std::string> warnings() const;
+  /// Throws SourceError, before anything is read, if it is known that a layer cannot be brought to
+  /// Web Mercator: by its reference system, or by the extent that it says to have if it names none.
+  void check_reference_systems() const;
+
   /// Reads the next feature; false at the end. Throws SourceError if the source breaks off, or if
   /// fewer features of a layer can be read than it says it has.
   bool next(SourceFeature& next);
@@ -62,6 +69,7 @@ class FeatureSource {
   void count_stored();
   OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
   OGRFeatureUniquePtr next_interleaved(SourceFeature& next);
+  bool has_unknown_prj() const;
   void expect(OGRLayer& layer);
   void check_all_was_read();
 

@@ -509,6 +509,31 @@ TEST_F(ConfigCheckTest, TellsAllThatIsWrongAtOnceWithTheEnvironment) {
   EXPECT_EQ(std::ranges::count(says, '\n'), 9) << says;
 }
 
+TEST_F(ConfigCheckTest, WarnsOfWhatTheServerWarnsOfAndStartsWith) {
+  write("plain.gml",
+        R"(<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/")"
+        R"( xmlns:gml="http://www.opengis.net/gml"><gml:featureMember><ogr:a fid="a.0">)"
+        R"(<ogr:geometryProperty><gml:Polygon><gml:outerBoundaryIs><gml:LinearRing>)"
+        R"(<gml:coordinates>1,1 2,1 2,2 1,1</gml:coordinates></gml:LinearRing>)"
+        R"(</gml:outerBoundaryIs></gml:Polygon></ogr:geometryProperty></ogr:a>)"
+        R"(</gml:featureMember></ogr:FeatureCollection>)");
+  write("trapeze.toml",
+        "[server]\naddress = \"127.0.0.1\"\nport = 0\nrenderer = \"software\"\n"
+        "[[layer]]\nname = \"a\"\nfile = \"plain.gml\"\n");
+  const std::string words = file("plain.gml") +
+                            ": names no coordinate reference system, so its "
+                            "coordinates are taken for degrees on WGS 84";
+  const auto [status, says] = check();
+  EXPECT_EQ(status, 0);
+  EXPECT_THAT(says, HasSubstr(file("trapeze.toml") + ":7:8: warning: layer.a.file: " + words));
+  Program program({"serve", "--config", file("trapeze.toml")});
+  wait_until_ready(program.port());
+  EXPECT_THAT(program.output(), HasSubstr(" warning " + words));
+  Program read({"check", file("plain.gml")});
+  EXPECT_EQ(read.wait(), 0);
+  EXPECT_THAT(read.output(), HasSubstr("  warning: names no coordinate reference system"));
+}
+
 TEST_F(ConfigCheckTest, AConfigurationWithoutLayersIsAWarningAsServeMayBeGivenFiles) {
   write("trapeze.toml", "[server]\nport = 0\n");
   const auto [status, says] = check();

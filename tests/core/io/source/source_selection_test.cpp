@@ -159,7 +159,7 @@ TEST_F(SourceSelectionTest, TellsAllThatIsMissingAtOnce) {
 TEST_F(SourceSelectionTest, FindsTheSameWithoutReading) {
   const auto parts = [this](const OpenOptions& options) {
     std::vector<OpenPart> found;
-    for (const OpenFinding& finding : find_open_problems(town_, options)) {
+    for (const OpenFinding& finding : examine_layer(town_, options)) {
       EXPECT_THAT(finding.what, StartsWith(town_));
       found.push_back(finding.part);
     }
