@@ -401,7 +401,7 @@ class ConfigCheckTest : public ::testing::Test {
 
  private:
   static std::string new_folder() {
-    std::string folder = ::testing::TempDir() + "/config_check_XXXXXX";
+    std::string folder = ::testing::TempDir() + "config_check_XXXXXX";
     if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no folder");
     return folder;
   }

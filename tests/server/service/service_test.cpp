@@ -142,6 +142,19 @@ TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheirFileHasChanged) {
   EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"succeeded\"} 2")) << "once is enough";
 }
 
+TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheWriteAheadLogOfAFileHasChanged) {
+  config_.server.watch_ms = 30;
+  start();
+  std::ofstream(file_ + "-wal") << "a change";
+  EXPECT_TRUE(
+      holds_within(10s, [&] { return tells("trapeze_data_loads_total{result=\"succeeded\"} 2"); }));
+  std::this_thread::sleep_for(200ms);
+  EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"succeeded\"} 2")) << "once is enough";
+  std::filesystem::remove(file_ + "-wal");
+  EXPECT_TRUE(
+      holds_within(10s, [&] { return tells("trapeze_data_loads_total{result=\"succeeded\"} 3"); }));
+}
+
 TEST_F(ServiceTest, AFileThatIsBeingWrittenIsLeftAloneUntilItIsDone) {
   config_.server.watch_ms = 200;
   start();
