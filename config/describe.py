@@ -176,10 +176,11 @@ def program_page(program):
 def takes(setting):
     kinds = {"integer": "an integer", "number": "a number", "string": "a string", "boolean": "true or false",
              "array": "a list"}
-    words = kinds.get(setting.get("type"), "")
+    types = setting.get("type", [])
+    words = " or ".join(kinds.get(kind, "") for kind in ([types] if isinstance(types, str) else types))
     if "enum" in setting:
         words = "one of " + ", ".join(json.dumps(value) for value in setting["enum"])
-    elif "minimum" in setting:
+    elif "maximum" in setting:
         words += f" from {setting['minimum']:.10g} to {setting['maximum']:.10g}"
     if "default" in setting:
         words += f"; {json.dumps(setting['default'], ensure_ascii=False)} if it is not set"

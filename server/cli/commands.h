@@ -4,6 +4,7 @@
 // work.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ServeArguments {
   std::string config;                    // may be empty
   std::vector<ConfigOverride> settings;  // of the command line; they override all others
   std::vector<std::string> files;        // instead of the layers of the configuration
+  std::optional<SkipLimit> max_skipped;  // of all layers; unset: as they are configured
   bool is_verbose = false;               // whatever log.level says
 };
 /// What is configured by the file, the environment and the command line. Throws if anything is
@@ -24,7 +26,8 @@ struct ServeArguments {
 LoadedConfig load_serve_config(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 
-/// Prints all that is wrong with a configuration; 1 if anything is.
+/// Prints all that is wrong with a configuration and the environment; 1 if a server would not
+/// start.
 int run_config_check(const std::string& path);
 /// Prints what is configured, with the origin of each value.
 int run_config_print(const ServeArguments& arguments);
@@ -33,6 +36,7 @@ int run_config_schema();
 struct CheckArguments {
   std::vector<std::string> files;
   CoverageArguments coverage;
+  SkipLimit max_skipped;  // of each file
 };
 int run_check(const CheckArguments& arguments);
 
@@ -42,6 +46,7 @@ struct PrepareArguments {
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
+  SkipLimit max_skipped;      // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
 

@@ -66,11 +66,12 @@ void print_report(const LoadReport& report, const Layer& layer) {
   print_memory(layer, report);
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
              report.read_seconds);
+  for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   print_notes(report);
 }
 
-/// False if the file cannot be read.
-bool check_file(const std::string& file, const OpenOptions& how) {
+/// False if the file cannot be read, or too much of it is skipped.
+bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_skipped) {
   LoadedLayer loaded;
   try {
     LoadProgress progress(file);
@@ -83,7 +84,9 @@ bool check_file(const std::string& file, const OpenOptions& how) {
     return false;
   }
   print_report(loaded.report, *loaded.layer);
-  return true;
+  const std::string excess = find_excess(loaded.report, max_skipped);
+  if (!excess.empty()) fmt::print(stderr, "trapeze: {}\n", excess);
+  return excess.empty();
 }
 
 }  // namespace
@@ -92,12 +95,12 @@ int run_check(const CheckArguments& arguments) {
   OpenOptions how;
   how.coverage = coverage_or_throw(arguments.coverage);
   how.close_gaps = arguments.coverage.close_gaps;
-  bool is_all_read = true;
+  bool is_all_good = true;
   for (const std::string& file : arguments.files) {
-    is_all_read &= check_file(file, how);
+    is_all_good &= check_file(file, how, arguments.max_skipped);
   }
   fmt::print("memory of the process   {} bytes at most\n", process_figures().peak_resident_bytes);
-  return is_all_read ? 0 : 1;
+  return is_all_good ? 0 : 1;
 }
 
 }  // namespace trapeze

@@ -1,25 +1,39 @@
-#include <algorithm>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <cstddef>
 #include <iostream>
-#include <utility>
+#include <string>
 
 #include "server/cli/commands.h"
 #include "server/config/config_print.h"
 #include "server/config/load_config.h"
-#include "server/tiles/open_fonts.h"
+#include "server/service/config_check.h"
 
 namespace trapeze {
 
+namespace {
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+}  // namespace
+
 int run_config_check(const std::string& path) {
-  LoadedConfig loaded = load_config(path, {});
-  for (std::string& problem : find_font_problems(loaded.config.text.fonts)) {
-    loaded.problems.push_back({loaded.origins["text.fonts"], "text.fonts: " + std::move(problem)});
+  const LoadedConfig loaded = load_config(path, environment_overrides(environ));
+  ConfigFindings findings = check_config(loaded, path);
+  for (ConfigProblem& warning : findings.warnings) warning.what = "warning: " + warning.what;
+  for (const auto& found : {findings.problems, findings.warnings}) {
+    if (!found.empty()) std::cerr << problems_text(found) << '\n';
   }
-  if (!loaded.problems.empty()) {
-    std::cerr << problems_text(loaded.problems) << '\n';
-    return 1;
-  }
-  const std::size_t layers = loaded.config.layers.size();
-  std::cout << path << ": nothing is wrong; " << layers << (layers == 1 ? " layer\n" : " layers\n");
+  if (!findings.problems.empty()) return 1;
+  const std::size_t warnings = findings.warnings.size();
+  std::cout << fmt::format(
+      "{}: {}; {}\n", path,
+      warnings == 0 ? "nothing is wrong"
+                    : "the server starts, with " + counted(warnings, "warning", "warnings"),
+      counted(loaded.config.layers.size(), "layer", "layers"));
   return 0;
 }
 

@@ -62,6 +62,8 @@ void print_report(const ExportReport& report, const std::string& output) {
   print_if_any("polygons given vertices on long edges, to be valid in degrees", report.subdivided);
   print_if_any("polygons with too many holes to check them in degrees", report.unchecked);
   print_if_any("features that are not valid in degrees, but are in EPSG:3857", report.invalid);
+  for (const std::string& warning : report.warnings)
+    fmt::print("  warning: the source {}\n", warning);
   for (const FeatureNote& note : report.notes) {
     fmt::print("  feature {}: {}\n", note.id, note.reason);
   }

@@ -37,7 +37,8 @@ LoadedLayer load(const std::string& file, const LoadOptions& how) {
   return load_layer(file, options);
 }
 
-void prepare(const std::string& file, const LoadOptions& how, const std::string& output) {
+void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skipped,
+             const std::string& output) {
   if (is_prepared_file(file)) {
     throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
   }
@@ -48,11 +49,15 @@ void prepare(const std::string& file, const LoadOptions& how, const std::string&
   if (!change.empty()) {
     throw std::runtime_error(file + ": has changed while it was read: " + change);
   }
+  if (const std::string excess = find_excess(loaded.report, max_skipped); !excess.empty()) {
+    throw std::runtime_error(excess + "; `trapeze check` tells which");
+  }
   save_prepared_layer(output, loaded, revision_of(*loaded.layer), source);
   const LoadReport& report = loaded.report;
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
              static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
+  for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   if (report.repaired > 0 || report.skipped > 0) {
     fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",
                report.repaired, report.skipped, output);
@@ -75,7 +80,7 @@ int run_prepare(const PrepareArguments& arguments) {
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
     try {
-      prepare(layer.file, how, output.string());
+      prepare(layer.file, how, arguments.max_skipped, output.string());
     } catch (const std::exception& error) {
       // Reported here and not by main, so that the files after this one are prepared too.
       fmt::print(stderr, "trapeze: {}\n", error.what());

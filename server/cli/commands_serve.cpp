@@ -50,6 +50,24 @@ Config configure(const ServeArguments& arguments) {
   return std::move(loaded.config);
 }
 
+/// Instead of the layers of the configuration.
+void take_files(const std::vector<std::string>& files, LoadedConfig& loaded) {
+  loaded.config.layers = layers_or_throw(files);
+  for (const LayerConfig& layer : loaded.config.layers) {
+    for (const char* key : {"name", "file", "title"}) {
+      loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = "FILE";
+    }
+  }
+}
+
+/// Of all layers.
+void limit_skipped(SkipLimit limit, LoadedConfig& loaded) {
+  for (LayerConfig& layer : loaded.config.layers) {
+    layer.max_skipped = limit;
+    loaded.origins[fmt::format("layer.{}.max_skipped", layer.name)] = "--max-skipped";
+  }
+}
+
 /// Finds out before the socket is open what would only fail after the other files were loaded.
 void check_files_exist(const std::vector<LayerConfig>& layers) {
   for (const LayerConfig& layer : layers) {
@@ -99,13 +117,8 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
   overrides.insert(overrides.end(), arguments.settings.begin(), arguments.settings.end());
   LoadedConfig loaded = load_config(arguments.config, overrides);
   throw_if_any(loaded.problems);
-  if (arguments.files.empty()) return loaded;
-  loaded.config.layers = layers_or_throw(arguments.files);
-  for (const LayerConfig& layer : loaded.config.layers) {
-    for (const char* key : {"name", "file", "title"}) {
-      loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = "FILE";
-    }
-  }
+  if (!arguments.files.empty()) take_files(arguments.files, loaded);
+  if (arguments.max_skipped) limit_skipped(*arguments.max_skipped, loaded);
   return loaded;
 }
 

@@ -75,9 +75,11 @@ constexpr const char* kConfigFooter =
     "variable.";
 
 constexpr const char* kCheckFooter =
-    "\nExample:\n"
-    "  trapeze check countries.fgb buildings.shp\n\n"
-    "The exit status is 1 if a file cannot be read; repaired and skipped features are only listed.";
+    "\nExamples:\n"
+    "  trapeze check countries.fgb buildings.shp\n"
+    "  trapeze check --strict delivery.gpkg\n\n"
+    "The exit status is 1 if a file cannot be read, or if more features are skipped than\n"
+    "--max-skipped allows; repaired and other skipped features are only listed.";
 
 constexpr const char* kPrepareFooter =
     "\nExamples:\n"
@@ -166,6 +168,23 @@ CLI::Option& add_number(CLI::App& command, const std::string& option, const char
               ->type_name(type);
 }
 
+/// `limit` is left as it is if neither option is given: which is `if_not_set`, in words.
+template <typename Limit>
+void add_max_skipped(CLI::App& command, Limit& limit, const char* if_not_set) {
+  add_number(command, "--max-skipped", "N",
+             fmt::format("How many features of a layer may be skipped because they cannot be "
+                         "drawn, as a number or as a share of all such as 1%; more are an error. "
+                         "If not set: {}",
+                         if_not_set),
+             [&limit](const std::string& option, const std::string& text) {
+               limit = trapeze::skip_limit_or_throw(option, text);
+             });
+  // Options take effect in the order in which they are added.
+  command.add_flag_callback(
+      "--strict", [&limit] { limit = trapeze::skip_limit_or_throw("--strict", "0"); },
+      "No feature may be skipped, whatever --max-skipped says");
+}
+
 void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
@@ -173,6 +192,7 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command
       .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
+  add_max_skipped(command, arguments.max_skipped, "as configured");
   add_setting(command, arguments, "--port", "server.port", "N");
   add_setting(command, arguments, "--address", "server.address", "IP");
   add_setting(command, arguments, "--threads", "server.threads", "N");
@@ -203,7 +223,10 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   CLI::App* config = app.add_subcommand("config", "Check or show a configuration");
   config->footer(kConfigFooter);
   config->require_subcommand(1);
-  config->add_subcommand("check", "Tell all that is wrong with a configuration")
+  config
+      ->add_subcommand("check",
+                       "Tell all that is wrong with a configuration, and with the files that it "
+                       "names")
       ->add_option("FILE", path, "Configuration (TOML)")
       ->required();
   CLI::App* print =
@@ -234,6 +257,7 @@ void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   check->footer(kCheckFooter);
   check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
   add_coverage(*check, arguments.coverage);
+  add_max_skipped(*check, arguments.max_skipped, "100%");
 }
 
 void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
@@ -261,6 +285,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
                    "The attributes that are kept, with commas between them; all if not set")
       ->delimiter(',')
       ->type_name("NAME,...");
+  add_max_skipped(*prepare, arguments.max_skipped, "100%");
   prepare
       ->add_option("--output", arguments.output,
                    "The folder to write into; each file is named after FILE, and ends in .trapeze")

@@ -60,6 +60,14 @@ double number_or_throw(const std::string& option, const std::string& text, doubl
                      text);
 }
 
+SkipLimit skip_limit_or_throw(const std::string& option, const std::string& text) {
+  const auto limit = SkipLimit::parse(text);
+  if (!limit) {
+    throw UsageError(fmt::format("{} takes {}, given was \"{}\"", option, SkipLimit::kTakes, text));
+  }
+  return *limit;
+}
+
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments) {
   std::optional<CoverageMode> coverage;
   if (!arguments.mode.empty()) {

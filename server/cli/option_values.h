@@ -41,6 +41,9 @@ int integer_or_throw(const std::string& option, const std::string& text, int min
 /// A number within the bounds, both included.
 double number_or_throw(const std::string& option, const std::string& text, double min, double max);
 
+/// A number of features or a share of them.
+SkipLimit skip_limit_or_throw(const std::string& option, const std::string& text);
+
 /// What is done about polygons that share borders.
 struct CoverageArguments {
   /// A name of kCoverageNames; empty: as the file was prepared, or the default.

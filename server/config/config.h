@@ -16,6 +16,7 @@
 #include "render/picture/colour.h"
 #include "server/base/defaults.h"
 #include "server/base/limits.h"
+#include "server/config/skip_limit.h"
 #include "server/http/client_address.h"
 #include "server/styles/style_parameters.h"
 
@@ -35,6 +36,8 @@ struct LayerConfig {
   std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
   std::optional<double> close_gaps;      // metres; unset: as a file was prepared, else 0
   bool fast_topology = false;            // requests may ask for topology=fast
+  SkipLimit max_skipped;                 // more skipped features are an error
+  bool may_shrink = false;               // read again, it may have fewer than half of its features
   int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
 

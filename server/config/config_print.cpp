@@ -45,10 +45,8 @@ std::string toml_text(const SettingValue& value) {
 
 std::string line(const std::string& key, const std::string& value, const LoadedConfig& loaded,
                  const std::string& setting) {
-  const auto found = loaded.origins.find(setting);
   const std::string assignment = fmt::format("{} = {}", key, value);
-  return fmt::format("{:<{}} # {}\n", assignment, kCommentColumn,
-                     found == loaded.origins.end() ? "default" : found->second);
+  return fmt::format("{:<{}} # {}\n", assignment, kCommentColumn, loaded.origin_of(setting));
 }
 
 /// The settings of a style as keys and values; what is for one layer has a dotted key.
@@ -101,6 +99,8 @@ Json type_schema(SettingType type) {
     case SettingType::text:
     case SettingType::path:
       return {{"type", "string"}};
+    case SettingType::amount:
+      return {{"type", {"integer", "string"}}, {"minimum", 0}, {"pattern", "^[0-9.]+ ?%?$"}};
     case SettingType::list:
     case SettingType::paths:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};

@@ -300,6 +300,18 @@ Setting<LayerConfig> attributes_setting() {
   return setting;
 }
 
+Setting<LayerConfig> max_skipped_setting() {
+  auto setting = parsed<LayerConfig>(
+      "max_skipped", [](auto& layer) -> auto& { return layer.max_skipped; },
+      std::string(SkipLimit::kTakes), SkipLimit::parse,
+      [](const SkipLimit& limit) { return limit.text(); },
+      "how many of its features may be skipped, as a number or as a share of all in its source "
+      "such "
+      "as \"1%\"; if there are more, the layer is not taken");
+  setting.type = SettingType::amount;
+  return setting;
+}
+
 std::optional<ParameterId> layer_parameter(const std::string& name) {
   const StyleParameter* parameter = find_style_parameter(name);
   if (parameter == nullptr || !parameter->is_per_layer) return std::nullopt;
@@ -539,6 +551,11 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "fast_topology", [](auto& layer) -> auto& { return layer.fast_topology; },
           "whether requests may ask for topology=fast, polygons apart and without the test of "
           "topology: it is then built a second time, and takes twice the memory"),
+      max_skipped_setting(),
+      boolean<LayerConfig>(
+          "may_shrink", [](auto& layer) -> auto& { return layer.may_shrink; },
+          "whether it is taken if it has fewer than half of its features when its file is read "
+          "again; otherwise the old layers stay"),
       list<LayerConfig>(
           "locked", [](auto& layer) -> auto& { return layer.locked; },
           "a list of parameters that are set for one layer: " + layer_parameter_names(),

@@ -15,7 +15,8 @@ namespace trapeze {
 using SettingValue =
     std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
-enum class SettingType { boolean, integer, number, text, path, list, paths };
+/// An amount is text that a file may also give as a whole number.
+enum class SettingType { boolean, integer, number, text, amount, path, list, paths };
 
 template <typename Owner>
 struct Setting {

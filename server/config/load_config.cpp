@@ -29,6 +29,10 @@ std::string position_text(const std::string& path, const toml::source_position& 
   return fmt::format("{}:{}:{}", path, position.line, position.column);
 }
 
+std::string name_of_item(const std::string& setting, std::size_t item) {
+  return fmt::format("{}[{}]", setting, item);
+}
+
 std::string relative_to_config(const std::string& config_path, const std::string& path) {
   if (!is_file_path(path)) return path;
   return (std::filesystem::path(config_path).parent_path() / path).lexically_normal().string();
@@ -105,9 +109,16 @@ class ConfigReader {
       if (setting == settings.end()) {
         fail_unknown(key, settings, name, other_key);
       } else if (read_setting(*setting, node, owner)) {
-        loaded_.origins[name + "." + setting->key] =
-            fmt::format("{}:{}", path_, node.source().begin.line);
+        keep_origin(name + "." + setting->key, node);
       }
+    }
+  }
+
+  void keep_origin(const std::string& setting, const toml::node& node) {
+    loaded_.origins[setting] = position_text(path_, node.source().begin);
+    const toml::array* items = node.as_array();
+    for (std::size_t i = 0; items != nullptr && i < items->size(); ++i) {
+      keep_origin(name_of_item(setting, i), (*items)[i]);
     }
   }
 
@@ -172,6 +183,9 @@ class ConfigReader {
         return node.is_number() ? std::optional<SettingValue>(*node.value<double>()) : std::nullopt;
       case SettingType::text:
       case SettingType::path:
+        return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
+      case SettingType::amount:
+        if (node.is_integer()) return std::to_string(node.as_integer()->get());
         return node.is_string() ? std::optional<SettingValue>(expanded(node)) : std::nullopt;
       case SettingType::list:
       case SettingType::paths:
@@ -405,6 +419,7 @@ std::optional<SettingValue> value_in(SettingType type, const std::string& text) 
     case SettingType::number:
       return number_in<double>(text);
     case SettingType::text:
+    case SettingType::amount:
     case SettingType::path:
       return text;
     case SettingType::list:
@@ -480,6 +495,14 @@ std::string layer_name_of_file(const std::string& file) {
 }
 
 }  // namespace
+
+std::string LoadedConfig::origin_of(const std::string& setting,
+                                    std::optional<std::size_t> item) const {
+  const auto of_item = item ? origins.find(name_of_item(setting, *item)) : origins.end();
+  if (of_item != origins.end()) return of_item->second;
+  const auto found = origins.find(setting);
+  return found == origins.end() ? "default" : found->second;
+}
 
 bool is_file_path(const std::string& source) {
   const std::size_t colon = source.find(':');

@@ -1,7 +1,9 @@
 // The configuration as it is read: from a TOML file, the environment and the command line.
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,8 +28,12 @@ struct ConfigOverride {
 struct LoadedConfig {
   Config config;                        // with defaults for what is wrong
   std::vector<ConfigProblem> problems;  // in the order of the file, then of the overrides
-  /// Where each setting that is not a default comes from: "server.port" from "trapeze.toml:4".
+  /// Where each setting that is not a default comes from: "server.port" from "trapeze.toml:4:8";
+  /// in the file, also of each item of a list, "text.fonts[1]".
   std::map<std::string, std::string> origins;
+
+  /// The origin of a setting, or of the item of that number if it is a list in the file.
+  std::string origin_of(const std::string& setting, std::optional<std::size_t> item = {}) const;
 };
 
 /// Reads a TOML file, unless `path` is empty, and then applies the overrides, of which a

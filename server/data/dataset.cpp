@@ -7,9 +7,9 @@
 #include <functional>
 #include <future>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
-#include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_arrays.h"
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
@@ -63,6 +63,7 @@ void log_report(const LoadReport& report, const Layer& layer) {
     spdlog::warn("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
                  report.repaired, report.skipped, report.coverage.overlaps);
   }
+  for (const std::string& warning : report.warnings) spdlog::warn("{}: {}", report.path, warning);
   log_notes(report);
   if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
 }
@@ -90,16 +91,6 @@ class SharedProgress {
   std::optional<LoadProgress> progress_;
 };
 
-OpenOptions how_to_open(const LayerConfig& layer) {
-  OpenOptions options;
-  options.weights = layer.weights;
-  options.coverage = layer.coverage;
-  options.close_gaps = layer.close_gaps;
-  options.selection = layer.selection;
-  options.prepared_from = layer.prepared.empty() ? "" : layer.file;
-  return options;
-}
-
 /// Whether the same files lead to the same layer: all else is how it is shown.
 bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
   const OpenOptions how_a = how_to_open(a);
@@ -126,6 +117,40 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   return std::nullopt;
 }
 
+/// The layer as it is served now, if what is taken of a source is still the same.
+const ServedLayer* find_served(const LayerConfig& layer, const Dataset* previous) {
+  if (previous == nullptr) return nullptr;
+  const auto position = previous->find(layer.name);
+  if (!position) return nullptr;
+  const ServedLayer& served = previous->layers()[*position];
+  return served.config.selection == layer.selection ? &served : nullptr;
+}
+
+/// In words, that a layer has lost most of what is served of it; empty if not.
+std::string find_loss(const ServedLayer& now, const Dataset* previous) {
+  const ServedLayer* before = find_served(now.config, previous);
+  if (now.config.may_shrink || before == nullptr) return {};
+  if (2 * now.report.loaded >= before->report.loaded) return {};
+  return fmt::format(
+      "{}: {} features can be drawn, fewer than half of the {} that are served; if that is right, "
+      "set may_shrink = true",
+      now.report.path, now.report.loaded, before->report.loaded);
+}
+
+/// Throws if layers that could be read are not to be served, with all reasons.
+void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previous) {
+  std::string problems;
+  for (const ServedLayer& layer : layers) {
+    for (const std::string& problem :
+         {find_excess(layer.report, layer.config.max_skipped), find_loss(layer, previous)}) {
+      if (problem.empty()) continue;
+      problems += fmt::format("{}layer \"{}\": {}", problems.empty() ? "" : "; ", layer.config.name,
+                              problem);
+    }
+  }
+  if (!problems.empty()) throw std::runtime_error(problems);
+}
+
 /// `progress` is called by the thread that calls this.
 ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double)>& progress) {
   ServedLayer served;
@@ -145,6 +170,16 @@ ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double
 }
 
 }  // namespace
+
+OpenOptions how_to_open(const LayerConfig& layer) {
+  OpenOptions options;
+  options.weights = layer.weights;
+  options.coverage = layer.coverage;
+  options.close_gaps = layer.close_gaps;
+  options.selection = layer.selection;
+  options.prepared_from = layer.prepared.empty() ? "" : layer.file;
+  return options;
+}
 
 std::size_t ServedLayer::memory() const {
   return layer->memory() + layer->features().memory() +
@@ -202,6 +237,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
   for (auto& [i, layer] : reading) served[i] = layer.get();
   progress.finish();
   for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
+  check_layers(served, previous);
   return std::make_shared<const Dataset>(std::move(served));
 }
 

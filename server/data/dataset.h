@@ -11,6 +11,7 @@
 
 #include "core/io/file/mapped_file.h"
 #include "core/io/load/load_layer.h"
+#include "core/io/prepared/open_layer.h"
 #include "core/layer/layer.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
@@ -44,13 +45,18 @@ Problem damaged_layer(const ServedLayer& layer);
 /// loaded the same layer.
 std::uint64_t revision_of(const Layer& layer);
 
+/// What of a layer's configuration decides how its file is read.
+OpenOptions how_to_open(const LayerConfig& layer);
+
 /// Thread-safety: immutable, any number of threads may read.
 class Dataset {
  public:
   /// Loads all layers at once, or maps those that are prepared, on all cores, with progress and a
   /// summary in the log. A layer that `previous` has, if that is not null, is taken from there if
   /// neither its files nor how it is read have changed. Throws std::runtime_error naming the file
-  /// if one cannot be read, or was prepared otherwise than configured.
+  /// if one cannot be read, was prepared otherwise than configured, has more skipped features than
+  /// its configuration allows, or, unless that allows it, fewer than half of the features that
+  /// `previous` draws of the layer of that name, of whose source the same was selected.
   static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
                                              const Dataset* previous = nullptr);
 

@@ -16,12 +16,16 @@ namespace {
 // A shapefile is several files, of which one is named.
 constexpr std::array<std::string_view, 4> kBesideShapefile = {".dbf", ".shx", ".prj", ".cpg"};
 
-/// Whether the source is one file, to which all changes are made itself: SQLite may write them into
-/// another one first.
+/// The log into which SQLite may write changes first, until it brings them into the file.
+std::string write_ahead_log_of(const std::string& source) {
+  return source + "-wal";
+}
+
+/// Whether the source is one file, to which all changes are made itself.
 bool is_in_one_file(const std::string& source) {
   std::error_code error;
   return is_file_path(source) && std::filesystem::is_regular_file(source, error) &&
-         !std::filesystem::exists(source + "-wal", error);
+         !std::filesystem::exists(write_ahead_log_of(source), error);
 }
 
 }  // namespace
@@ -30,7 +34,10 @@ void append_files(const std::string& source, std::vector<std::string>& files) {
   if (!is_file_path(source)) return;
   files.push_back(source);
   const std::filesystem::path named(source);
-  if (named.extension() != ".shp") return;
+  if (named.extension() != ".shp") {
+    files.push_back(write_ahead_log_of(source));
+    return;
+  }
   for (const std::string_view ending : kBesideShapefile) {
     files.push_back(std::filesystem::path(named).replace_extension(ending).string());
   }
@@ -40,7 +47,10 @@ std::string state_of_files(const std::vector<std::string>& paths) {
   std::string state;
   for (const std::string& path : paths) {
     struct stat status {};
-    if (stat(path.c_str(), &status) != 0) {
+    const bool is_there = stat(path.c_str(), &status) == 0;
+    // An empty file has as much to say as none; whoever reads a database of SQLite may make an
+    // empty log and remove it.
+    if (!is_there || (S_ISREG(status.st_mode) && status.st_size == 0)) {
       state += "-;";
       continue;
     }

@@ -8,11 +8,12 @@
 
 namespace trapeze {
 
-/// Appends the file that a source is, if it is one, and those that belong to it.
+/// Appends the file that a source is, if it is one, and those that belong to it: the parts of a
+/// Shapefile, the write-ahead log that a file of SQLite, such as a GeoPackage, may have.
 void append_files(const std::string& source, std::vector<std::string>& files);
 
 /// What can be seen of files without reading them: equal as long as none was changed, replaced,
-/// added or removed.
+/// added or removed. An empty file is as one that is not there.
 std::string state_of_files(const std::vector<std::string>& paths);
 
 /// The same of all that the layer is read from: equal only if reading it again would give the same

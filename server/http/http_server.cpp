@@ -496,8 +496,9 @@ void HttpServer::State::open() {
     acceptor_.listen();
     port_ = acceptor_.local_endpoint().port();
   } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(fmt::format("cannot listen on {} port {}: {}", options_.address,
-                                         options_.port, error.code().message()));
+    const std::string port = options_.port == 0 ? "" : fmt::format(" port {}", options_.port);
+    throw std::runtime_error(
+        fmt::format("cannot listen on {}{}: {}", options_.address, port, error.code().message()));
   }
 }
 

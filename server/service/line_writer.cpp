@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <climits>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -24,13 +25,17 @@ std::string words_of(int error) {
   return std::generic_category().message(error);
 }
 
+std::string problem_words(const std::string& path, int error) {
+  return fmt::format("{} cannot be written: {}", path,
+                     error == ENXIO ? "it is a pipe that nobody reads" : words_of(error));
+}
+
 /// Without waiting for a reader, if it is a pipe.
 int open_at_end(const std::string& path) {
   const int descriptor =
       open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
   if (descriptor >= 0) return descriptor;
-  const std::string why = errno == ENXIO ? "it is a pipe that nobody reads" : words_of(errno);
-  throw std::runtime_error(fmt::format("{} cannot be written: {}", path, why));
+  throw std::runtime_error(problem_words(path, errno));
 }
 
 }  // namespace
@@ -45,6 +50,22 @@ LineFile::LineFile(const std::string& target) {
   }
   struct stat status {};
   may_be_full_ = fstat(descriptor_, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+std::string find_target_problem(const std::string& target) {
+  std::error_code error;
+  const bool is_there =
+      target == "stdout" || target == "stderr" || std::filesystem::exists(target, error);
+  if (!is_there) {
+    const auto folder = std::filesystem::absolute(target).parent_path();
+    return access(folder.c_str(), W_OK | X_OK) == 0 ? std::string() : problem_words(target, errno);
+  }
+  try {
+    const LineFile file(target);
+    return {};
+  } catch (const std::runtime_error& failure) {
+    return failure.what();
+  }
 }
 
 /// So that writing to a full pipe does not wait, without changing that for others who have it.

@@ -39,6 +39,9 @@ class LineFile {
   bool may_be_full_ = false;
 };
 
+/// In words, why a LineFile cannot be made of the target; empty if it can. Makes no file.
+std::string find_target_problem(const std::string& target);
+
 class LineWriter {
  public:
   /// Called by the thread that writes; either may be empty.

@@ -131,7 +131,7 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
 
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
   std::vector<std::string> files;
-  append_files(source_.config, files);
+  if (!source_.config.empty()) files.push_back(source_.config);
   for (const LayerConfig& layer : layers) {
     append_files(layer.file, files);
     append_files(layer.prepared, files);

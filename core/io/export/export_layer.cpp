@@ -229,6 +229,7 @@ class Export {
 
   void fill_report() {
     report_.driver = file_.driver();
+    report_.warnings = source_.warnings();
     report_.features = source_.passed_over() + pipeline_.features();
     report_.other_geometry = source_.passed_over();
     for (const FeatureTally* tally : pipeline_.tallies()) {

@@ -26,8 +26,9 @@ struct ExportOptions {
 /// What was written. Every feature is counted once in exactly one of `written`, `too_small`,
 /// `other_geometry`, `empty`, `skipped`.
 struct ExportReport {
-  std::string driver;        // that wrote
-  std::size_t features = 0;  // in the source
+  std::string driver;                 // that wrote
+  std::vector<std::string> warnings;  // of the source, FeatureSource::warnings()
+  std::size_t features = 0;           // in the source
   std::size_t written = 0;
   std::size_t too_small = 0;       // nothing of them is left at the tolerance
   std::size_t other_geometry = 0;  // points, lines, no geometry

@@ -32,9 +32,6 @@ class TableReader {
     for (const SourceLayer& layer : source.layers()) {
       attributes_.add_layer(*layer.layer->GetLayerDefn());
     }
-    if (const std::vector<std::string> missing = attributes_.missing(); !missing.empty()) {
-      throw SourceError("has no attribute \"" + missing.front() + "\"");
-    }
     table_ = FeatureTable(attributes_.fields());
   }
 
@@ -83,6 +80,7 @@ std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tall
 void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilder>& builders,
                  const FeatureSource& source, LoadReport& report) {
   report.driver = source.driver();
+  report.warnings = source.warnings();
   report.features = pipeline.features() + source.passed_over();
   report.other_geometry = source.passed_over();
   std::vector<const FeatureTally*> tallies = pipeline.tallies();

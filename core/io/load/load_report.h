@@ -41,12 +41,13 @@ inline constexpr std::array kCoverageCounts = {
 struct LoadReport {
   std::string path;  // as messages call it, see name_of_source()
   std::string driver;
-  std::string prepared_from;       // the source of a prepared layer; empty if it was read itself
-  std::size_t features = 0;        // in the source
-  std::size_t loaded = 0;          // drawn
-  std::size_t other_geometry = 0;  // points, lines, no geometry: not drawn
-  std::size_t empty = 0;           // polygons that are smaller than the grid, or outside the world
-  std::size_t skipped = 0;         // could not be read, reprojected or repaired
+  std::vector<std::string> warnings;  // of the source, FeatureSource::warnings(); not kept prepared
+  std::string prepared_from;          // the source of a prepared layer; empty if it was read itself
+  std::size_t features = 0;           // in the source
+  std::size_t loaded = 0;             // drawn
+  std::size_t other_geometry = 0;     // points, lines, no geometry: not drawn
+  std::size_t empty = 0;    // polygons that are smaller than the grid, or outside the world
+  std::size_t skipped = 0;  // could not be read, reprojected or repaired
   // Parts of multipolygons. Formats that store rings alone do not say which belong together: of
   // OpenStreetMap relations every ring counts, of Shapefiles and File Geodatabases every clockwise.
   std::size_t polygons = 0;

@@ -4,28 +4,96 @@
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
+#include "core/io/source/feature_source.h"
+#include "core/io/source/source_name.h"
 
 namespace trapeze {
+namespace {
+
+LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
+  if (!options.selection.is_all()) {
+    throw std::runtime_error(path +
+                             ": is prepared already; select from its source with the options of "
+                             "`trapeze prepare`");
+  }
+  return open_prepared_layer(
+      path, {options.weights, options.prepared_from, options.coverage, options.close_gaps});
+}
+
+LayerOptions layer_options(const OpenOptions& options) {
+  LayerOptions layer;
+  layer.weights = options.weights.value_or(WeightRule::douglas_peucker);
+  layer.coverage = options.coverage.value_or(kUsualCoverage);
+  layer.close_gaps = options.close_gaps.value_or(0);
+  return layer;
+}
+
+/// In words, that gaps are to be closed where no borders are shared; empty if not.
+std::string find_idle_gaps(const std::string& path, const LayerOptions& layer) {
+  if (layer.close_gaps == 0 || layer.coverage != CoverageMode::off) return {};
+  return name_of_source(path) + ": gaps can be closed only where coverage is auto or on";
+}
+
+OpenPart part_of(SelectionPart part) {
+  switch (part) {
+    case SelectionPart::layer:
+      return OpenPart::layer;
+    case SelectionPart::where:
+      return OpenPart::where;
+    case SelectionPart::attributes:
+      return OpenPart::attributes;
+  }
+  return OpenPart::file;
+}
+
+/// Throws what is wrong with a source.
+void examine_source(const std::string& path, const SourceSelection& selection,
+                    std::vector<OpenFinding>& findings) {
+  const std::string name = name_of_source(path);
+  const FeatureSource source(path, selection);
+  try {
+    source.check_reference_systems();
+  } catch (const SourceError& error) {
+    throw std::runtime_error(name + ": " + error.what());
+  }
+  for (const std::string& warning : source.warnings()) {
+    findings.push_back({OpenPart::file, 0, name + ": " + warning, true});
+  }
+}
+
+}  // namespace
+
+std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOptions& options) {
+  std::vector<OpenFinding> findings;
+  try {
+    if (is_prepared_file(path)) {
+      open_prepared(path, options);
+      return findings;
+    }
+    const std::string idle_gaps = find_idle_gaps(path, layer_options(options));
+    if (!idle_gaps.empty()) findings.push_back({OpenPart::close_gaps, 0, idle_gaps});
+    examine_source(path, options.selection, findings);
+  } catch (const SelectionError& error) {
+    for (const SelectionProblem& problem : error.problems()) {
+      findings.push_back(
+          {part_of(problem.part), problem.index, name_of_source(path) + ": " + problem.what});
+    }
+  } catch (const std::exception& error) {
+    findings.push_back({OpenPart::file, 0, error.what()});
+  }
+  return findings;
+}
 
 LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   if (is_prepared_file(path)) {
-    if (!options.selection.is_all()) {
-      throw std::runtime_error(path +
-                               ": is prepared already; select from its source with the options of "
-                               "`trapeze prepare`");
-    }
-    LoadedLayer layer = open_prepared_layer(
-        path, {options.weights, options.prepared_from, options.coverage, options.close_gaps});
+    LoadedLayer layer = open_prepared(path, options);
     if (options.progress) options.progress(1);
     return layer;
   }
   LoadOptions load;
-  load.generalization.weights = options.weights.value_or(WeightRule::douglas_peucker);
-  load.generalization.coverage = options.coverage.value_or(kUsualCoverage);
-  load.generalization.close_gaps = options.close_gaps.value_or(0);
-  if (load.generalization.close_gaps > 0 && load.generalization.coverage == CoverageMode::off) {
-    throw std::runtime_error(path + ": gaps can be closed only where coverage is auto or on");
-  }
+  load.generalization = layer_options(options);
+  const std::string idle_gaps = find_idle_gaps(path, load.generalization);
+  if (!idle_gaps.empty()) throw std::runtime_error(idle_gaps);
   load.selection = options.selection;
   load.progress = options.progress;
   return load_layer(path, load);

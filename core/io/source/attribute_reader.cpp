@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <iterator>
 #include <memory>
 #include <string_view>
 
@@ -118,14 +117,14 @@ bool AttributeReader::is_kept(const std::string& name) const {
   return !kept_ || std::find(kept_->begin(), kept_->end(), name) != kept_->end();
 }
 
-std::vector<std::string> AttributeReader::missing() const {
-  std::vector<std::string> missing;
-  if (!kept_) return missing;
-  std::copy_if(kept_->begin(), kept_->end(), std::back_inserter(missing),
-               [this](const std::string& name) {
-                 return std::none_of(fields_.begin(), fields_.end(),
-                                     [&name](const Field& field) { return field.name == name; });
-               });
+std::vector<std::size_t> AttributeReader::missing() const {
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; kept_ && i < kept_->size(); ++i) {
+    const bool is_there =
+        std::any_of(fields_.begin(), fields_.end(),
+                    [&name = (*kept_)[i]](const Field& field) { return field.name == name; });
+    if (!is_there) missing.push_back(i);
+  }
   return missing;
 }
 

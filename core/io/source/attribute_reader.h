@@ -27,8 +27,8 @@ class AttributeReader {
   void add_layer(const OGRFeatureDefn& definition);
 
   const std::vector<Field>& fields() const { return fields_; }
-  /// Names to be kept that no layer has.
-  std::vector<std::string> missing() const;
+  /// Of the names to be kept, the numbers of those that no layer has.
+  std::vector<std::size_t> missing() const;
 
   static constexpr std::size_t kNotKept = static_cast<std::size_t>(-1);
   /// For each field of a layer, its number in fields(), or kNotKept.

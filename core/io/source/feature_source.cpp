@@ -5,6 +5,10 @@
 #include <string_view>
 #include <utility>
 
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
+
+#include "core/io/source/attribute_reader.h"
 #include "core/io/source/ring_reader.h"
 #include "core/io/source/source_name.h"
 #include "core/io/source/source_shortage.h"
@@ -22,56 +26,69 @@ int polygon_field(OGRFeatureDefn& definition) {
   return -1;
 }
 
+/// Whether layers of this driver take any condition, and fail with it when they are read.
+bool is_asked_when_read(std::string_view driver) {
+  return driver == "GPKG" || driver == "SQLite" || driver == "PostgreSQL";
+}
+
 }  // namespace
 
 FeatureSource::FeatureSource(const std::string& path, const SourceSelection& selection)
     : dataset_(open_source(path)), is_interleaved_(driver() == "OSM") {
-  try {
-    const std::string shortage = shortage_of_files(*dataset_);
-    if (!shortage.empty()) throw SourceError(shortage);
-    find_layers(selection);
-  } catch (const SourceError& error) {
-    throw std::runtime_error(name_of_source(path) + ": " + error.what());
-  }
+  const std::string shortage = shortage_of_files(*dataset_);
+  if (!shortage.empty()) throw std::runtime_error(name_of_source(path) + ": " + shortage);
+  std::vector<SelectionProblem> problems = select(selection);
+  if (!problems.empty()) throw SelectionError(name_of_source(path), std::move(problems));
 }
 
 std::string FeatureSource::driver() const {
   return dataset_->GetDriverName();
 }
 
-void FeatureSource::find_layers(const SourceSelection& selection) {
-  if (!selection.layer.empty()) {
-    find_only_layer(selection.layer);
-  } else {
-    for (OGRLayer* layer : dataset_->GetLayers()) {
-      const int field = polygon_field(*layer->GetLayerDefn());
-      if (is_interleaved_ ? layer->GetName() == kOsmAreas : field >= 0) {
-        add_layer(*layer, field);
-      } else if (!is_interleaved_) {
-        passed_over_ += static_cast<std::size_t>(std::max<GIntBig>(layer->GetFeatureCount(), 0));
-      }
-    }
+/// What is not there.
+std::vector<SelectionProblem> FeatureSource::select(const SourceSelection& selection) {
+  if (selection.layer.empty()) {
+    find_layers();
+  } else if (std::string problem = find_only_layer(selection.layer); !problem.empty()) {
+    return {{SelectionPart::layer, 0, std::move(problem)}};
   }
   count_stored();
-  if (!selection.where.empty()) apply_condition(selection.where);
+  std::vector<SelectionProblem> problems = find_missing_attributes(selection.attributes);
+  if (std::string problem = apply_condition(selection.where); !problem.empty()) {
+    problems.insert(problems.begin(), {SelectionPart::where, 0, std::move(problem)});
+  }
   for (const SourceLayer& layer : layers_) expect(*layer.layer);
   messages_.clear();
+  return problems;
 }
 
-void FeatureSource::find_only_layer(const std::string& name) {
+void FeatureSource::find_layers() {
+  for (OGRLayer* layer : dataset_->GetLayers()) {
+    const int field = polygon_field(*layer->GetLayerDefn());
+    if (is_interleaved_ ? layer->GetName() == kOsmAreas : field >= 0) {
+      add_layer(*layer, field);
+    } else if (!is_interleaved_) {
+      passed_over_ += static_cast<std::size_t>(std::max<GIntBig>(layer->GetFeatureCount(), 0));
+    }
+  }
+}
+
+/// What is wrong with the name; empty if nothing is.
+std::string FeatureSource::find_only_layer(const std::string& name) {
   OGRLayer* layer = dataset_->GetLayerByName(name.c_str());
   if (layer == nullptr) {
     std::string names;
     for (OGRLayer* other : dataset_->GetLayers()) {
       names += (names.empty() ? "" : ", ") + std::string(other->GetName());
     }
-    throw SourceError("has no layer \"" + name + "\"; it has " + names);
+    return "has no layer \"" + name + "\"; it has " + names;
   }
   const int field = polygon_field(*layer->GetLayerDefn());
   if (field < 0 || (is_interleaved_ && layer->GetName() != kOsmAreas)) {
-    throw SourceError("its layer \"" + name + "\" holds no polygons");
+    return "its layer \"" + name + "\" holds no polygons";
   }
   add_layer(*layer, field);
+  return {};
 }
 
 void FeatureSource::add_layer(OGRLayer& layer, int geometry_field) {
@@ -89,21 +106,83 @@ void FeatureSource::count_stored() {
   }
 }
 
-void FeatureSource::apply_condition(const std::string& where) {
+/// Why a layer cannot be asked; empty if all can.
+std::string FeatureSource::apply_condition(const std::string& where) {
+  if (where.empty()) return {};
   has_condition_ = true;
   for (const SourceLayer& layer : layers_) {
-    messages_.clear();
-    if (layer.layer->SetAttributeFilter(where.c_str()) != OGRERR_NONE) {
-      throw SourceError("its layer \"" + std::string(layer.layer->GetName()) +
-                        "\" cannot be asked where " + where + ": " + messages_.text());
-    }
+    const std::string failure = apply_condition(where, *layer.layer);
+    if (failure.empty()) continue;
+    return "its layer \"" + std::string(layer.layer->GetName()) + "\" cannot be asked where " +
+           where + ": " + failure;
   }
+  return {};
+}
+
+std::string FeatureSource::apply_condition(const std::string& where, OGRLayer& layer) {
+  messages_.clear();
+  if (layer.SetAttributeFilter(where.c_str()) != OGRERR_NONE) return messages_.text();
+  if (!is_asked_when_read(driver())) return {};
+  const OGRFeatureUniquePtr first(layer.GetNextFeature());
+  layer.ResetReading();
+  return messages_.has_failure() ? messages_.text() : std::string();
+}
+
+std::vector<SelectionProblem> FeatureSource::find_missing_attributes(
+    const std::optional<std::vector<std::string>>& names) const {
+  AttributeReader attributes(names);
+  for (const SourceLayer& layer : layers_) attributes.add_layer(*layer.layer->GetLayerDefn());
+  std::vector<SelectionProblem> problems;
+  for (const std::size_t index : attributes.missing()) {
+    problems.push_back(
+        {SelectionPart::attributes, index, "has no attribute \"" + (*names)[index] + "\""});
+  }
+  return problems;
 }
 
 void FeatureSource::expect(OGRLayer& layer) {
   const bool is_counted = layer.TestCapability(OLCFastFeatureCount) != 0;
   const GIntBig count = is_counted ? layer.GetFeatureCount(FALSE) : -1;
   expected_ = expected_ < 0 || count < 0 ? -1 : expected_ + static_cast<double>(count);
+}
+
+std::vector<std::string> FeatureSource::warnings() const {
+  std::vector<std::string> warnings;
+  if (driver() == "TopoJSON") return warnings;  // in which coordinates are degrees, if they can be
+  for (const SourceLayer& layer : layers_) {
+    if (layer.crs.kind != SourceCrs::Kind::assumed_degrees) continue;
+    const std::string which =
+        layers_.size() == 1 ? "" : "its layer \"" + std::string(layer.layer->GetName()) + "\" ";
+    warnings.push_back(which + "names no coordinate reference system" +
+                       (has_unknown_prj() ? " that is known" : "") +
+                       ", so its coordinates are taken for degrees on WGS 84; if they are not, " +
+                       crs_advice(driver()));
+  }
+  return warnings;
+}
+
+/// Whether there is a .prj beside a Shapefile; GDAL does not tell of one that it does not
+/// understand.
+bool FeatureSource::has_unknown_prj() const {
+  if (driver() != "ESRI Shapefile") return false;
+  VSIStatBufL status;
+  return VSIStatL(CPLResetExtension(dataset_->GetDescription(), "prj"), &status) == 0 ||
+         VSIStatL(CPLResetExtension(dataset_->GetDescription(), "PRJ"), &status) == 0;
+}
+
+void FeatureSource::check_reference_systems() const {
+  for (const SourceLayer& layer : layers_) {
+    const RingReader reader(layer.crs, {});  // throws if there is no way from it
+    OGREnvelope extent;
+    if (layer.crs.kind != SourceCrs::Kind::assumed_degrees ||
+        layer.layer->GetExtent(layer.geometry_field, &extent, FALSE) != OGRERR_NONE) {
+      continue;
+    }
+    const bool are_degrees = extent.MinX >= -180 - kDegreeSlack &&
+                             extent.MaxX <= 180 + kDegreeSlack &&
+                             extent.MinY >= -90 - kDegreeSlack && extent.MaxY <= 90 + kDegreeSlack;
+    if (!are_degrees) throw SourceError(no_degrees_words(driver()));
+  }
 }
 
 bool FeatureSource::next(SourceFeature& next) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,14 +33,22 @@ struct SourceFeature {
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming the source, if it cannot be opened, lacks what is selected,
-  /// or is known to be cut off.
+  /// Throws std::runtime_error, naming the source, if it cannot be opened or is known to be cut
+  /// off; SelectionError, with all that is wrong, if it lacks what is selected. A database is asked
+  /// for the first feature for which the condition holds, to learn whether it understands it.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
   const std::vector<SourceLayer>& layers() const { return layers_; }
   /// The number of features in layers that cannot hold polygons; next() skips them.
   std::size_t passed_over() const { return passed_over_; }
+
+  /// What may be wrong with it, in words without its name: a layer whose coordinates are taken for
+  /// degrees, for it names no reference system that is known, and its format has no usual one.
+  std::vector<std::string> warnings() const;
+  /// Throws SourceError, before anything is read, if it is known that a layer cannot be brought to
+  /// Web Mercator: by its reference system, or by the extent that it says to have if it names none.
+  void check_reference_systems() const;
 
   /// Reads the next feature; false at the end. Throws SourceError if the source breaks off, or if
   /// fewer features of a layer can be read than it says it has.
@@ -49,13 +58,18 @@ class FeatureSource {
   double progress() const;
 
  private:
-  void find_layers(const SourceSelection& selection);
-  void find_only_layer(const std::string& name);
+  std::vector<SelectionProblem> select(const SourceSelection& selection);
+  void find_layers();
+  std::string find_only_layer(const std::string& name);
   void add_layer(OGRLayer& layer, int geometry_field);
-  void apply_condition(const std::string& where);
+  std::string apply_condition(const std::string& where);
+  std::string apply_condition(const std::string& where, OGRLayer& layer);
+  std::vector<SelectionProblem> find_missing_attributes(
+      const std::optional<std::vector<std::string>>& names) const;
   void count_stored();
   OGRFeatureUniquePtr next_of_layers(SourceFeature& next);
   OGRFeatureUniquePtr next_interleaved(SourceFeature& next);
+  bool has_unknown_prj() const;
   void expect(OGRLayer& layer);
   void check_all_was_read();
 

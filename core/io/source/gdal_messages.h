@@ -19,7 +19,7 @@ class GdalMessages {
   /// Forgets all messages so far.
   void clear() { state_ = {}; }
   bool has_failure() const { return state_.failed; }
-  /// The first error; if there is none, the first warning; empty if there was neither.
+  /// The first error; if there is none, the first warning; empty if there was neither. In one line.
   const std::string& text() const {
     return state_.failed ? state_.first_failure : state_.first_warning;
   }

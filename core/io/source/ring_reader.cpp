@@ -9,9 +9,6 @@
 namespace trapeze {
 namespace {
 
-// Rounding and buffers carry honest data a little beyond the world; pixels and metres go further.
-constexpr double kDegreeSlack = 1;
-
 constexpr ClipWindow kWorld = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
                                static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
 

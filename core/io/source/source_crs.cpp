@@ -59,6 +59,13 @@ SourceCrs::Kind kind_of(const OGRSpatialReference& reference) {
   return is_web_mercator(reference) ? SourceCrs::Kind::web_mercator : SourceCrs::Kind::projected;
 }
 
+/// What a GeoPackage, and what GDAL makes of one, has for coordinates in degrees of no known kind.
+bool is_undefined(const OGRSpatialReference& reference) {
+  const char* name = reference.GetName();
+  return name != nullptr && reference.IsGeographic() &&
+         std::string_view(name) == "Undefined geographic SRS";
+}
+
 std::string failing_point(double x, double y) {
   char text[80];
   std::snprintf(text, sizeof text, "the point %.10g %.10g cannot be reprojected", x, y);
@@ -69,13 +76,23 @@ std::string failing_point(double x, double y) {
 
 SourceCrs SourceCrs::describe(const OGRSpatialReference* reference) {
   SourceCrs crs;
-  if (reference == nullptr || reference->IsEmpty()) return crs;
+  if (reference == nullptr || reference->IsEmpty() || is_undefined(*reference)) return crs;
   crs.kind = kind_of(*reference);
   crs.reference.reset(reference->Clone());
   if (reference->IsGeographic() && has_longitude_first(*reference)) {
     crs.degrees_per_unit = reference->GetAngularUnits() * 180 / std::numbers::pi;
   }
   return crs;
+}
+
+std::string crs_advice(const std::string& driver) {
+  if (driver == "ESRI Shapefile") return "put a .prj file beside it that names one";
+  return "make a copy that names one, by `ogr2ogr -a_srs EPSG:NUMBER`";
+}
+
+std::string no_degrees_words(const std::string& driver) {
+  return "names no coordinate reference system, and its coordinates are not degrees: " +
+         crs_advice(driver);
 }
 
 LonLatTransform::LonLatTransform(const SourceCrs& crs) {
@@ -85,7 +102,10 @@ LonLatTransform::LonLatTransform(const SourceCrs& crs) {
   GdalMessages messages;
   transformation_.reset(OGRCreateCoordinateTransformation(crs.reference.get(), &wgs84));
   if (transformation_ == nullptr) {
-    throw SourceError("its coordinate reference system cannot be brought to WGS 84" +
+    const char* name = crs.reference->GetName();
+    throw SourceError("its coordinate reference system" +
+                      (name == nullptr ? "" : " \"" + std::string(name) + "\"") +
+                      " cannot be brought to WGS 84" +
                       (messages.text().empty() ? "" : ": " + messages.text()));
   }
 }

@@ -25,9 +25,19 @@ struct SourceCrs {
   double degrees_per_unit = 0;
   std::unique_ptr<const OGRSpatialReference> reference;  // null if there is none
 
-  /// `reference` may be null; axis order is as its data axis mapping says.
+  /// `reference` may be null, or the one by which a GeoPackage says that it is not known; axis
+  /// order is as its data axis mapping says.
   static SourceCrs describe(const OGRSpatialReference* reference);
 };
+
+/// How far beyond the world degrees may lie that no CRS says to be degrees: rounding and buffers
+/// carry honest data a little beyond, pixels and metres go further.
+inline constexpr double kDegreeSlack = 1;
+
+/// In words, how a source of this driver is given a CRS.
+std::string crs_advice(const std::string& driver);
+/// In words, that a source of this driver has none, and coordinates that are not degrees.
+std::string no_degrees_words(const std::string& driver);
 
 /// Transforms points of one CRS to degrees on WGS 84. Belongs to the thread that made it.
 class LonLatTransform {

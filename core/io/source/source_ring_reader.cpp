@@ -6,6 +6,7 @@ namespace trapeze {
 
 SourceRingReader::SourceRingReader(const FeatureSource& source)
     : layers_(source.layers()),
+      driver_(source.driver()),
       options_{.shells_are_clockwise = has_clockwise_shells(source.driver())},
       stores_rings_alone_(source.driver() == "OSM"),
       readers_(source.layers().size()) {}
@@ -16,7 +17,7 @@ FeatureRings& SourceRingReader::read(const OGRGeometry& geometry, std::size_t la
   reader->read(geometry, feature_);
   if (stores_rings_alone_) feature_.part_ends.clear();
   if (feature_.has_wrong_units) {
-    throw SourceError("names no coordinate reference system, and its coordinates are not degrees");
+    throw SourceError(no_degrees_words(driver_));
   }
   return feature_;
 }

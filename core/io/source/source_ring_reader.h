@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <ogr_geometry.h>
@@ -25,8 +26,9 @@ class SourceRingReader {
 
  private:
   const std::vector<SourceLayer>& layers_;
+  const std::string driver_;
   RingReader::Options options_;
-  bool stores_rings_alone_;  // which of them belong together is not said
+  bool stores_rings_alone_;                           // which of them belong together is not said
   std::vector<std::unique_ptr<RingReader>> readers_;  // by layer, made when first needed
   FeatureRings feature_;                              // memory kept between calls
 };

@@ -1,7 +1,9 @@
 // The part of a source that is read.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,27 @@ struct SourceSelection {
   friend bool operator==(const SourceSelection&, const SourceSelection&) = default;
 
   bool is_all() const { return layer.empty() && where.empty() && !attributes; }
+};
+
+enum class SelectionPart { layer, where, attributes };
+
+/// Something selected that a source does not have.
+struct SelectionProblem {
+  SelectionPart part = SelectionPart::layer;
+  std::size_t index = 0;  // of attributes: which of them
+  std::string what;       // without the name of the source
+};
+
+/// A source lacks what is selected of it.
+class SelectionError : public std::runtime_error {
+ public:
+  /// What it says names the source and has all problems, of which there is at least one.
+  SelectionError(const std::string& source, std::vector<SelectionProblem> problems);
+
+  const std::vector<SelectionProblem>& problems() const { return problems_; }
+
+ private:
+  std::vector<SelectionProblem> problems_;
 };
 
 }  // namespace trapeze

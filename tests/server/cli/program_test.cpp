@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -320,18 +321,21 @@ TEST(ProgramTest, ReadsItsConfigurationAgainOnSighup) {
   std::filesystem::remove(path);
 }
 
-TEST(ProgramTest, AFontThatCannotBeUsedIsFoundByConfigCheckAndDoesNotKeepFromDrawing) {
+TEST(ProgramTest, AFontThatCannotBeUsedIsAWarningOfConfigCheckAndDoesNotKeepFromDrawing) {
   const std::string font = scratch_path("broken.ttf");
   std::ofstream(font) << "these are words";
   const std::string path = scratch_path("trapeze.toml");
-  std::ofstream(path) << "[text]\nfonts = [\"" << font << "\", \"/nowhere/a.ttf\"]\n";
+  std::ofstream(path) << "[text]\nfonts = [\"" << font << "\",\n \"/nowhere/a.ttf\"]\n"
+                      << "[[layer]]\nname = \"a\"\nfile = \"" << fixture("rings.geojson") << "\"\n";
   Program check({"config", "check", path});
-  EXPECT_EQ(check.wait(), 1);
-  EXPECT_THAT(check.output(),
-              AllOf(HasSubstr(path + ":2: text.fonts: the font "),
-                    HasSubstr("broken.ttf is in no format of fonts that is known"),
-                    HasSubstr(path + ":2: text.fonts: the font /nowhere/a.ttf is not there")));
-  auto arguments = serve_arguments({fixture("rings.geojson")});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(
+      check.output(),
+      AllOf(HasSubstr(path + ":2:10: warning: text.fonts: the font "),
+            HasSubstr("broken.ttf is in no format of fonts that is known"),
+            HasSubstr(path + ":3:2: warning: text.fonts: the font /nowhere/a.ttf is not there"),
+            HasSubstr(path + ": the server starts, with 2 warnings; 1 layer\n")));
+  auto arguments = serve_arguments({});
   arguments.insert(arguments.end(), {"--config", path});
   Program serve(arguments);
   serve.port();
@@ -341,6 +345,200 @@ TEST(ProgramTest, AFontThatCannotBeUsedIsFoundByConfigCheckAndDoesNotKeepFromDra
                                     HasSubstr("there is no font: legends show no text")));
   std::filesystem::remove(path);
   std::filesystem::remove(font);
+}
+
+/// A folder with maps that are good, and some that are broken in one way each.
+class ConfigCheckTest : public ::testing::Test {
+ protected:
+  ConfigCheckTest() {
+    copy("rings.geojson", "map.geojson");
+    run({"export", file("map.geojson"), "--zoom", "3", "--output", file("map.gpkg")});
+    std::filesystem::copy_file(file("map.gpkg"), file("cut.gpkg"));
+    std::filesystem::resize_file(file("cut.gpkg"),
+                                 std::filesystem::file_size(file("map.gpkg")) / 2);
+    write("words.txt", "these are words");
+    write("bad.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",)"
+                         R"("properties": {}, "geometry": {"type": "Polygon",)"
+                         R"("coordinates": [[[0,0],[1e999,0],[5,5],[0,0]]]}}]})");
+    copy("rings.geojson", "changed.geojson");
+    for (const char* source : {"map.geojson", "bad.geojson", "changed.geojson"}) {
+      run({"prepare", file(source), "--output", folder_});
+    }
+    copy("west.geojson", "changed.geojson");
+    std::filesystem::copy_file(file("map.trapeze"), file("other.trapeze"));
+    std::fstream(file("other.trapeze"), std::ios::in | std::ios::out | std::ios::binary)
+        .seekp(12)  // of the version in its header
+        .put('\x63');
+  }
+
+  std::string file(const std::string& name) const { return folder_ + "/" + name; }
+  void copy(const std::string& name, const std::string& to) const {
+    std::filesystem::copy_file(fixture(name), file(to),
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name)) << text;
+  }
+  static void run(const std::vector<std::string>& arguments) {
+    Program program(arguments);
+    ASSERT_EQ(program.wait(), 0) << program.output();
+  }
+
+  /// What is said, and whether that keeps a server from starting.
+  std::pair<std::optional<int>, std::string> check() const {
+    Program program({"config", "check", file("trapeze.toml")});
+    const auto status = program.wait();
+    return {status, program.output()};
+  }
+  /// At a port that is free, unless it is of the configuration.
+  std::optional<int> serve() const {
+    std::vector<std::string> arguments = {"serve", "--config", file("trapeze.toml")};
+    const bool has_port = read_file(file("trapeze.toml")).find("port = ") != std::string::npos;
+    if (!has_port) arguments.insert(arguments.end(), {"--port", "0"});
+    Program program(arguments);
+    return program.wait();
+  }
+
+ private:
+  static std::string new_folder() {
+    std::string folder = ::testing::TempDir() + "config_check_XXXXXX";
+    if (mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no folder");
+    return folder;
+  }
+  const std::string folder_ = new_folder();
+};
+
+/// A configuration with one thing that is wrong.
+struct Broken {
+  const char* text;
+  const char* position;  // line:column
+  const char* says;
+};
+
+TEST_F(ConfigCheckTest, WhatItFindsKeepsTheServerFromStarting) {
+  const std::string layer = "[[layer]]\nname = \"a\"\n";
+  const Broken all[] = {
+      {"file = \"nosuch.fgb\"", ":3:8: ", "layer.a.file: "},
+      {"file = \"nosuch.fgb\"", ":3:8: ", "nosuch.fgb: no such file"},
+      {"file = \".\"", ":3:8: ", "is a folder"},
+      {"file = \"words.txt\"", ":3:8: ", "holds no vector data"},
+      {"file = \"cut.gpkg\"", ":3:8: ", "cut.gpkg: "},
+      {"file = \"/vsizip/nosuch.zip/a.shp\"", ":3:8: ", "no such file"},
+      {"file = \"map.gpkg\"\nsource_layer = \"roads\"", ":4:16: ", "layer.a.source_layer: "},
+      {"file = \"map.gpkg\"\nsource_layer = \"roads\"",
+       ":4:16: ", "has no layer \"roads\"; it has"},
+      {"file = \"map.gpkg\"\nwhere = \"trapeze_id >\"", ":4:9: ", "cannot be asked where"},
+      {"file = \"map.gpkg\"\nwhere = \"colour = 1\"", ":4:9: ", "layer.a.where: "},
+      {"file = \"map.geojson\"\nwhere = \"colour = 1\"", ":4:9: ", "colour"},
+      {"file = \"map.geojson\"\nwhere = \"colour =\"", ":4:9: ", "syntax error"},
+      {"file = \"map.gpkg\"\nattributes = [\"trapeze_id\", \"colour\"]",
+       ":4:29: ", "has no attribute \"colour\""},
+      {"file = \"map.geojson\"\ncoverage = \"off\"\nclose_gaps = 1",
+       ":5:14: ", "gaps can be closed only where coverage is auto or on"},
+      {"prepared = \"nosuch.trapeze\"", ":3:12: ", "layer.a.prepared: "},
+      {"prepared = \"words.txt\"", ":3:12: ", "holds no vector data"},
+      {"prepared = \"changed.trapeze\"", ":3:12: ", "is older than its source: "},
+      {"file = \"west.geojson\"\nprepared = \"other.trapeze\"", ":4:12: ", "has format 99"},
+      {"prepared = \"map.trapeze\"\nweights = \"effective-area\"",
+       ":3:12: ", "and effective-area are configured"},
+      {"prepared = \"bad.trapeze\"\nmax_skipped = 0",
+       ":4:15: ", "1 of 1 features were skipped (100 %), and at most 0 may be"},
+      {"file = \"map.trapeze\"\nwhere = \"a = 1\"", ":3:8: ", "is prepared already"},
+      {"file = \"map.geojson\"\n[server]\nweb_root = \"nosuch\"",
+       ":5:12: ", "server.web_root: cannot read the folder of the viewer"},
+      {"file = \"map.geojson\"\n[log]\naccess = \"nosuch/a.log\"", ":5:10: ", "cannot be written"},
+      {"file = \"map.geojson\"\n[log]\naccess = \".\"", ":5:10: ", "Is a directory"},
+      {"file = \"map.geojson\"\n[server]\naddress = \"203.0.113.7\"",
+       ":5:11: ", "cannot listen on"},
+      {"file = \"map.geojson\"\n[server]\naddress = \"localhost\"", ":5:11: ", "IPv4 or IPv6"},
+      {"file = \"map.geojson\"\n[server]\nport = 70000", ":5:8: ", "from 0 to 65535"},
+      {"file = \"${NOSUCH_VARIABLE}\"", ":3:8: ", "NOSUCH_VARIABLE is not set"},
+      {"file = \"map.geojson\"\nmax_skipped = \"many\"", ":4:15: ", "a number of features"},
+      {"file = \"map.geojson\"\n[server]\naddress = \"127.0.0.1\"\n[admin]\nport = 8080",
+       ":7:8: ", "is the port of the server"},
+  };
+  for (const Broken& broken : all) {
+    write("trapeze.toml", layer + broken.text);
+    const auto [status, says] = check();
+    EXPECT_EQ(status, 1) << broken.text << "\n" << says;
+    EXPECT_THAT(says,
+                AllOf(StartsWith(file("trapeze.toml") + broken.position), HasSubstr(broken.says)))
+        << broken.text;
+    EXPECT_EQ(std::ranges::count(says, '\n'), 1) << "no more than one is wrong: " << says;
+    EXPECT_EQ(serve(), 1) << broken.text;
+  }
+}
+
+TEST_F(ConfigCheckTest, WhatItPassesStartsAndLeavesNoFileBehind) {
+  write("trapeze.toml",
+        "[server]\naddress = \"127.0.0.1\"\nport = 0\nrenderer = \"software\"\n"
+        "[log]\naccess = \"access.log\"\n"
+        "[[layer]]\nname = \"a\"\nfile = \"map.gpkg\"\nwhere = \"trapeze_id >= 0\"\n"
+        "attributes = [\"trapeze_id\"]\n"
+        "[[layer]]\nname = \"b\"\nfile = \"map.geojson\"\nprepared = \"map.trapeze\"");
+  const auto [status, says] = check();
+  EXPECT_EQ(status, 0) << says;
+  EXPECT_EQ(says, file("trapeze.toml") + ": nothing is wrong; 2 layers\n");
+  EXPECT_FALSE(std::filesystem::exists(file("access.log")));
+  Program program({"serve", "--config", file("trapeze.toml")});
+  wait_until_ready(program.port());
+}
+
+TEST_F(ConfigCheckTest, TellsAllThatIsWrongAtOnceWithTheEnvironment) {
+  write("trapeze.toml",
+        "[server]\nweb_root = \"nosuch\"\n[[layer]]\nname = \"a\"\nmin_zoom = 99\n"
+        "file = \"nosuch.fgb\"\n[[layer]]\nname = \"b\"\nfile = \"map.gpkg\"\n"
+        "where = \"colour\"\nattributes = [\"x\", \"y\"]\n");
+  setenv("TRAPEZE_SERVER_QUEUE", "many", 1);
+  setenv("TRAPEZE_SERVER_PROT", "80", 1);
+  setenv("TRAPEZE_LOG_ACCESS", "/nosuch/access.log", 1);
+  const auto [status, says] = check();
+  for (const char* name : {"TRAPEZE_SERVER_QUEUE", "TRAPEZE_SERVER_PROT", "TRAPEZE_LOG_ACCESS"}) {
+    unsetenv(name);
+  }
+  EXPECT_EQ(status, 1);
+  for (const char* place :
+       {":5:12: ", ":2:12: server.web_root", ":6:8: layer.a.file", ":10:9: layer.b.where",
+        ":11:15: layer.b.attributes", ":11:20: layer.b.attributes"}) {
+    EXPECT_THAT(says, HasSubstr(file("trapeze.toml") + place));
+  }
+  EXPECT_THAT(says,
+              AllOf(HasSubstr("TRAPEZE_SERVER_QUEUE: takes an integer"),
+                    HasSubstr("TRAPEZE_SERVER_PROT: there is no such setting"),
+                    HasSubstr("TRAPEZE_LOG_ACCESS: log.access: /nosuch/access.log cannot be")));
+  EXPECT_EQ(std::ranges::count(says, '\n'), 9) << says;
+}
+
+TEST_F(ConfigCheckTest, WarnsOfWhatTheServerWarnsOfAndStartsWith) {
+  write("plain.gml",
+        R"(<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/")"
+        R"( xmlns:gml="http://www.opengis.net/gml"><gml:featureMember><ogr:a fid="a.0">)"
+        R"(<ogr:geometryProperty><gml:Polygon><gml:outerBoundaryIs><gml:LinearRing>)"
+        R"(<gml:coordinates>1,1 2,1 2,2 1,1</gml:coordinates></gml:LinearRing>)"
+        R"(</gml:outerBoundaryIs></gml:Polygon></ogr:geometryProperty></ogr:a>)"
+        R"(</gml:featureMember></ogr:FeatureCollection>)");
+  write("trapeze.toml",
+        "[server]\naddress = \"127.0.0.1\"\nport = 0\nrenderer = \"software\"\n"
+        "[[layer]]\nname = \"a\"\nfile = \"plain.gml\"\n");
+  const std::string words = file("plain.gml") +
+                            ": names no coordinate reference system, so its "
+                            "coordinates are taken for degrees on WGS 84";
+  const auto [status, says] = check();
+  EXPECT_EQ(status, 0);
+  EXPECT_THAT(says, HasSubstr(file("trapeze.toml") + ":7:8: warning: layer.a.file: " + words));
+  Program program({"serve", "--config", file("trapeze.toml")});
+  wait_until_ready(program.port());
+  EXPECT_THAT(program.output(), HasSubstr(" warning " + words));
+  Program read({"check", file("plain.gml")});
+  EXPECT_EQ(read.wait(), 0);
+  EXPECT_THAT(read.output(), HasSubstr("  warning: names no coordinate reference system"));
+}
+
+TEST_F(ConfigCheckTest, AConfigurationWithoutLayersIsAWarningAsServeMayBeGivenFiles) {
+  write("trapeze.toml", "[server]\nport = 0\n");
+  const auto [status, says] = check();
+  EXPECT_EQ(status, 0);
+  EXPECT_THAT(says, HasSubstr(file("trapeze.toml") + ": warning: there is no [[layer]]"));
 }
 
 TEST(ProgramTest, ConfigurationsAreCheckedAndPrinted) {
@@ -362,7 +560,7 @@ TEST(ProgramTest, ConfigurationsAreCheckedAndPrinted) {
   EXPECT_EQ(print.wait(), 0);
   using ::testing::ContainsRegex;
   EXPECT_THAT(print.output(),
-              AllOf(ContainsRegex("port = 1 +# [^ ]+:2\n"), HasSubstr("name = \"rings\""),
+              AllOf(ContainsRegex("port = 1 +# [^ ]+:2:8\n"), HasSubstr("name = \"rings\""),
                     ContainsRegex("queue = 77 +# TRAPEZE_SERVER_QUEUE\n"),
                     ContainsRegex("batch = 3 +# --set server.batch\n"),
                     ContainsRegex("deadline_ms = 10000 +# default\n")));
@@ -461,6 +659,8 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
       {{"check", fixture("rings.geojson"), "--coverage", "off", "--close-gaps", "5"},
        "--close-gaps needs --coverage auto or on"},
       {{"check", fixture("rings.geojson"), "--coverage", "of"}, "did you mean o"},
+      {{"check", fixture("rings.geojson"), "--max-skipped", "101%"},
+       "--max-skipped takes a number of features, or a share of them such as \"1%\", given was"},
       {{"prepare", fixture("rings.geojson")}, "--output is missing"},
       {{"prepare", fixture("rings.geojson"), fixture("rings.geojson"), "--output", "x"},
        "both be the layer"},
@@ -556,6 +756,42 @@ TEST(ProgramTest, ChecksFilesAndGoesOnAfterABadOne) {
                     ::testing::ContainsRegex("memory of the process +[0-9]+ bytes at most")));
   Program good({"check", fixture("rings.geojson")});
   EXPECT_EQ(good.wait(), 0);
+}
+
+TEST(ProgramTest, MoreSkippedFeaturesThanAllowedEndEveryCommandThatLoads) {
+  const std::string map = scratch_path("map.geojson");
+  std::ofstream(map) << R"({"type": "FeatureCollection", "features": [)"
+                     << R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",)"
+                     << R"("coordinates": [[[0,0],[5,0],[5,5],[0,0]]]}},)"
+                     << R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",)"
+                     << R"("coordinates": [[[0,0],[1e999,0],[5,5],[0,0]]]}}]})";
+  const std::string folder = scratch_path("prepared");
+  const std::string words = map + ": 1 of 2 features were skipped (50 %), and at most ";
+  const auto strict_serve = [&map] {
+    auto arguments = serve_arguments({map});
+    arguments.push_back("--strict");
+    return arguments;
+  }();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"check", map, "--max-skipped", "49%"}, "49% may be"},
+      {{"check", map, "--strict"}, "0 may be"},
+      {{"prepare", map, "--output", folder, "--max-skipped", "0"}, "0 may be"},
+      {strict_serve, "0 may be"}};
+  for (const auto& [arguments, says] : refused) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 1) << says;
+    EXPECT_THAT(program.output(), HasSubstr(words + says));
+  }
+  EXPECT_THAT(names_in(folder), ::testing::IsEmpty()) << "what is refused is not prepared";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"check", map},
+        {"check", map, "--max-skipped", "1"},
+        {"prepare", map, "--output", folder, "--max-skipped", "50%"}}) {
+    Program program(arguments);
+    EXPECT_EQ(program.wait(), 0) << program.output();
+  }
+  std::filesystem::remove_all(folder);
+  std::filesystem::remove(map);
 }
 
 TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {

@@ -98,6 +98,27 @@ TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
               HasSubstr("is prepared: select from its source"));
 }
 
+TEST_F(ConfigTest, ALimitOfSkippedFeaturesIsANumberOrAShare) {
+  const Config config = read(R"(
+    [[layer]]
+    name = "a"
+    file = "a.fgb"
+    max_skipped = 3
+    may_shrink = true
+    [[layer]]
+    name = "b"
+    file = "b.fgb"
+    max_skipped = "0.5%"
+    [[layer]]
+    name = "c"
+    file = "c.fgb")");
+  EXPECT_EQ(config.layers[0].max_skipped, SkipLimit::parse("3"));
+  EXPECT_TRUE(config.layers[0].may_shrink);
+  EXPECT_EQ(config.layers[1].max_skipped, SkipLimit::parse("0.5%"));
+  EXPECT_FALSE(config.layers[1].may_shrink);
+  EXPECT_EQ(config.layers[2].max_skipped, SkipLimit());
+}
+
 TEST_F(ConfigTest, PrintsNoPassword) {
   std::ofstream(path_) << "[[layer]]\nname = \"a\"\nfile = \"PG:dbname=maps password=secret\"\n";
   const std::string printed = print_config(load_config(path_, {}));
@@ -230,6 +251,10 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
        ":4:11: ", "takes a list of parameters that are set for one layer: breaks, classes"},
       {"[[layer]]\nname = \"a\"\nfile = \"a\"\nlocked = [\"background\"]",
        ":4:11: ", "takes a list of parameters"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nmax_skipped = -1",
+       ":4:15: ", "layer.max_skipped takes a number of features, or a share of them"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nmax_skipped = \"101%\"", ":4:15: ", "a share"},
+      {"[[layer]]\nname = \"a\"\nfile = \"a\"\nmax_skipped = 0.5", ":4:15: ", "a share"},
       {"[styles.a]\n\"b c\" = { fill = \"red\" }", ":2:1: ", "\"b c\" cannot name a layer"},
       {"[styles.a]\n\"\" = { fill = \"red\" }", ":2:1: ", "\"\" cannot name a layer"},
       {"[server\n", ":1:", ""},
@@ -280,10 +305,10 @@ TEST_F(ConfigTest, EnvironmentGoesBeforeTheFileAndTheCommandLineBeforeBoth) {
   EXPECT_EQ(loaded.config.server.trusted_proxies.size(), 2u);
   EXPECT_FALSE(loaded.config.server.metrics);
   EXPECT_EQ(loaded.config.limits.drawn_per_second, 2.5);
-  EXPECT_EQ(loaded.origins.at("server.port"), path_ + ":2");
+  EXPECT_EQ(loaded.origins.at("server.port"), path_ + ":2:8");
   EXPECT_EQ(loaded.origins.at("server.queue"), "TRAPEZE_SERVER_QUEUE");
   EXPECT_EQ(loaded.origins.at("server.batch"), "--batch");
-  EXPECT_EQ(loaded.origins.at("layer.a.title"), path_ + ":8");
+  EXPECT_EQ(loaded.origins.at("layer.a.title"), path_ + ":8:9");
   EXPECT_FALSE(loaded.origins.contains("server.deadline_ms"));
 }
 
@@ -359,7 +384,7 @@ TEST_F(ConfigTest, WhatIsPrintedReadsBackAsTheSame) {
   ASSERT_EQ(problems_text(loaded.problems), "");
   const std::string printed = print_config(loaded);
   EXPECT_THAT(printed, ::testing::ContainsRegex("port = 81 +# --port"));
-  EXPECT_THAT(printed, ::testing::ContainsRegex("queue = 9 +# [^ ]+:2\n"));
+  EXPECT_THAT(printed, ::testing::ContainsRegex("queue = 9 +# [^ ]+:2:9\n"));
   EXPECT_THAT(printed, ::testing::ContainsRegex("batch = 8 +# default\n"));
   EXPECT_THAT(printed, HasSubstr("access = \"stdout\""));
   std::ofstream(path_) << printed;

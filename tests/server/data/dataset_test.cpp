@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,7 +22,9 @@
 namespace trapeze {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr std::int32_t kFar =
@@ -147,6 +150,100 @@ TEST_F(LoadedAgain, BuildsWhatIsToBeServedWithoutTheTopologyTestOnce) {
   before_ = after_;
   load_again();
   EXPECT_EQ(after_->layers()[0].untested, built);
+}
+
+/// Squares beside each other, the last `broken` of them without finite coordinates.
+std::string squares(int count, int broken) {
+  std::string text = R"({"type": "FeatureCollection", "features": [)";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format(R"({0}{{"type": "Feature", "properties": {{}}, "geometry": {{)"
+                        R"("type": "Polygon", "coordinates": )"
+                        R"([[[{1},0],[{1}.5,0],[{1}.5,{2}],[{1},0]]]}}}})",
+                        i == 0 ? "" : ",", i, i < count - broken ? "1" : "1e999");
+  }
+  return text + "]}";
+}
+
+/// What keeps layers from being served; empty if nothing does.
+std::string refusal_of(const std::vector<LayerConfig>& layers, const Dataset* previous = nullptr) {
+  try {
+    Dataset::load(layers, previous);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+class LayerLimits : public ::testing::Test {
+ protected:
+  std::vector<LayerConfig> layers_of_squares(int count, int broken) {
+    folder_.write("squares.geojson", squares(count, broken));
+    std::filesystem::last_write_time(
+        folder_.file("squares.geojson"),
+        std::filesystem::file_time_type{} + std::chrono::seconds(++writes_));
+    return layers_of_files({folder_.file("squares.geojson")});
+  }
+  std::shared_ptr<const Dataset> served(int count) {
+    return Dataset::load(layers_of_squares(count, 0));
+  }
+
+  const TemporaryFolder folder_;
+  int writes_ = 0;
+};
+
+TEST_F(LayerLimits, AnyNumberOfFeaturesMayBeSkippedUnlessALayerSaysHowMany) {
+  auto layers = layers_of_squares(10, 2);
+  EXPECT_THAT(refusal_of(layers), IsEmpty());
+  layers[0].max_skipped = SkipLimit::parse("20%").value();
+  EXPECT_THAT(refusal_of(layers), IsEmpty());
+  layers[0].max_skipped = SkipLimit::parse("19%").value();
+  EXPECT_THAT(refusal_of(layers),
+              AllOf(HasSubstr("layer \"squares\": " + layers[0].file),
+                    HasSubstr("2 of 10 features were skipped (20 %), and at most 19% may be")));
+  layers[0].max_skipped = SkipLimit::parse("1").value();
+  EXPECT_THAT(refusal_of(layers), HasSubstr("at most 1 may be"));
+}
+
+TEST_F(LayerLimits, ALimitHoldsForALayerThatIsNotReadAgain) {
+  auto layers = layers_of_squares(10, 2);
+  const auto before = Dataset::load(layers);
+  layers[0].max_skipped = SkipLimit::parse("0").value();
+  EXPECT_THAT(refusal_of(layers, before.get()), HasSubstr("at most 0 may be"));
+}
+
+TEST_F(LayerLimits, FewerThanHalfOfTheServedFeaturesAreRefused) {
+  const auto before = served(10);
+  EXPECT_THAT(refusal_of(layers_of_squares(5, 0), before.get()), IsEmpty());
+  EXPECT_THAT(
+      refusal_of(layers_of_squares(4, 0), before.get()),
+      AllOf(HasSubstr("squares.geojson: 4 features can be drawn, fewer than half of the 10"),
+            HasSubstr("set may_shrink = true")));
+  EXPECT_THAT(refusal_of(layers_of_squares(10, 6), before.get()), HasSubstr("may_shrink"))
+      << "skipped ones are not there either";
+}
+
+TEST_F(LayerLimits, ALayerShrinksIfItMayOrIsSelectedOtherwiseOrIsNew) {
+  const auto before = served(10);
+  auto layers = layers_of_squares(1, 0);
+  EXPECT_THAT(refusal_of(layers, before.get()), HasSubstr("may_shrink"));
+  auto may_shrink = layers;
+  may_shrink[0].may_shrink = true;
+  EXPECT_THAT(refusal_of(may_shrink, before.get()), IsEmpty());
+  auto selected = layers;
+  selected[0].selection.where = "FID = 0";
+  EXPECT_THAT(refusal_of(selected, before.get()), IsEmpty());
+  auto renamed = layers;
+  renamed[0].name = "other";
+  EXPECT_THAT(refusal_of(renamed, before.get()), IsEmpty());
+}
+
+TEST_F(LayerLimits, EveryLayerThatIsRefusedIsTold) {
+  auto layers = layers_of_squares(2, 1);
+  folder_.write("more.geojson", squares(4, 1));
+  layers.push_back(layers_of_files({folder_.file("more.geojson")})[0]);
+  for (LayerConfig& layer : layers) layer.max_skipped = SkipLimit::parse("0").value();
+  EXPECT_THAT(refusal_of(layers), AllOf(HasSubstr("layer \"squares\": "), HasSubstr("1 of 2"),
+                                        HasSubstr("; layer \"more\": "), HasSubstr("1 of 4")));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <netinet/in.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -139,6 +140,19 @@ TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheirFileHasChanged) {
   EXPECT_TRUE(holds_within(10s, [&] { return tag() != old_tag; }));
   std::this_thread::sleep_for(200ms);
   EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"succeeded\"} 2")) << "once is enough";
+}
+
+TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheWriteAheadLogOfAFileHasChanged) {
+  config_.server.watch_ms = 30;
+  start();
+  std::ofstream(file_ + "-wal") << "a change";
+  EXPECT_TRUE(
+      holds_within(10s, [&] { return tells("trapeze_data_loads_total{result=\"succeeded\"} 2"); }));
+  std::this_thread::sleep_for(200ms);
+  EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"succeeded\"} 2")) << "once is enough";
+  std::filesystem::remove(file_ + "-wal");
+  EXPECT_TRUE(
+      holds_within(10s, [&] { return tells("trapeze_data_loads_total{result=\"succeeded\"} 3"); }));
 }
 
 TEST_F(ServiceTest, AFileThatIsBeingWrittenIsLeftAloneUntilItIsDone) {
@@ -376,6 +390,45 @@ TEST(ReloaderTest, TheRendererKeepsMeshesOfLayersThatAreServedOn) {
   }
   const std::lock_guard lock(notes.mutex);
   EXPECT_EQ(notes.kept.size(), 1u);
+}
+
+TEST(ReloaderTest, ALayerThatLostMostOfItsFeaturesIsNotTakenUnlessItMayShrink) {
+  const TemporaryFolder folder;
+  const auto write_bands = [&folder](int bands) {
+    std::string text = R"({"type": "FeatureCollection", "features": [)";
+    for (int i = 0; i < bands; ++i) {
+      text += fmt::format(R"({0}{{"type": "Feature", "properties": {{}}, "geometry": {{)"
+                          R"("type": "Polygon", "coordinates": )"
+                          R"([[[{1},0],[{1}.5,0],[{1}.5,9],[{1},0]]]}}}})",
+                          i == 0 ? "" : ",", i);
+    }
+    folder.write("bands.geojson", text + "]}");
+  };
+  write_bands(9);
+  std::atomic<bool> may_shrink = false;
+  const auto layers = [&] {
+    auto bands = layers_of_files({folder.file("bands.geojson")});
+    bands[0].may_shrink = may_shrink;
+    return bands;
+  };
+  CurrentDataset data;
+  Metrics metrics;
+  TileService tiles({}, make_renderers({RendererKind::software, {}}, 1).renderers);
+  Reloader reloader(
+      {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+  ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
+  const auto bands_served = [&data] { return data.get()->layers()[0].report.loaded; };
+  write_bands(4);
+  reloader.reload();
+  EXPECT_TRUE(holds_within(10s, [&] { return !reloader.last_problem().empty(); }));
+  EXPECT_THAT(reloader.last_problem(),
+              AllOf(HasSubstr("bands.geojson: 4 features can be drawn, fewer than half of the 9"),
+                    HasSubstr("may_shrink = true")));
+  EXPECT_EQ(bands_served(), 9u) << "the old layer stays";
+  may_shrink = true;
+  reloader.reload();
+  EXPECT_TRUE(holds_within(10s, [&] { return bands_served() == 4; }));
+  EXPECT_TRUE(holds_within(10s, [&] { return reloader.last_problem().empty(); }));
 }
 
 TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {

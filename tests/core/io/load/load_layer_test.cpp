@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/grid/web_mercator.h"
+#include "core/io/prepared/open_layer.h"
 #include "tests/core/io/source/written_source.h"
 #include "tests/core/io/temporary_folder.h"
 
@@ -25,6 +26,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 const std::string kMixed = TRAPEZE_FIXTURES "/mixed.geojson";
@@ -307,6 +309,47 @@ TEST_F(LoadLayerTest, AssumesDegreesWhereNoReferenceSystemIsGiven) {
   write_source(path, "FlatGeobuf", {{.crs = "", .features = {{"POLYGON((1 1,2 1,2 2,1 2,1 1))"}}}});
   const LoadedLayer loaded = load_layer(path);
   expect_area(*loaded.layer, 0, rectangle(1, 1, 2, 2));
+  EXPECT_THAT(loaded.report.warnings,
+              ElementsAre(HasSubstr("names no coordinate reference system, so its coordinates are "
+                                    "taken for degrees on WGS 84")));
+}
+
+TEST_F(LoadLayerTest, WarnsOfEachLayerThatNamesNoReferenceSystem) {
+  const std::vector<TestFeature> one = {{"POLYGON((1 1,2 1,2 2,1 2,1 1))"}};
+  const std::string path = folder_.file("a.gpkg");
+  write_source(
+      path, "GPKG",
+      {{.name = "known", .features = one}, {.name = "unknown", .crs = "", .features = one}});
+  EXPECT_THAT(load_layer(path, {.selection = {.layer = "known"}}).report.warnings, IsEmpty());
+  EXPECT_THAT(load_layer(path).report.warnings,
+              ElementsAre(StartsWith("its layer \"unknown\" names no")));
+}
+
+TEST_F(LoadLayerTest, WarnsOfAShapefileWhosePrjIsMissingOrNotUnderstood) {
+  const std::string path = folder_.file("a.shp");
+  write_source(path, "ESRI Shapefile",
+               {{.type = wkbPolygon, .features = {{"POLYGON((1 1,2 1,2 2,1 2,1 1))"}}}});
+  EXPECT_THAT(load_layer(path).report.warnings, IsEmpty());
+  folder_.write("a.prj", "no words of a reference system");
+  EXPECT_THAT(load_layer(path).report.warnings,
+              ElementsAre(HasSubstr("names no coordinate reference system that is known")));
+  std::filesystem::remove(folder_.file("a.prj"));
+  EXPECT_THAT(load_layer(path).report.warnings,
+              ElementsAre(AllOf(HasSubstr("names no coordinate reference system, so"),
+                                HasSubstr("a .prj file beside it"))));
+}
+
+TEST_F(LoadLayerTest, FormatsWithAUsualReferenceSystemNeedNotNameIt) {
+  folder_.write("a.geojson", R"({"type": "Polygon", "coordinates": [[[1,1],[2,1],[2,2],[1,1]]]})");
+  folder_.write("a.topojson",
+                R"({"type": "Topology", "objects": {"a": {"type": "GeometryCollection",)"
+                R"("geometries": [{"type": "Polygon", "arcs": [[0]]}]}},)"
+                R"("arcs": [[[1,1],[2,1],[2,2],[1,1]]]})");
+  for (const char* name : {"a.geojson", "a.topojson"}) {
+    const LoadReport report = load_layer(folder_.file(name)).report;
+    EXPECT_EQ(report.loaded, 1u) << name;
+    EXPECT_THAT(report.warnings, IsEmpty()) << name;
+  }
 }
 
 TEST_F(LoadLayerTest, RefusesNumbersThatAreNoDegreesWithoutReferenceSystem) {
@@ -317,8 +360,12 @@ TEST_F(LoadLayerTest, RefusesNumbersThatAreNoDegreesWithoutReferenceSystem) {
                               {"POLYGON((1000 1,2000 1,2000 2,1000 1))"}}}});
   for (const unsigned threads : {1u, 4u}) {
     EXPECT_THAT(failure_of(path, {.threads = threads, .progress = {}}),
-                AllOf(StartsWith(path + ": "), HasSubstr("names no coordinate reference system")));
+                AllOf(StartsWith(path + ": "), HasSubstr("names no coordinate reference system"),
+                      HasSubstr("-a_srs EPSG:NUMBER")));
   }
+  const auto findings = examine_layer(path);
+  ASSERT_EQ(findings.size(), 1u) << "its extent tells it before it is read";
+  EXPECT_EQ(findings[0].what, failure_of(path));
 }
 
 TEST_F(LoadLayerTest, RefusesAReferenceSystemThatLeadsNowhere) {
@@ -326,8 +373,9 @@ TEST_F(LoadLayerTest, RefusesAReferenceSystemThatLeadsNowhere) {
   write_source(path, "GPKG",
                {{.crs = "LOCAL_CS[\"site plan\",UNIT[\"metre\",1]]",
                  .features = {{"POLYGON((1 1,2 1,2 2,1 2,1 1))"}}}});
-  EXPECT_THAT(failure_of(path), AllOf(StartsWith(path + ": "),
-                                      HasSubstr("reference system cannot be brought to WGS 84")));
+  EXPECT_THAT(failure_of(path),
+              AllOf(StartsWith(path + ": "),
+                    HasSubstr("reference system \"site plan\" cannot be brought to WGS 84")));
 }
 
 TEST_F(LoadLayerTest, SkipsFeaturesWithNumbersThatAreNoneAndSaysWhich) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -124,13 +125,56 @@ TEST_F(SourceSelectionTest, SaysWhatIsNotThere) {
   EXPECT_THAT(failure_of({.layer = "wells"}), HasSubstr("\"wells\" holds no polygons"));
   EXPECT_THAT(failure_of({.attributes = {{"text", "colour"}}}),
               AllOf(StartsWith(town_), HasSubstr("no attribute \"colour\"")));
-  // Databases are asked when they are read, files before.
-  EXPECT_THAT(failure_of({.where = "colour = 'red'"}),
-              AllOf(StartsWith(town_), HasSubstr("WHERE colour = 'red'")));
-  EXPECT_THAT(failure_of(kMixed, {.where = "colour = 'red'"}),
-              AllOf(StartsWith(kMixed), HasSubstr("cannot be asked where colour = 'red'"),
-                    HasSubstr("colour")));
-  EXPECT_THAT(failure_of(kMixed, {.where = "floors = "}), HasSubstr("cannot be asked where"));
+}
+
+TEST_F(SourceSelectionTest, SaysInOneLineWhichConditionALayerDoesNotUnderstand) {
+  for (const std::string& path : {town_, kMixed}) {  // a database, and what GDAL asks itself
+    for (const std::string where : {"colour = 'red'", "number = "}) {
+      EXPECT_THAT(failure_of(path, {.where = where}),
+                  AllOf(StartsWith(path), HasSubstr("cannot be asked where " + where + ": "),
+                        ::testing::Not(HasSubstr("\n")), ::testing::Not(HasSubstr("^"))));
+    }
+  }
+}
+
+TEST_F(SourceSelectionTest, AConditionThatHoldsForNothingIsUnderstood) {
+  EXPECT_EQ(load_layer(town_, {.selection = {.where = "number > 100"}}).report.loaded, 0u);
+}
+
+TEST_F(SourceSelectionTest, TellsAllThatIsMissingAtOnce) {
+  try {
+    load_layer(town_, {.selection = {.where = "colour = 1", .attributes = {{"a", "text", "b"}}}});
+    FAIL();
+  } catch (const SelectionError& error) {
+    ASSERT_EQ(error.problems().size(), 3u);
+    EXPECT_EQ(error.problems()[0].part, SelectionPart::where);
+    EXPECT_EQ(error.problems()[1].part, SelectionPart::attributes);
+    EXPECT_EQ(error.problems()[1].index, 0u);
+    EXPECT_EQ(error.problems()[2].index, 2u);
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("where colour = 1"), HasSubstr("; has no attribute "
+                                                                             "\"a\"; has no")));
+  }
+}
+
+TEST_F(SourceSelectionTest, FindsTheSameWithoutReading) {
+  const auto parts = [this](const OpenOptions& options) {
+    std::vector<OpenPart> found;
+    for (const OpenFinding& finding : examine_layer(town_, options)) {
+      EXPECT_THAT(finding.what, StartsWith(town_));
+      found.push_back(finding.part);
+    }
+    return found;
+  };
+  EXPECT_THAT(parts({}), ::testing::IsEmpty());
+  EXPECT_THAT(parts({.selection = {.where = "a = 1", .attributes = {{"b"}}}}),
+              ElementsAre(OpenPart::where, OpenPart::attributes));
+  EXPECT_THAT(parts({.selection = {.layer = "roads"}}), ElementsAre(OpenPart::layer));
+  EXPECT_THAT(parts({.coverage = CoverageMode::off, .close_gaps = 1}),
+              ElementsAre(OpenPart::close_gaps));
+  std::filesystem::resize_file(town_, 5000);
+  EXPECT_THAT(parts({}), ElementsAre(OpenPart::file));
+  std::filesystem::remove(town_);
+  EXPECT_THAT(parts({}), ElementsAre(OpenPart::file));
 }
 
 TEST_F(SourceSelectionTest, OfAPreparedLayerTakesTheSourceOnly) {

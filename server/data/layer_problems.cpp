@@ -1,0 +1,50 @@
+#include "server/data/layer_problems.h"
+
+#include <utility>
+
+#include "core/io/file/prepared_file.h"
+#include "core/io/prepared/open_layer.h"
+#include "server/data/dataset.h"
+
+namespace trapeze {
+namespace {
+
+const char* key_of(OpenPart part, const LayerConfig& layer) {
+  switch (part) {
+    case OpenPart::layer:
+      return "source_layer";
+    case OpenPart::where:
+      return "where";
+    case OpenPart::attributes:
+      return "attributes";
+    case OpenPart::close_gaps:
+      return "close_gaps";
+    case OpenPart::file:
+      break;
+  }
+  return layer.prepared.empty() ? "file" : "prepared";
+}
+
+/// In words, that more of a prepared layer was skipped than may be; empty if not.
+std::string find_prepared_excess(const LayerConfig& layer) {
+  if (!is_prepared_file(layer.file_to_open())) return {};
+  return find_excess(open_layer(layer.file_to_open(), how_to_open(layer)).report,
+                     layer.max_skipped);
+}
+
+}  // namespace
+
+std::vector<LayerProblem> find_layer_problems(const LayerConfig& layer) {
+  std::vector<LayerProblem> problems;
+  for (OpenFinding& found : examine_layer(layer.file_to_open(), how_to_open(layer))) {
+    const auto index =
+        found.part == OpenPart::attributes ? std::optional(found.index) : std::nullopt;
+    problems.push_back({key_of(found.part, layer), index, std::move(found.what), found.is_warning});
+  }
+  if (!problems.empty()) return problems;  // a prepared file has no warnings
+  std::string excess = find_prepared_excess(layer);
+  if (!excess.empty()) problems.push_back({"max_skipped", std::nullopt, std::move(excess), false});
+  return problems;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,123 @@
+#include "server/service/config_check.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include "render/make_renderer.h"
+#include "server/base/failure_words.h"
+#include "server/data/layer_problems.h"
+#include "server/http/http_server.h"
+#include "server/http/static_files.h"
+#include "server/service/line_writer.h"
+#include "server/tiles/open_fonts.h"
+
+namespace trapeze {
+namespace {
+
+/// In words, what `act` throws; empty if it does not.
+template <typename Act>
+std::string failure_of(const Act& act) {
+  try {
+    act();
+    return {};
+  } catch (const std::exception& error) {
+    return failure_words(error);
+  }
+}
+
+/// Goes through the settings, in the order in which the server would use them.
+class ConfigCheck {
+ public:
+  ConfigCheck(const LoadedConfig& loaded, const std::string& path)
+      : loaded_(loaded), config_(loaded.config), path_(path) {
+    findings_.problems = loaded.problems;
+  }
+
+  ConfigFindings run() {
+    check_files();
+    check_renderer();
+    check_addresses();
+    for (const LayerConfig& layer : config_.layers) check_layer(layer);
+    if (config_.layers.empty() && findings_.problems.empty()) {
+      findings_.warnings.push_back(
+          {path_, "there is no [[layer]]: `trapeze serve` needs the names of files as well"});
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  ConfigProblem found(const std::string& setting, const std::string& what,
+                      std::optional<std::size_t> item = {}) const {
+    const bool is_told = loaded_.origins.contains(setting);
+    return {is_told ? loaded_.origin_of(setting, item) : path_,
+            fmt::format("{}: {}", setting, what)};
+  }
+
+  void note(const std::string& setting, const std::string& failure) {
+    if (!failure.empty()) findings_.problems.push_back(found(setting, failure));
+  }
+
+  void check_files() {
+    if (!config_.log.access.empty()) {
+      note("log.access", find_target_problem(config_.log.access));
+    }
+    if (!config_.server.web_root.empty()) {
+      note("server.web_root", failure_of([this] { StaticFiles(config_.server.web_root); }));
+    }
+    for (std::size_t i = 0; i < config_.text.fonts.size(); ++i) {
+      for (const std::string& problem : find_font_problems({config_.text.fonts[i]})) {
+        findings_.warnings.push_back(found("text.fonts", problem, i));
+      }
+    }
+  }
+
+  void check_renderer() {
+    if (config_.server.renderer.kind == RendererKind::automatic) return;  // something always draws
+    note("server.renderer", failure_of([this] { make_renderer(config_.server.renderer); }));
+  }
+
+  void check_addresses() {
+    check_address("server.address", config_.server.address);
+    if (config_.admin.port == 0) return;
+    check_address("admin.address", config_.admin.address);
+    const bool is_same = config_.admin.address == config_.server.address ||
+                         is_any(config_.admin.address) || is_any(config_.server.address);
+    if (is_same && config_.admin.port == config_.server.port) {
+      note("admin.port", "is the port of the server: each address needs one of its own");
+    }
+  }
+
+  void check_address(const std::string& setting, const std::string& address) {
+    HttpServerOptions options;
+    options.address = address;
+    options.port = 0;  // any: that of the configuration may be taken by the server that runs
+    note(setting, failure_of([&options] { HttpServer(options, {}); }));
+  }
+
+  static bool is_any(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
+
+  void check_layer(const LayerConfig& layer) {
+    if (layer.file_to_open().empty()) return;  // a problem of reading the configuration
+    for (const LayerProblem& problem : find_layer_problems(layer)) {
+      auto& list = problem.is_warning ? findings_.warnings : findings_.problems;
+      list.push_back(
+          found(fmt::format("layer.{}.{}", layer.name, problem.key), problem.what, problem.index));
+    }
+  }
+
+  const LoadedConfig& loaded_;
+  const Config& config_;
+  const std::string& path_;
+  ConfigFindings findings_;
+};
+
+}  // namespace
+
+ConfigFindings check_config(const LoadedConfig& loaded, const std::string& path) {
+  return ConfigCheck(loaded, path).run();
+}
+
+}  // namespace trapeze
