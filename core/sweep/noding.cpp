@@ -165,8 +165,9 @@ std::vector<Segment> segments_of(const Rings& rings) {
 }
 
 std::size_t most_meetings(std::size_t segments) {
-  constexpr std::size_t kLeast = std::size_t{1} << 18;  // about a second's work, from rings to a mesh
-  constexpr std::size_t kMost = std::size_t{1} << 22;   // some gigabytes
+  // About a second's work, from rings to a mesh, and some gigabytes.
+  constexpr std::size_t kLeast = std::size_t{1} << 18;
+  constexpr std::size_t kMost = std::size_t{1} << 22;
   return std::clamp(2 * segments, kLeast, kMost);
 }
 

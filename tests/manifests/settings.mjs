@@ -3,12 +3,10 @@ import { execFileSync } from 'node:child_process';
 
 const program = process.env.TRAPEZE_BINARY;
 
-/** Throws what is wrong with a file, in words. */
-export function checkConfig(file) {
-  execFileSync(program, ['config', 'check', file], { stdio: 'pipe' });
-}
-
-/** The settings as they are printed, of a file and of the variables of an environment. */
+/**
+ * The settings as they are printed, of a file and of the variables of an environment. Throws what
+ * is wrong with one, in words; what it names (data, the viewer) need not be on this machine.
+ */
 export function printedSettings({ file, environment = {} }) {
   const options = file ? ['--config', file] : [];
   return execFileSync(program, ['config', 'print', ...options], {
