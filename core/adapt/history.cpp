@@ -4,12 +4,15 @@
 #include <cmath>
 #include <optional>
 
+#include "core/grid/item_count.h"
+
 namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNoVersion = 0xffffffff;
 constexpr std::uint64_t kRemovalsBetweenShares = 1024;
 constexpr std::uint32_t kHorizontalBit = 0x80000000;
+constexpr std::size_t kMostVersions = kHorizontalBit - 1;  // of nodes: the bit is taken
 
 /// Equal, except that top or bottom may be another vertex of the same y.
 bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
@@ -94,6 +97,7 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
   for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
     history.vertices.push_back(graph.point(VertexId(v)));
   }
+  require_countable(history.vertices.size(), "vertices");
   edge_version_.assign(graph.edges().size(), kNoVersion);
   node_version_.assign(graph.nodes().size(), kNoVersion);
   touched_edges_.clear();
@@ -233,6 +237,7 @@ void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
   edge_version_[e] = static_cast<std::uint32_t>(history_->edges.size());
   history_->edges.push_back(
       {vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
+  require_countable(history_->edges.size(), "versions of edges");
 }
 
 void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
@@ -273,11 +278,14 @@ std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::ui
     history_->trapezoids.push_back(trapezoid);
     history_->lifespans.push_back(lifespan);
     history_->rows.push_back(row);
+    require_countable(history_->trapezoids.size(), "versions of trapezoids", kMostVersions);
     return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
   }
   const std::optional<std::uint32_t> edge = horizontal_edge_of(*history_, trapezoid);
   if (!edge) return kNoVersion;
   history_->horizontal_edges.push_back({*edge, lifespan, row});
+  require_countable(history_->horizontal_edges.size(), "versions of horizontal edges",
+                    kMostVersions);
   return static_cast<std::uint32_t>(history_->horizontal_edges.size() - 1) | kHorizontalBit;
 }
 

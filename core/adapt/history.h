@@ -59,7 +59,8 @@ class HistoryRecorder {
  public:
   /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
   /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
-  /// many of the vertices have gone.
+  /// many of the vertices have gone. Throws std::length_error if there are more versions than 32
+  /// bits count.
   void record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
               const GeneralizationOptions& options, History& history, WorkShare* share = nullptr);
   /// The same of a single polygon, which is the feature of row 0.

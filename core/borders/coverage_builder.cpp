@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/borders/border_lengths.h"
+#include "core/grid/item_count.h"
 #include "core/grid/web_mercator.h"
 #include "core/sweep/owned_segments.h"
 
@@ -133,6 +134,10 @@ struct SetMap {
           return false;
         }
         pieces = std::move(*noded);
+      }
+      if (pieces.size() > kMostSegments) {
+        outcome.failure = too_many_words(pieces.size(), "pieces of borders", kMostSegments);
+        return false;
       }
       borders = unite(pieces, sets);
       if (borders.segments.empty()) return false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/grid/grid.h"
+#include "core/grid/item_count.h"
 
 namespace trapeze {
 
@@ -27,12 +28,17 @@ struct Rings {
     points.clear();
     ends.clear();
   }
+  /// Throws as close_ring() does.
   void add(std::span<const Point> ring) {
     points.insert(points.end(), ring.begin(), ring.end());
     close_ring();
   }
-  /// Ends the ring whose points have been appended to `points` since the last one.
-  void close_ring() { ends.push_back(static_cast<std::uint32_t>(points.size())); }
+  /// Ends the ring whose points have been appended to `points` since the last one. Throws
+  /// std::length_error if the points are more than 32 bits count.
+  void close_ring() {
+    require_countable(points.size(), "vertices of rings");
+    ends.push_back(static_cast<std::uint32_t>(points.size()));
+  }
 
   friend bool operator==(const Rings&, const Rings&) = default;
 };

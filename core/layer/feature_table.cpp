@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/grid/item_count.h"
+
 namespace trapeze {
 namespace {
 
@@ -71,7 +73,7 @@ FeatureTable::FeatureTable(std::vector<Field> fields, const Cells& cells)
 
 std::uint32_t FeatureTable::append(std::int64_t id, std::span<const Value> values) {
   check_types(values);
-  if (ids_.size() >= 0xffffffff) throw std::length_error("a table holds at most 2^32 - 1 features");
+  require_countable(ids_.size() + 1, "features");
   for (std::size_t i = 0; i < values.size(); ++i) {
     Column& column = columns_[i];
     if (fields_[i].type != FieldType::text) {
@@ -186,7 +188,7 @@ std::uint32_t FeatureTable::intern(std::string_view text_to_find) {
     if (text(string_slots_[slot]) == text_to_find) return string_slots_[slot];
     slot = (slot + 1) & mask;
   }
-  if (string_ends_.size() >= kNullText) throw std::length_error("too many different texts");
+  require_countable(string_ends_.size() + 1, "different texts");
   string_bytes_.append(text_to_find);
   string_ends_.push_back(string_bytes_.size());
   string_slots_[slot] = static_cast<std::uint32_t>(string_ends_.size() - 1);

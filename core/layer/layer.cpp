@@ -42,23 +42,23 @@ void Layer::select_horizontal_edges(const Box& box, Level level,
   contents_->horizontal_edge_index.select(box, level, level, contents_->lifespans, ranges);
 }
 
-Layer::Counts Layer::count(const Selection& selection, std::uint64_t most) const {
+std::uint64_t Layer::estimate_trapezoids(const Selection& selection) const {
   const LayerContents& c = *contents_;
-  const auto count_in = [&](const MeshIndex& index, Level born, Level alive, std::uint64_t up_to) {
-    return index.count(selection.box, born, alive, c.lifespans, up_to);
-  };
-  Counts counts;
-  counts.trapezoids = count_in(c.polygon_index, selection.level, selection.level, most);
-  counts.horizontal_edges =
-      count_in(c.horizontal_edge_index, selection.level, selection.level, most);
-  counts.grains = std::min(c.grains.count_near(selection.box, selection.level), most);
-  if (selection.small != SmallPolygons::dust) return counts;
-  const Level resolution = std::min(selection.level, selection.pixel_level);
-  counts.trapezoids +=
-      count_in(c.mote_index, selection.level, resolution, most - counts.trapezoids);
-  counts.trapezoids +=
-      count_in(c.merged_mote_index, resolution, resolution, most - counts.trapezoids);
-  return counts;
+  const auto& [box, level, pixel_level, small] = selection;
+  const std::uint64_t polygons = c.polygon_index.estimate(box, level, level);
+  if (small != SmallPolygons::dust) return polygons;
+  const Level resolution = std::min(level, pixel_level);
+  return polygons + c.mote_index.estimate(box, level, resolution) +
+         c.merged_mote_index.estimate(box, resolution, resolution);
+}
+
+std::uint64_t Layer::estimate_horizontal_edges(const Selection& selection) const {
+  const LayerContents& c = *contents_;
+  return c.horizontal_edge_index.estimate(selection.box, selection.level, selection.level);
+}
+
+std::uint64_t Layer::count_grains(const Selection& selection) const {
+  return contents_->grains.count_near(selection.box, selection.level);
 }
 
 const GrainIndex& Layer::grains() const {

@@ -70,14 +70,12 @@ class Layer {
   void select_horizontal_edges(const Box& box, Level level,
                                std::vector<TrapezoidRange>& ranges) const;
 
-  /// How many trapezoids select() would find, and select_horizontal_edges(), and an upper bound of
-  /// the grains near the box; each is counted no further than `most`.
-  struct Counts {
-    std::uint64_t trapezoids = 0;
-    std::uint64_t horizontal_edges = 0;
-    std::uint64_t grains = 0;
-  };
-  Counts count(const Selection& selection, std::uint64_t most) const;
+  /// About how many trapezoids select() finds, see MeshIndex::estimate().
+  std::uint64_t estimate_trapezoids(const Selection& selection) const;
+  /// About how many select_horizontal_edges() finds.
+  std::uint64_t estimate_horizontal_edges(const Selection& selection) const;
+  /// No fewer than there are grains in the box at the level.
+  std::uint64_t count_grains(const Selection& selection) const;
 
   /// What small polygons and holes left behind, feature by feature: the same dust that select()
   /// finds, before any of it is merged.

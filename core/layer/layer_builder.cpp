@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/adapt/history.h"
+#include "core/grid/item_count.h"
 #include "core/layer/dust.h"
 #include "core/layer/layer_contents.h"
 
@@ -130,6 +131,23 @@ std::vector<T> take_items(std::vector<Stock>& stocks, const std::vector<PartOf>&
   return all;
 }
 
+/// Throws if the builders hold more together than 32 bits count.
+void check_counts(const std::vector<Stock>& stocks) {
+  LayerSize size;
+  std::size_t grains = 0;
+  for (const Stock& stock : stocks) {
+    const History& history = stock.history;
+    size.vertices += history.vertices.size();
+    size.edges += history.edges.size();
+    size.trapezoids += history.trapezoids.size() + history.horizontal_edges.size();
+    grains += history.grains.size();
+  }
+  require_countable(size.vertices, "vertices");
+  require_countable(size.edges, "versions of edges");
+  require_countable(size.trapezoids, "versions of trapezoids");
+  require_countable(2 * grains, "loops that become dust");
+}
+
 void concatenate_histories(std::vector<Stock>& stocks, GrowingLayer& layer) {
   using Part = Stock::Part;
   const std::vector<PartOf> parts = in_order_of_rows(stocks);
@@ -179,6 +197,7 @@ void concatenate_outlines(const std::vector<Stock>& stocks, GrowingLayer& layer)
 }
 
 GrowingLayer concatenate(std::vector<Stock> stocks) {
+  check_counts(stocks);
   GrowingLayer layer;
   concatenate_histories(stocks, layer);
   concatenate_outlines(stocks, layer);
@@ -300,6 +319,9 @@ void append_mote(const Mote& mote, GrowingLayer& layer) {
 
 /// Single motes first, then merged ones; returns the number of single ones.
 std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
+  require_countable(layer.vertices.size() + 4 * motes.size(), "vertices");
+  require_countable(layer.edges.size() + 2 * motes.size(), "versions of edges");
+  require_countable(layer.trapezoids.size() + motes.size(), "versions of trapezoids");
   using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
   std::vector<Key> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {

@@ -44,7 +44,8 @@ class LayerBuilder {
 
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
   /// with the same options. Calls `progress`, if there is one, with the share of the time that has
-  /// gone.
+  /// gone. Throws std::length_error if there are more of anything than 32 bits count; so do add()
+  /// and add_coverage().
   static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features,
                                      const std::function<void(double)>& progress = {});
 

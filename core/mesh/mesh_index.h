@@ -50,9 +50,9 @@ class MeshIndex {
   void select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
               std::vector<TrapezoidRange>& ranges) const;
 
-  /// How many trapezoids select() would append; counts no further than `most`.
-  std::uint64_t count(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
-                      std::uint64_t most) const;
+  /// About as many trapezoids as select() would append, found in a fraction of its time: within a
+  /// third where there are hundreds. 0 only if there are none.
+  std::uint64_t estimate(const Box& box, Level born, Level alive) const;
 
   TrapezoidRange range() const { return range_; }
   /// One height of the tree after the other, beginning with the one directly above the trapezoids.
@@ -67,9 +67,11 @@ class MeshIndex {
     Level born;
     Level alive;
     std::span<const Lifespan> lifespans;
+    std::vector<TrapezoidRange>& ranges;
   };
-  template <typename Take>
-  bool descend(std::size_t height, std::size_t index, const Query& query, const Take& take) const;
+  void descend(std::size_t height, std::size_t index, const Query& query) const;
+  std::uint64_t count_blocks(std::size_t height, std::size_t index, const Box& box, Level born,
+                             Level alive) const;
 
   TrapezoidRange range_;
   StoredArray<Entry> entries_;

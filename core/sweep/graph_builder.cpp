@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/item_count.h"
 #include "core/sweep/clean_rings.h"
 #include "core/sweep/noding.h"
 
@@ -14,6 +15,10 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
   outcome.rings = rings.size();
   outcome.collapsed_rings = clean_rings(rings);
   if (rings.empty()) return outcome;
+  if (rings.points.size() > kMostSegments) {
+    outcome.failure = too_many_words(rings.points.size(), "vertices", kMostSegments);
+    return outcome;
+  }
 
   boundary_.assign(rings);
   if (trapezoidation_.build(boundary_, graph)) {
@@ -47,6 +52,10 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
     }
     segments = std::move(*noded);
     if (segments.empty()) return false;  // everything cancelled: no area
+    if (segments.size() > kMostSegments) {
+      outcome.failure = too_many_words(segments.size(), "pieces of its boundary", kMostSegments);
+      return false;
+    }
     boundary_.assign(segments);
     if (trapezoidation_.build(boundary_, graph)) {
       loops_.trace(boundary_, graph);

@@ -410,7 +410,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
     return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
-  const std::uint64_t cost = drawing_cost(plan, most);
+  const std::uint64_t cost = drawing_cost(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   // The last answers come while the service ends, when this site may be gone.

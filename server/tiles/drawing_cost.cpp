@@ -17,17 +17,17 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
-std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view,
-                            std::uint64_t most) {
+std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Layer& layer = plan.layer_of(paint);
-  const Layer::Counts counts = layer.count(selection_of(plan, paint, view), most);
+  const Layer::Selection selection = selection_of(plan, paint, view);
+  const std::uint64_t trapezoids = layer.estimate_trapezoids(selection);
   const bool has_classes = !paint.style.classing.is_plain();
-  const std::uint64_t shapes = counts.trapezoids + (has_classes ? counts.grains : 0);
+  const std::uint64_t shapes = trapezoids + (has_classes ? layer.count_grains(selection) : 0);
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
-  std::uint64_t cost = counts.trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
-  if (plan.debug.any()) cost += counts.trapezoids * kSidesPerMarkedTrapezoid;
+  std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
+  if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
-    const std::uint64_t edges = 2 * counts.trapezoids + counts.horizontal_edges;
+    const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);
     cost += cost_of_outlines(edges, paint.style.stroke, view, plan.scale);
   }
   return cost;
@@ -35,12 +35,11 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
 
 }  // namespace
 
-std::uint64_t drawing_cost(const TilePlan& plan, std::uint64_t most) {
+std::uint64_t drawing_cost(const TilePlan& plan) {
   const View view = View::of_tile(plan.tile, plan.scale);
   std::uint64_t cost = pixels_of(view) / kPixelsPerSide;
   for (const LayerPaint& paint : plan.layers) {
-    if (cost > most) return cost;
-    cost += cost_of_layer(plan, paint, view, most);
+    cost += cost_of_layer(plan, paint, view);
   }
   return cost;
 }

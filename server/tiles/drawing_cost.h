@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "server/tiles/tile_plan.h"
 
@@ -20,11 +19,9 @@ constexpr std::uint64_t kSidesPerOutlineEdge = 4;
 constexpr std::uint64_t kSidesPerDashedEdge = 16;
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;  // of debug=mesh and the like
 
-/// From the counts of the indexes alone: microseconds for most tiles, and for the greatest about a
-/// tenth of the time that it takes to select what is drawn. Never less for a picture that shows
-/// more, or has wider lines. A cost beyond `most` is told as any number beyond it, so that the
-/// counting ends early.
-std::uint64_t drawing_cost(const TilePlan& plan,
-                           std::uint64_t most = std::numeric_limits<std::uint32_t>::max());
+/// Estimated from the indexes alone, see MeshIndex::estimate(): microseconds for most tiles,
+/// milliseconds for millions of trapezoids. Never less for a picture that shows more, or has wider
+/// lines.
+std::uint64_t drawing_cost(const TilePlan& plan);
 
 }  // namespace trapeze

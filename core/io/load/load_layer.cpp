@@ -8,6 +8,7 @@
 
 #include "core/io/load/feature_builder.h"
 #include "core/io/load/feature_pipeline.h"
+#include "core/io/load/huge_pages.h"
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
@@ -94,7 +95,9 @@ std::unique_ptr<Layer> join_layer(std::deque<FeatureBuilder>& builders, FeatureT
   std::vector<LayerBuilder> parts;
   parts.reserve(builders.size());
   for (FeatureBuilder& builder : builders) parts.push_back(builder.take_builder());
-  return LayerBuilder::join(parts, std::move(table), progress);
+  std::unique_ptr<Layer> layer = LayerBuilder::join(parts, std::move(table), progress);
+  move_to_huge_pages(*layer);
+  return layer;
 }
 
 LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {

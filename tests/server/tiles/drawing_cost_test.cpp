@@ -32,21 +32,11 @@ TEST_F(DrawingCostTest, IsThatOfTheSidesAndThePixelsOfAPlainTile) {
   const TilePlan tile = plan("rings/0/0/0.png");
   const LayerPaint& paint = tile.layers.front();
   const View view = View::of_tile(tile.tile, tile.scale);
-  std::vector<TrapezoidRange> ranges;
-  tile.layer_of(paint).select(selection_of(tile, paint, view), ranges);
-  std::uint64_t sides = 0;
-  for (const TrapezoidRange& range : ranges) sides += 2 * range.count;
+  const std::uint64_t sides =
+      2 * tile.layer_of(paint).estimate_trapezoids(selection_of(tile, paint, view));
   EXPECT_GT(sides, 0u);
   // A mask and a picture.
   EXPECT_EQ(drawing_cost(tile), sides + 2 * 256 * 256 / kPixelsPerSide);
-}
-
-TEST_F(DrawingCostTest, CountsNoFurtherThanAsked) {
-  const TilePlan tile = plan("rings,west/0/0/0.png?stroke=000");
-  const std::uint64_t all = drawing_cost(tile);
-  EXPECT_GT(drawing_cost(tile, 10), 10u);
-  EXPECT_LT(drawing_cost(tile, 10), all);
-  EXPECT_EQ(drawing_cost(tile, all), all);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "core/io/load/huge_pages.h"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <span>
+
+#include "core/layer/layer_arrays.h"
+
+#ifndef MADV_COLLAPSE
+#define MADV_COLLAPSE 25  // of Linux 6.1; glibc has it since 2.37
+#endif
+
+namespace trapeze {
+namespace {
+
+constexpr std::uintptr_t kPage = std::uintptr_t{1} << 21;  // bytes
+
+template <typename T>
+std::size_t collapse(std::span<const T> items) {
+  const auto address = reinterpret_cast<std::uintptr_t>(items.data());
+  const std::uintptr_t begin = (address + kPage - 1) / kPage * kPage;
+  const std::uintptr_t end = (address + items.size_bytes()) / kPage * kPage;
+  if (begin >= end) return 0;
+  if (madvise(reinterpret_cast<void*>(begin), end - begin, MADV_COLLAPSE) != 0) return 0;
+  return (end - begin) / kPage;
+}
+
+}  // namespace
+
+std::size_t move_to_huge_pages(const Layer& layer) {
+  const LayerArrays arrays = arrays_of(layer);
+  return collapse(arrays.vertices) + collapse(arrays.edges) + collapse(arrays.trapezoids) +
+         collapse(arrays.lifespans) + collapse(arrays.feature_of) + collapse(arrays.polygon_index) +
+         collapse(arrays.mote_index) + collapse(arrays.merged_mote_index);
+}
+
+}  // namespace trapeze
