@@ -92,13 +92,14 @@ bool Reloader::load_first() {
 
 void Reloader::load_again() {
   is_loading_ = true;
+  // Before reading, as in serve(): if it fails, it is tried again only when something has changed
+  // since, be it while reading.
+  state_read_ = state_of_files(files_);
   try {
     serve(source_.layers());
     note("");
   } catch (const std::exception& error) {
     metrics_.count_load(false);
-    // Not tried again before something changes once more.
-    state_read_ = state_of_files(files_);
     const std::string problem = failure_words(error);
     spdlog::error("the layers cannot be read again, so the old ones are kept: {}", problem);
     note(problem);

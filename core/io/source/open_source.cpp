@@ -115,12 +115,13 @@ void check_contents(const std::string& path) {
 }
 
 // Distinguishes a name that is not there from one that is there and cannot be looked at, such as a
-// loop of links.
+// loop of links, or from which nothing may ever come.
 void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) fail(path, "no such file");
   if (error) fail(path, "cannot be read: " + error.message());
+  if (std::filesystem::is_fifo(path, error)) fail(path, "is a pipe; name a file");
 }
 
 void check_readable(const std::string& path) {

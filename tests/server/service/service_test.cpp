@@ -16,6 +16,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -85,6 +86,7 @@ class ServiceTest : public ::testing::Test {
 
   void start() {
     const auto layers = [this] {
+      if (before_reading_) before_reading_();
       auto named = layers_of_files({file_});
       named[0].style = testing::style_of("fill=f00");
       return named;
@@ -113,6 +115,7 @@ class ServiceTest : public ::testing::Test {
   const std::string folder_ = ::testing::TempDir() + "/service_test_" +
                               ::testing::UnitTest::GetInstance()->current_test_info()->name();
   const std::string file_ = folder_ + "/shape.geojson";
+  std::function<void()> before_reading_;  // in the thread that reads
   Config config_;
   std::unique_ptr<Service> service_;
   std::thread thread_;
@@ -186,6 +189,22 @@ TEST_F(ServiceTest, BrokenAndMissingFilesLeaveTheOldLayersInPlace) {
   replace_file("west.geojson");
   EXPECT_TRUE(holds_within(10s, [&] { return tells("trapeze_data_load_failed 0"); }));
   EXPECT_NE(tag(), old_tile.headers.at("etag"));
+}
+
+TEST_F(ServiceTest, AFileThatIsMendedWhileItsReadingFailsIsReadAgain) {
+  config_.server.watch_ms = 30;
+  start();
+  const std::string old_tag = tag();
+  std::atomic<bool> is_to_fail = true;
+  before_reading_ = [&] {
+    if (!is_to_fail.exchange(false)) return;
+    replace_file("west.geojson");
+    throw std::runtime_error("what was there could not be read");
+  };
+  service_->reload();
+  EXPECT_TRUE(holds_within(10s, [&] { return tag() != old_tag; }));
+  EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"failed\"} 1"));
+  stop();
 }
 
 TEST_F(ServiceTest, UnderLoadEveryAnswerIsOldOrNewAndNoneIsLost) {

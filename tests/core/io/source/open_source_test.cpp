@@ -8,6 +8,7 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -60,6 +61,12 @@ TEST_F(OpenSourceTest, SaysThatAFileIsAFolder) {
   const std::string path = folder_.file("folder");
   std::filesystem::create_directory(path);
   EXPECT_THAT(refusal(path), AllOf(StartsWith(path), HasSubstr("is a folder")));
+}
+
+TEST_F(OpenSourceTest, SaysThatAFileIsAPipeAndDoesNotWaitForIt) {
+  const std::string path = folder_.file("pipe.geojson");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(refusal(path), path + ": is a pipe; name a file");
 }
 
 TEST_F(OpenSourceTest, DoesNotReadTheFilesOfAFolderThatNobodyNamed) {
