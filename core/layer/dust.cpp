@@ -41,13 +41,18 @@ Mote merged(const std::vector<Mote>& motes, Level level) {
   return sum;
 }
 
+int count_of_motes(const Grain& grain, int most) {
+  return count_of_motes(grain.from, grain.to, pixel_of_level(grain.born), most);
+}
+
 /// The motes that are alive or yet to be born, in order of place, through the octaves.
 class Settling {
  public:
   explicit Settling(const std::vector<Grain>& grains) {
     std::vector<Mote> motes;
+    const int most = most_motes_of(grains);
     for (const Grain& grain : grains) {
-      lay_out(grain.from, grain.to, grain.area, pixel_of_level(grain.born),
+      lay_out(grain.from, grain.to, grain.area, count_of_motes(grain, most),
               [&](double x, double y, double area) {
                 motes.push_back({x, y, area, {grain.born, kNeverDies}, false});
               });
@@ -145,6 +150,20 @@ Box box_of_mote(double x, double y, double area) {
   const std::int32_t min_x = cell(x - width / 2);
   const std::int32_t min_y = cell(y - height / 2);
   return {min_x, min_y, cell(min_x + width), cell(min_y + height)};
+}
+
+int most_motes_of(const std::vector<Grain>& grains) {
+  constexpr std::size_t kMotes = std::size_t{1} << 16;
+  constexpr std::size_t kMotesAGrain = 8;
+  int most = kMostMotes;
+  for (; most > 1; most /= 2) {
+    std::size_t motes = 0;
+    for (const Grain& grain : grains) {
+      motes += static_cast<std::size_t>(count_of_motes(grain, most));
+    }
+    if (motes <= kMotes + kMotesAGrain * grains.size()) break;
+  }
+  return most;
 }
 
 std::vector<Mote> settle(const std::vector<Grain>& grains) {

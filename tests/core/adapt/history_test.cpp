@@ -194,6 +194,27 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
   }
 }
 
+TEST(Dust, LongGrainsHaveManyMotesOnlyWhereTheyAreFew) {
+  const Grain sliver{{0, 0}, {1'000'000, 500'000}, 4e6, 1};
+  std::vector<Grain> grains(200, sliver);
+  EXPECT_EQ(most_motes_of(grains), kMostMotes);
+  grains.resize(20'000, sliver);
+  EXPECT_EQ(most_motes_of(grains), 8);
+  // Those of a pixel have one mote in any case.
+  grains.assign(1'000'000, {{0, 0}, {1, 1}, 4, 1});
+  grains.resize(1'000'200, sliver);
+  EXPECT_EQ(most_motes_of(grains), kMostMotes);
+}
+
+TEST(Dust, FewerMotesHaveTheSameArea) {
+  const std::vector<Grain> grains(20'000, {{0, 0}, {1'000'000, 500'000}, 4e6, 1});
+  double area = 0;
+  for (const Mote& mote : settle(grains)) {
+    if (mote.lifespan.contains(kLastLevel)) area += mote.area;
+  }
+  EXPECT_NEAR(area / (20'000 * 4e6), 1, 1e-9);
+}
+
 TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {
   // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells.
   std::vector<LayerBuilder> builders(1);
