@@ -48,9 +48,8 @@ int count_of_motes(const Grain& grain, int most) {
 /// The motes that are alive or yet to be born, in order of place, through the octaves.
 class Settling {
  public:
-  explicit Settling(const std::vector<Grain>& grains) {
+  Settling(const std::vector<Grain>& grains, int most) {
     std::vector<Mote> motes;
-    const int most = most_motes_of(grains);
     for (const Grain& grain : grains) {
       lay_out(grain.from, grain.to, grain.area, count_of_motes(grain, most),
               [&](double x, double y, double area) {
@@ -152,22 +151,22 @@ Box box_of_mote(double x, double y, double area) {
   return {min_x, min_y, cell(min_x + width), cell(min_y + height)};
 }
 
-int most_motes_of(const std::vector<Grain>& grains) {
+int most_motes_of(const std::vector<Grain>& grains, std::size_t vertices) {
   constexpr std::size_t kMotes = std::size_t{1} << 16;
-  constexpr std::size_t kMotesAGrain = 8;
+  constexpr std::size_t kMotesAVertex = 4;
   int most = kMostMotes;
   for (; most > 1; most /= 2) {
     std::size_t motes = 0;
     for (const Grain& grain : grains) {
       motes += static_cast<std::size_t>(count_of_motes(grain, most));
     }
-    if (motes <= kMotes + kMotesAGrain * grains.size()) break;
+    if (motes <= kMotes + kMotesAVertex * vertices) break;
   }
   return most;
 }
 
-std::vector<Mote> settle(const std::vector<Grain>& grains) {
-  Settling settling(grains);
+std::vector<Mote> settle(const std::vector<Grain>& grains, std::size_t vertices) {
+  Settling settling(grains, most_motes_of(grains, vertices));
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
     settling.merge_pixels(static_cast<Level>(level));
   }

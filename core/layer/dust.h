@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "core/adapt/history.h"
@@ -59,13 +60,14 @@ void lay_out(Point from, Point to, double area, int count, const Visit& visit) {
 /// The square of a mote, rounded to whole cells. `area` is positive.
 Box box_of_mote(double x, double y, double area);
 
-/// The most motes for each of the grains: kMostMotes, unless grains are long and many. Then it is
-/// halved until all grains together have no more than 65,536 motes and eight for each of them, so
-/// that a layer of slivers does not take kilobytes for each vertex.
-int most_motes_of(const std::vector<Grain>& grains);
+/// The most motes for each of the grains of a layer of so many vertices: kMostMotes, unless grains
+/// are long and many. Then it is halved until all together have no more than 65,536 motes and four
+/// for each vertex, so that a layer of slivers does not take kilobytes for each.
+int most_motes_of(const std::vector<Grain>& grains, std::size_t vertices);
 
-/// The motes of all levels. The sum of the areas alive at a level is that of the grains born by
-/// then, but for motes too small to matter (less than half a cell squared).
-std::vector<Mote> settle(const std::vector<Grain>& grains);
+/// The motes of all levels, of a layer of so many vertices. The sum of the areas alive at a level
+/// is that of the grains born by then, but for motes too small to matter (less than half a cell
+/// squared).
+std::vector<Mote> settle(const std::vector<Grain>& grains, std::size_t vertices);
 
 }  // namespace trapeze
