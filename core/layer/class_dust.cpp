@@ -43,7 +43,8 @@ void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, do
     const std::uint8_t feature_class = classes[grain.row];
     if (feature_class == kNotDrawn) return;
     const double grain_area = static_cast<double>(grain.doubled_area) / 2;
-    lay_out(grain.from, grain.to, grain_area, pixel, [&](double x, double y, double area) {
+    const int count = count_of_motes(grain.from, grain.to, pixel, kMostMotes);
+    lay_out(grain.from, grain.to, grain_area, count, [&](double x, double y, double area) {
       Sum& sum = sums_[key_of(feature_class, x, y, pixel)];
       const double weight = std::abs(area);
       sum.x += weight * x;

@@ -41,13 +41,17 @@ Mote merged(const std::vector<Mote>& motes, Level level) {
   return sum;
 }
 
+int count_of_motes(const Grain& grain, int most) {
+  return count_of_motes(grain.from, grain.to, pixel_of_level(grain.born), most);
+}
+
 /// The motes that are alive or yet to be born, in order of place, through the octaves.
 class Settling {
  public:
-  explicit Settling(const std::vector<Grain>& grains) {
+  Settling(const std::vector<Grain>& grains, int most) {
     std::vector<Mote> motes;
     for (const Grain& grain : grains) {
-      lay_out(grain.from, grain.to, grain.area, pixel_of_level(grain.born),
+      lay_out(grain.from, grain.to, grain.area, count_of_motes(grain, most),
               [&](double x, double y, double area) {
                 motes.push_back({x, y, area, {grain.born, kNeverDies}, false});
               });
@@ -147,8 +151,22 @@ Box box_of_mote(double x, double y, double area) {
   return {min_x, min_y, cell(min_x + width), cell(min_y + height)};
 }
 
-std::vector<Mote> settle(const std::vector<Grain>& grains) {
-  Settling settling(grains);
+int most_motes_of(const std::vector<Grain>& grains, std::size_t vertices) {
+  constexpr std::size_t kMotes = std::size_t{1} << 16;
+  constexpr std::size_t kMotesAVertex = 4;
+  int most = kMostMotes;
+  for (; most > 1; most /= 2) {
+    std::size_t motes = 0;
+    for (const Grain& grain : grains) {
+      motes += static_cast<std::size_t>(count_of_motes(grain, most));
+    }
+    if (motes <= kMotes + kMotesAVertex * vertices) break;
+  }
+  return most;
+}
+
+std::vector<Mote> settle(const std::vector<Grain>& grains, std::size_t vertices) {
+  Settling settling(grains, most_motes_of(grains, vertices));
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
     settling.merge_pixels(static_cast<Level>(level));
   }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "core/adapt/history.h"
@@ -32,15 +33,24 @@ double pixel_of_level(Level level);
 /// Motes of a smaller area are left out, in cells squared.
 constexpr double kSmallestMote = 0.5;
 
-/// Calls visit(x, y, area) for the motes of a loop of that area, distributed along the segment that
-/// was left of it: one for each pixel, `pixel` cells long.
-template <typename Visit>
-void lay_out(Point from, Point to, double area, double pixel, const Visit& visit) {
-  constexpr int kMaxMotes = 256;
+/// The most motes that a grain is laid out as.
+constexpr int kMostMotes = 256;
+
+/// How many motes a loop is laid out as along the segment that was left of it: one for each pixel,
+/// `pixel` cells long, and at least one, but no more than `most`.
+inline int count_of_motes(Point from, Point to, double pixel, int most) {
   const double dx = static_cast<double>(to.x) - from.x;
   const double dy = static_cast<double>(to.y) - from.y;
-  const int count =
-      std::clamp(static_cast<int>(std::ceil(std::hypot(dx, dy) / pixel)), 1, kMaxMotes);
+  return static_cast<int>(
+      std::clamp(std::ceil(std::hypot(dx, dy) / pixel), 1.0, static_cast<double>(most)));
+}
+
+/// Calls visit(x, y, area) for `count` motes of a loop of that area, distributed evenly along the
+/// segment that was left of it.
+template <typename Visit>
+void lay_out(Point from, Point to, double area, int count, const Visit& visit) {
+  const double dx = static_cast<double>(to.x) - from.x;
+  const double dy = static_cast<double>(to.y) - from.y;
   for (int i = 0; i < count; ++i) {
     const double along = (i + 0.5) / count;
     visit(from.x + along * dx, from.y + along * dy, area / count);
@@ -50,8 +60,14 @@ void lay_out(Point from, Point to, double area, double pixel, const Visit& visit
 /// The square of a mote, rounded to whole cells. `area` is positive.
 Box box_of_mote(double x, double y, double area);
 
-/// The motes of all levels. The sum of the areas alive at a level is that of the grains born by
-/// then, but for motes too small to matter (less than half a cell squared).
-std::vector<Mote> settle(const std::vector<Grain>& grains);
+/// The most motes for each of the grains of a layer of so many vertices: kMostMotes, unless grains
+/// are long and many. Then it is halved until all together have no more than 65,536 motes and four
+/// for each vertex, so that a layer of slivers does not take kilobytes for each.
+int most_motes_of(const std::vector<Grain>& grains, std::size_t vertices);
+
+/// The motes of all levels, of a layer of so many vertices. The sum of the areas alive at a level
+/// is that of the grains born by then, but for motes too small to matter (less than half a cell
+/// squared).
+std::vector<Mote> settle(const std::vector<Grain>& grains, std::size_t vertices);
 
 }  // namespace trapeze

@@ -438,7 +438,7 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   tell(0.7);
   for (const Point p : arrays.vertices) layer->bounds.include(p);
   layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
-  const std::uint32_t motes = append_dust(settle(arrays.grains), arrays);
+  const std::uint32_t motes = append_dust(settle(arrays.grains, arrays.vertices.size()), arrays);
   const auto all = static_cast<std::uint32_t>(arrays.trapezoids.size());
   layer->size.motes = all - horizontal_edges;
   sort_for_index(arrays.feature_grains);

@@ -16,9 +16,10 @@
 namespace trapeze {
 namespace {
 
-// To be raised when another polygon or attribute is read from the same source, or when what was
-// read is given another revision.
-constexpr std::uint64_t kReadingVersion = 3;
+// To be raised when another polygon or attribute is read from the same source, when what was read
+// is given another revision, or when layers change that are unlike the probe, as those with much
+// dust.
+constexpr std::uint64_t kReadingVersion = 4;
 
 constexpr int kShapes = 12;
 constexpr int kVertices = 9;

@@ -165,7 +165,7 @@ TEST(Dust, AreaOfMotesIsThatOfTheGrainsAtEveryLevel) {
     const Point q{p.x + at(random) / 100, p.y + at(random) / 100};
     grains.push_back({p, q, area(random) * 1000, static_cast<Level>(born(random))});
   }
-  const std::vector<Mote> motes = settle(grains);
+  const std::vector<Mote> motes = settle(grains, 3 * grains.size());
   for (int level = 0; level <= kLastLevel; ++level) {
     double want = 0;
     for (const Grain& g : grains) want += g.born <= level ? g.area : 0;
@@ -183,7 +183,7 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
     const Point p{at(random), at(random)};
     grains.push_back({p, p, 10, 1});
   }
-  const std::vector<Mote> motes = settle(grains);
+  const std::vector<Mote> motes = settle(grains, 3 * grains.size());
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
     const double pixel = pixel_of_level(static_cast<Level>(level));
     const auto alive = std::count_if(motes.begin(), motes.end(), [&](const Mote& m) {
@@ -192,6 +192,28 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
     EXPECT_LE(static_cast<double>(alive), std::pow(std::ceil(4096 / pixel), 2))
         << "level " << level;
   }
+}
+
+TEST(Dust, LongGrainsHaveManyMotesOnlyWhereTheyAreFew) {
+  const Grain sliver{{0, 0}, {1'000'000, 500'000}, 4e6, 1};
+  std::vector<Grain> grains(200, sliver);
+  EXPECT_EQ(most_motes_of(grains, 600), kMostMotes);
+  grains.resize(20'000, sliver);
+  EXPECT_EQ(most_motes_of(grains, 60'000), 8);
+  EXPECT_EQ(most_motes_of(grains, 2'000'000), kMostMotes) << "once they had many vertices";
+  // Those of a pixel have one mote in any case.
+  grains.assign(1'000'000, {{0, 0}, {1, 1}, 4, 1});
+  grains.resize(1'000'200, sliver);
+  EXPECT_EQ(most_motes_of(grains, 3'000'600), kMostMotes);
+}
+
+TEST(Dust, FewerMotesHaveTheSameArea) {
+  const std::vector<Grain> grains(20'000, {{0, 0}, {1'000'000, 500'000}, 4e6, 1});
+  double area = 0;
+  for (const Mote& mote : settle(grains, 60'000)) {
+    if (mote.lifespan.contains(kLastLevel)) area += mote.area;
+  }
+  EXPECT_NEAR(area / (20'000 * 4e6), 1, 1e-9);
 }
 
 TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {

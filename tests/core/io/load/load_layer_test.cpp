@@ -420,6 +420,31 @@ TEST_F(LoadLayerTest, CountsPolygonsThatLeaveNothingToDrawAsEmpty) {
   EXPECT_EQ(accounted(report), 5u);
 }
 
+TEST_F(LoadLayerTest, PartsThatAreEqualOrOverlapAreDrawnAsTheirUnionAndItIsSaid) {
+  const std::string square = "((0 0,1 0,1 1,0 1,0 0))";
+  const std::string beside = "((0.5 0,2 0,2 1,0.5 1,0.5 0))";
+  const std::string within = "((0.2 0.2,0.4 0.2,0.4 0.4,0.2 0.4,0.2 0.2))";
+  const std::string apart = "((3 0,4 0,4 1,3 1,3 0))";
+  const std::string path = folder_.file("parts.fgb");
+  write_source(path, "FlatGeobuf",
+               {{.features = {{"MULTIPOLYGON(" + square + "," + square + ")", 0},
+                              {"MULTIPOLYGON(" + square + "," + beside + ")", 1},
+                              {"MULTIPOLYGON(" + square + "," + within + ")", 2},
+                              {"MULTIPOLYGON(" + square + "," + apart + ")", 3}}}});
+  const LoadedLayer loaded = load_layer(path);
+  ASSERT_EQ(loaded.report.loaded, 4u);
+  const FeatureTable& table = loaded.layer->features();
+  const double unit = rectangle(0, 0, 1, 1);
+  for (std::uint32_t row = 0; row < 4; ++row) {
+    const auto number = std::get<std::int64_t>(table.value(row, table.field_index("number")));
+    const bool is_said = std::ranges::any_of(loaded.report.notes, [&](const FeatureNote& note) {
+      return note.id == table.id(row) && note.reason == "united: its parts overlap";
+    });
+    EXPECT_EQ(is_said, number != 3) << number;
+    expect_area(*loaded.layer, row, number == 1 || number == 3 ? 2 * unit : unit);
+  }
+}
+
 TEST_F(LoadLayerTest, JoinsTheLayersOfASourceByFieldNames) {
   const std::string path = folder_.file("a.gpkg");
   {
