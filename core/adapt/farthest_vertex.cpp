@@ -1,9 +1,11 @@
 #include "core/adapt/farthest_vertex.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace trapeze {
 namespace {
@@ -85,10 +87,7 @@ struct FarthestVertex::Search {
   std::size_t piece_begin;
   std::size_t piece_end;
   Found best;
-  // The range of vertices of the tree to be searched; `lap` is added to their index in the piece.
-  std::size_t range_begin = 0;
-  std::size_t range_end = 0;
-  std::size_t lap = 0;
+  std::size_t lap = 0;  // added to the index of a vertex in the ring, for that in the piece
 
   std::size_t off_middle(std::size_t i) const { return std::max(i - piece_begin, piece_end - i); }
 };
@@ -181,47 +180,48 @@ bool FarthestVertex::wins_tie(std::size_t i, const Search& search) const {
   return off != best_off ? off < best_off : is_above(at(i), at(search.best.vertex));
 }
 
+/// Vertices [begin, end) of the ring. The leaves that are cut are examined; between them, the
+/// nodes that fill the range go first by how far away a vertex of theirs may be. A node beyond the
+/// range would promise what lies outside, and lead to where there is nothing.
 void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_t lap,
                                   Search& search) const {
   if (begin >= end) return;
-  search.range_begin = begin;
-  search.range_end = end;
+  std::size_t first = (begin + kLeaf - 1) / kLeaf;
+  std::size_t last = end / kLeaf;
+  if (first >= last) return examine_all(begin + lap, end + lap, search);
+  examine_all(begin + lap, first * kLeaf + lap, search);
+  examine_all(last * kLeaf + lap, end + lap, search);
   search.lap = lap;
-  const std::size_t top = rows_.size() - 1;
-  descend(top, 0, bound_of(top, 0, search), search);
+  std::array<TreeNode, 2 * kMostRows> nodes;
+  std::size_t count = 0;
+  for (std::size_t row = 0; first < last; ++row, first /= 2, last /= 2) {
+    if (first % 2 == 1) nodes[count++] = node(row, first++, search);
+    if (last % 2 == 1) nodes[count++] = node(row, --last, search);
+  }
+  std::sort(nodes.begin(), nodes.begin() + count,
+            [](const TreeNode& a, const TreeNode& b) { return a.bound > b.bound; });
+  for (std::size_t i = 0; i < count; ++i) descend(nodes[i], search);
 }
 
-/// No vertex in the hull is farther away, not even by rounding; negative if none is asked for.
-double FarthestVertex::bound_of(std::size_t row, std::size_t index, const Search& search) const {
-  const std::size_t vertices = kLeaf << row;
-  if (index * vertices >= search.range_end || (index + 1) * vertices <= search.range_begin)
-    return -1;
+FarthestVertex::TreeNode FarthestVertex::node(std::size_t row, std::size_t index,
+                                              const Search& search) const {
   const double bound = search.distance.squared_bound(rows_[row][index]);
   // Twice the greatest error of a distance by rounding.
   constexpr double kRounding = 4e-6;
-  return bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding;
+  return {row, index, bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding};
 }
 
-void FarthestVertex::descend(std::size_t row, std::size_t index, double bound,
-                             Search& search) const {
-  if (bound < search.best.squared || bound < 0) return;
-  if (row == 0) {
-    const std::size_t end = std::min((index + 1) * kLeaf, search.range_end);
-    const std::size_t begin = std::max(index * kLeaf, search.range_begin);
-    examine_all(begin + search.lap, end + search.lap, search);
-    return;
+void FarthestVertex::descend(const TreeNode& parent, Search& search) const {
+  if (parent.bound < search.best.squared) return;
+  if (parent.row == 0) {
+    const std::size_t begin = parent.index * kLeaf + search.lap;
+    return examine_all(begin, begin + kLeaf, search);
   }
-  const std::size_t left = 2 * index;
-  const std::size_t right = left + 1;
-  const double left_bound = bound_of(row - 1, left, search);
-  const double right_bound = right < rows_[row - 1].size() ? bound_of(row - 1, right, search) : -1;
-  if (left_bound >= right_bound) {
-    descend(row - 1, left, left_bound, search);
-    descend(row - 1, right, right_bound, search);
-  } else {
-    descend(row - 1, right, right_bound, search);
-    descend(row - 1, left, left_bound, search);
-  }
+  TreeNode nearer = node(parent.row - 1, 2 * parent.index, search);
+  TreeNode farther = node(parent.row - 1, 2 * parent.index + 1, search);
+  if (nearer.bound > farther.bound) std::swap(nearer, farther);
+  descend(farther, search);
+  descend(nearer, search);
 }
 
 }  // namespace trapeze

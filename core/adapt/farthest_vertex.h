@@ -72,7 +72,8 @@ class FarthestVertex {
   Found find(std::size_t begin, std::size_t end);
 
  private:
-  static constexpr std::size_t kLeaf = 64;              // vertices in a hull of the lowest row
+  static constexpr std::size_t kLeaf = 64;  // vertices in a hull of the lowest row
+  static constexpr std::size_t kMostRows = 32;
   static constexpr std::size_t kMostWithoutTree = 512;  // too few vertices for a tree
   // How often each vertex of a ring is examined before a tree is built: more often than is usual
   // even for a ring of millions of vertices, whose pieces are roughly halved each time.
@@ -91,14 +92,19 @@ class FarthestVertex {
   };
 
   struct Search;
+  struct TreeNode {
+    std::size_t row = 0;
+    std::size_t index = 0;
+    double bound = 0;  // no vertex is farther away, not even by rounding; in cells squared
+  };
   Point at(std::size_t i) const { return ring_[i < ring_.size() ? i : i - ring_.size()]; }
   void build_tree();
   void append_hull(Row& row);
   void examine_all(std::size_t begin, std::size_t end, Search& search) const;
   bool wins_tie(std::size_t i, const Search& search) const;
   void search_range(std::size_t begin, std::size_t end, std::size_t lap, Search& search) const;
-  void descend(std::size_t row, std::size_t index, double bound, Search& search) const;
-  double bound_of(std::size_t row, std::size_t index, const Search& search) const;
+  TreeNode node(std::size_t row, std::size_t index, const Search& search) const;
+  void descend(const TreeNode& parent, Search& search) const;
 
   std::span<const Point> ring_;
   std::size_t visits_ = 0;  // vertices examined since the ring was assigned

@@ -230,7 +230,7 @@ const HostileInput kInputs[] = {
 
     // Simple rings that are long, thin or deep.
     {"CombOf50000Teeth", [] { return ring(comb(50'000, 1e-4, 5, 0)); }},
-    {"CombOfLongDiagonals", [] { return ring(comb(50'000, 1e-4, 5, 5)); }},
+    {"CombOfLongDiagonals", [] { return ring(comb(150'000, 1e-4, 5, 5)); }},
     {"CombOnItsSide", [] { LonLatRing c = comb(50'000, 1e-4, 5, 0); for (LonLat& p : c) std::swap(p.lon, p.lat); return ring(c); }},
     {"CombWithTeethNarrowerThanACell", [] { return ring(comb(20'000, kCellDegrees / 2, 5, 0)); }},
     {"CombOfOneCellTeeth", [] { return ring(comb(20'000, 2 * kCellDegrees, 5, 0)); }},

@@ -100,13 +100,12 @@ void AttributeReader::add_layer(const OGRFeatureDefn& definition) {
       continue;
     }
     const FieldType type = type_of(field.GetType());
-    const auto known = std::find_if(fields_.begin(), fields_.end(),
-                                    [&name](const Field& f) { return f.name == name; });
-    fields.push_back(static_cast<std::size_t>(known - fields_.begin()));
-    if (known == fields_.end()) {
+    const auto [known, is_new] = numbers_.try_emplace(name, fields_.size());
+    fields.push_back(known->second);
+    if (is_new) {
       fields_.push_back({name, type});
-    } else if (known->type != type) {
-      known->type = FieldType::text;
+    } else if (fields_[known->second].type != type) {
+      fields_[known->second].type = FieldType::text;
     }
   }
   values_.resize(fields_.size());
@@ -120,10 +119,7 @@ bool AttributeReader::is_kept(const std::string& name) const {
 std::vector<std::size_t> AttributeReader::missing() const {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; kept_ && i < kept_->size(); ++i) {
-    const bool is_there =
-        std::any_of(fields_.begin(), fields_.end(),
-                    [&name = (*kept_)[i]](const Field& field) { return field.name == name; });
-    if (!is_there) missing.push_back(i);
+    if (!numbers_.contains((*kept_)[i])) missing.push_back(i);
   }
   return missing;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -48,7 +49,8 @@ class AttributeReader {
 
   std::optional<std::vector<std::string>> kept_;
   std::vector<Field> fields_;
-  std::vector<std::vector<std::size_t>> field_of_;  // by layer, by index in the layer
+  std::unordered_map<std::string, std::size_t> numbers_;  // of fields_, by name
+  std::vector<std::vector<std::size_t>> field_of_;        // by layer, by index in the layer
   std::vector<Value> values_;
   std::vector<std::string> texts_;  // by field: text made for the current row
 };
