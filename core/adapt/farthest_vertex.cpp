@@ -177,7 +177,10 @@ void FarthestVertex::examine_all(std::size_t begin, std::size_t end, Search& sea
 bool FarthestVertex::wins_tie(std::size_t i, const Search& search) const {
   const std::size_t off = search.off_middle(i);
   const std::size_t best_off = search.off_middle(search.best.vertex);
-  return off != best_off ? off < best_off : is_above(at(i), at(search.best.vertex));
+  if (off != best_off) return off < best_off;
+  const Point p = at(i);
+  const Point best = at(search.best.vertex);
+  return p == best ? i < search.best.vertex : is_above(p, best);
 }
 
 /// Vertices [begin, end) of the ring. The leaves that are cut are examined; between them, the

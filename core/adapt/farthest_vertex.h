@@ -66,9 +66,9 @@ class FarthestVertex {
   };
   /// Of the vertices begin + 1 .. end - 1 the one farthest from the segment between begin and end;
   /// indices may run past the end of the ring and are taken modulo its length. Of several at the
-  /// same distance it is the one nearest to the middle of the piece, then the uppermost: a comb of
-  /// equal teeth is halved instead of being split off tooth by tooth. begin + 1 < end <= begin +
-  /// length of the ring.
+  /// same distance it is the one nearest to the middle of the piece, then the uppermost, then the
+  /// first: a comb of equal teeth is halved instead of being split off tooth by tooth. begin + 1 <
+  /// end <= begin + length of the ring.
   Found find(std::size_t begin, std::size_t end);
 
  private:
