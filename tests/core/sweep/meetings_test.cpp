@@ -46,7 +46,7 @@ std::vector<Point> meetings_of_pairs(const std::vector<Segment>& segments) {
       const int c = sign(orientation(s.first, s.second, t.first)) *
                     sign(orientation(s.first, s.second, t.second));
       if ((a < 0) == (b < 0) || a == 0 || b == 0 || c >= 0) continue;
-      const auto at = [&, &s = s](std::int32_t from, std::int32_t to) {
+      const auto at = [a, b](std::int32_t from, std::int32_t to) {
         return static_cast<std::int32_t>(
             from + round_half_up((static_cast<Int128>(to) - from) * a, a - b));
       };
