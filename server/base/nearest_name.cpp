@@ -41,7 +41,7 @@ std::optional<std::string> nearest_name(std::string_view mistyped,
   std::optional<std::string> nearest;
   std::size_t fewest = std::max<std::size_t>(1, given.size() / kLettersASlip) + 1;
   for (const std::string& name : names) {
-    const auto [shorter, longer] = std::minmax(given.size(), name.size());
+    const auto [shorter, longer] = std::minmax({given.size(), name.size()});
     if (longer - shorter >= fewest) continue;
     const std::size_t slips = slips_between(given, in_lower_case(name));
     if (slips >= fewest || slips >= name.size()) continue;
