@@ -21,7 +21,6 @@ class [[nodiscard]] Result {
   static_assert(!std::is_same_v<T, Problem> && !std::is_reference_v<T>);
 
  public:
-  // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): what it requires lets copies through
   template <typename U = T>
   requires(std::convertible_to<U, T> && !std::same_as<std::remove_cvref_t<U>, Result> &&
            !std::same_as<std::remove_cvref_t<U>, Problem>) Result(U&& value)

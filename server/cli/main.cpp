@@ -127,7 +127,7 @@ std::string help_of(const std::string& name) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
     return help + ". If not set: " + std::to_string(*number);
   }
-  const std::string& text = std::get<std::string>(value);
+  const auto& text = std::get<std::string>(value);
   return text.empty() ? help : help + ". If not set: " + text;
 }
 

@@ -30,8 +30,8 @@ constexpr int kMaxMilliseconds = 600'000;
 // In all makers below, `place` answers with a reference to the value within the owner, const if the
 // owner is.
 
-// NOLINTNEXTLINE(performance-unnecessary-value-param): both are moved from
 template <typename Owner>
+// NOLINTNEXTLINE(performance-unnecessary-value-param): both are moved from
 Setting<Owner> begin(std::string_view name, SettingType type, std::string takes, std::string help) {
   const std::size_t dot = name.find('.');
   Setting<Owner> setting;

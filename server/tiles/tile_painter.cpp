@@ -58,7 +58,7 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
     sketch.times.draw_ms += drawn.draw_ms * part;
     sketch.times.read_ms += drawn.read_ms * part;
     sketch.times.resolve_ms += drawn.resolve_ms * part;
-    tiles.push_back(finish(*jobs[i].plan, sketch));
+    tiles.emplace_back(finish(*jobs[i].plan, sketch));
   }
   return tiles;
 }

@@ -9,9 +9,9 @@
 
 namespace trapeze {
 
-TileService::TileService(const TileServiceOptions& options,
+TileService::TileService(TileServiceOptions options,
                          std::vector<std::unique_ptr<MaskRenderer>> renderers)
-    : options_(options),
+    : options_(std::move(options)),
       renderer_(*renderers.front()),
       renderer_name_(renderer_.name()),
       workers_(renderers.size()) {

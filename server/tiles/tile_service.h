@@ -71,8 +71,7 @@ class TileService {
 
   /// Starts one worker for each renderer, of which there is at least one. Throws std::system_error
   /// if a thread cannot be started.
-  TileService(const TileServiceOptions& options,
-              std::vector<std::unique_ptr<MaskRenderer>> renderers);
+  TileService(TileServiceOptions options, std::vector<std::unique_ptr<MaskRenderer>> renderers);
   /// What waits is answered as saturated, what is being drawn as late as soon as that is noticed.
   ~TileService();
   TileService(const TileService&) = delete;
@@ -128,7 +127,7 @@ class TileService {
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
-  std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
+  static std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
   /// Answers all who asked.
   void land(const std::shared_ptr<Flight>& flight, TileAnswer answer);

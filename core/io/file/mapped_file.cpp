@@ -77,8 +77,8 @@ class MappingGuard {
   }
 
   static void catch_signal() {
-    slots();  // made before the handler may ask for it
-    page_size() = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    slots();  // made before the handler may ask for them, here and below
+    page_size();
     struct sigaction action {};
     action.sa_sigaction = on_signal;
     action.sa_flags = SA_SIGINFO;
@@ -86,8 +86,8 @@ class MappingGuard {
     sigaction(SIGBUS, &action, nullptr);
   }
 
-  static std::size_t& page_size() {
-    static std::size_t size = 0;
+  static std::size_t page_size() {
+    static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     return size;
   }
 

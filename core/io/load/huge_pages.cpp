@@ -18,12 +18,11 @@ constexpr std::uintptr_t kPage = std::uintptr_t{1} << 21;  // bytes
 
 template <typename T>
 std::size_t collapse(std::span<const T> items) {
-  const auto address = reinterpret_cast<std::uintptr_t>(items.data());
-  const std::uintptr_t begin = (address + kPage - 1) / kPage * kPage;
-  const std::uintptr_t end = (address + items.size_bytes()) / kPage * kPage;
-  if (begin >= end) return 0;
-  if (madvise(reinterpret_cast<void*>(begin), end - begin, MADV_COLLAPSE) != 0) return 0;
-  return (end - begin) / kPage;
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(items.data()) % kPage;
+  if (items.size_bytes() < before + kPage) return 0;
+  const std::size_t pages = (items.size_bytes() - before) / kPage;
+  auto* const bytes = reinterpret_cast<std::byte*>(const_cast<T*>(items.data()));
+  return madvise(bytes + before, pages * kPage, MADV_COLLAPSE) == 0 ? pages : 0;
 }
 
 }  // namespace

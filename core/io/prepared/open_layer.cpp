@@ -1,6 +1,7 @@
 #include "core/io/prepared/open_layer.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
@@ -57,7 +58,9 @@ void examine_source(const std::string& path, const SourceSelection& selection,
     throw std::runtime_error(name + ": " + error.what());
   }
   for (const std::string& warning : source.warnings()) {
-    findings.push_back({OpenPart::file, 0, name + ": " + warning, true});
+    std::string words = name;
+    words.append(": ").append(warning);
+    findings.push_back({OpenPart::file, 0, std::move(words), true});
   }
 }
 

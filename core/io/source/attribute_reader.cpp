@@ -52,8 +52,13 @@ std::string time_zone(int flag) {
 }
 
 std::string iso_date(const OGRFeature& feature, int index, OGRFieldType type) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, zone = 0;
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
   float second = 0;
+  int zone = 0;
   feature.GetFieldAsDateTime(index, &year, &month, &day, &hour, &minute, &second, &zone);
   std::array<char, 32> date{};
   std::snprintf(date.data(), date.size(), "%04d-%02d-%02d", year, month, day);

@@ -113,8 +113,9 @@ std::string FeatureSource::apply_condition(const std::string& where) {
   for (const SourceLayer& layer : layers_) {
     const std::string failure = apply_condition(where, *layer.layer);
     if (failure.empty()) continue;
-    return "its layer \"" + std::string(layer.layer->GetName()) + "\" cannot be asked where " +
-           where + ": " + failure;
+    std::string words = "its layer \"";
+    words.append(layer.layer->GetName()).append("\" cannot be asked where ");
+    return words.append(where).append(": ").append(failure);
   }
   return {};
 }
