@@ -30,7 +30,7 @@ void Screen::send(const MeshView& mesh) {
   const CurrentContext current(context());
   const auto chunks = static_cast<std::uint32_t>(
       (mesh.trapezoids.size() + store_->chunk_size() - 1) / store_->chunk_size());
-  for (std::uint32_t i = 0; i < chunks; ++i) store_->chunk(context().gl(), mesh, i);
+  for (std::uint32_t i = 0; i < chunks; ++i) store_->chunk(context().gl(), mesh, i, this);
 }
 
 void Screen::forget(std::uint64_t mesh_id) {

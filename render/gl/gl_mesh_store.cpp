@@ -43,11 +43,11 @@ GlMeshStore::ChunkPointer& GlMeshStore::place(std::uint64_t mesh_id, std::uint32
 }
 
 GlMeshStore::ChunkPointer GlMeshStore::chunk(const GlFunctions& gl, const MeshView& mesh,
-                                             std::uint32_t index) {
+                                             std::uint32_t index, const void* uploader) {
   // Locked during an upload: other threads that need the same chunk have to wait for it anyway.
   const std::lock_guard lock(mutex_);
   ChunkPointer& chunk = place(mesh.id, index);
-  if (!chunk) chunk = upload(gl, mesh, index);
+  if (!chunk) chunk = upload(gl, mesh, index, uploader);
   return chunk;
 }
 
@@ -55,18 +55,19 @@ GLuint GlMeshStore::changing_buffer(const GlFunctions& gl, std::uint64_t mesh_id
                                     std::uint32_t index) {
   const std::lock_guard lock(mutex_);
   ChunkPointer& chunk = place(mesh_id, index);
-  if (!chunk) chunk = make_chunk(gl, chunk_size_);
+  if (!chunk) chunk = make_chunk(gl, chunk_size_, nullptr);
   return chunk->buffer;
 }
 
-GlMeshStore::ChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
-                                                  std::size_t trapezoids) const {
-  const std::shared_ptr<Chunk> chunk(new Chunk, [released = released_](const Chunk* dead) {
-    const std::lock_guard lock(released->mutex);
-    released->buffers.push_back(dead->buffer);
-    released->textures.push_back(dead->texture);
-    delete dead;
-  });
+GlMeshStore::ChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl, std::size_t trapezoids,
+                                                  const void* uploader) const {
+  const std::shared_ptr<Chunk> chunk(new Chunk{0, 0, uploader},
+                                     [released = released_](const Chunk* dead) {
+                                       const std::lock_guard lock(released->mutex);
+                                       released->buffers.push_back(dead->buffer);
+                                       released->textures.push_back(dead->texture);
+                                       delete dead;
+                                     });
   const std::size_t bytes = trapezoids * kIntegersPerTrapezoid * sizeof(std::int32_t);
   gl.GenBuffers(1, &chunk->buffer);
   gl.BindBuffer(GL_TEXTURE_BUFFER, chunk->buffer);
@@ -85,12 +86,12 @@ GlMeshStore::ChunkPointer GlMeshStore::make_chunk(const GlFunctions& gl,
 }
 
 GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshView& mesh,
-                                              std::uint32_t index) const {
+                                              std::uint32_t index, const void* uploader) const {
   const std::size_t first = std::size_t{index} * chunk_size_;
   const auto trapezoids = mesh.trapezoids.subspan(
       first, std::min<std::size_t>(chunk_size_, mesh.trapezoids.size() - first));
   const std::size_t bytes = trapezoids.size() * kIntegersPerTrapezoid * sizeof(std::int32_t);
-  ChunkPointer chunk = make_chunk(gl, trapezoids.size());
+  ChunkPointer chunk = make_chunk(gl, trapezoids.size(), uploader);
   auto* integers = static_cast<std::int32_t*>(
       gl.MapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes),
                         GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT));
@@ -113,6 +114,15 @@ GlMeshStore::ChunkPointer GlMeshStore::upload(const GlFunctions& gl, const MeshV
 void GlMeshStore::forget(std::uint64_t mesh_id) {
   const std::lock_guard lock(mutex_);
   meshes_.erase(mesh_id);
+}
+
+void GlMeshStore::forget_uploads(const void* uploader) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [mesh_id, chunks] : meshes_) {
+    for (ChunkPointer& chunk : chunks) {
+      if (chunk && chunk->uploader == uploader) chunk.reset();
+    }
+  }
 }
 
 void GlMeshStore::delete_forgotten(const GlFunctions& gl) {

@@ -28,6 +28,7 @@ class GlMeshStore {
   struct Chunk {
     GLuint buffer = 0;
     GLuint texture = 0;  // a buffer texture, GL_RG32I
+    const void* uploader = nullptr;
   };
   using ChunkPointer = std::shared_ptr<const Chunk>;
 
@@ -36,9 +37,10 @@ class GlMeshStore {
   /// Trapezoids in a chunk: chunk i begins at trapezoid i * chunk_size().
   std::uint32_t chunk_size() const { return chunk_size_; }
 
-  /// The chunk of that index, uploaded and usable in any context of the share group. Throws
-  /// std::runtime_error if the device is out of memory.
-  ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index);
+  /// The chunk of that index, usable in any context of the share group; uploaded, if it is not yet,
+  /// on behalf of `uploader`. Throws std::runtime_error if the device is out of memory.
+  ChunkPointer chunk(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index,
+                     const void* uploader);
 
   /// The buffer of that chunk of a mesh whose contents change: it has room for chunk_size()
   /// trapezoids, which the caller writes. No thread may draw from it meanwhile; later draws find
@@ -47,6 +49,10 @@ class GlMeshStore {
 
   /// Releases the chunks of a mesh; a draw in progress keeps those that it uses.
   void forget(std::uint64_t mesh_id);
+
+  /// Releases the chunks that were uploaded on behalf of `uploader`, likewise. Who needs one of
+  /// them next uploads it again.
+  void forget_uploads(const void* uploader);
 
   /// Deletes the buffers and textures of chunks that were released.
   void delete_forgotten(const GlFunctions& gl);
@@ -60,8 +66,10 @@ class GlMeshStore {
   };
 
   ChunkPointer& place(std::uint64_t mesh_id, std::uint32_t index);
-  ChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids) const;
-  ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index) const;
+  ChunkPointer make_chunk(const GlFunctions& gl, std::size_t trapezoids,
+                          const void* uploader) const;
+  ChunkPointer upload(const GlFunctions& gl, const MeshView& mesh, std::uint32_t index,
+                      const void* uploader) const;
 
   std::uint32_t chunk_size_ = 0;
   std::shared_ptr<Released> released_ = std::make_shared<Released>();

@@ -140,6 +140,25 @@ void GlRenderer::release_memory() {
   bands_ = {};
   sums_ = {};
   row_ = {};
+  try {
+    release_device_memory();
+  } catch (const std::exception&) {
+    // The context is lost, and its objects with it: the next draw says so.
+  }
+}
+
+// A picture of most of a layer needs chunks of many times the size of its masks; others upload the
+// few that they need within milliseconds.
+void GlRenderer::release_device_memory() {
+  store_->forget_uploads(this);
+  const CurrentContext current(*context_);
+  store_->delete_forgotten(gl_);
+  for (const GLuint buffer : {index_buffer_, differences_buffer_}) {
+    gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+    gl_.BufferData(GL_SHADER_STORAGE_BUFFER, 0, nullptr, GL_STREAM_DRAW);
+  }
+  gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  differences_size_ = 0;
 }
 
 void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
@@ -187,7 +206,7 @@ void GlRenderer::choose(const MeshView& mesh, std::uint32_t number, std::uint32_
       batches_.back().number != number) {
     const Stopwatch stopwatch(times.draw_ms);  // the chunk may have to be uploaded
     batches_.push_back(
-        {band, mesh.id, number, store_->chunk(gl_, mesh, number), indices_.size(), 0});
+        {band, mesh.id, number, store_->chunk(gl_, mesh, number, this), indices_.size(), 0});
   }
   batches_.back().count += count;
   for (std::uint32_t i = first; i < first + count; ++i) indices_.push_back(i);

@@ -81,6 +81,7 @@ class GlRenderer final : public MaskRenderer {
 
   Program make_program();
   void delete_objects() noexcept;
+  void release_device_memory();
   void draw_task(const MaskTask& task, DrawTimes& times);
   void draw_band(Band band, DrawTimes& times);
   void choose(const MeshView& mesh, std::uint32_t number, std::uint32_t first, std::uint32_t count,

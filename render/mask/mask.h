@@ -137,7 +137,8 @@ class MaskRenderer {
   /// a mesh is destroyed.
   virtual void forget([[maybe_unused]] std::uint64_t mesh_id) {}
 
-  /// Frees working memory that a large picture needed and most do not. As draw() is called.
+  /// Frees memory that a large picture needed and most do not, on the device too. As draw() is
+  /// called.
   virtual void release_memory() {}
 
   /// One word: "software", "egl" or "osmesa".

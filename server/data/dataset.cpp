@@ -74,21 +74,42 @@ class SharedProgress {
   explicit SharedProgress(const std::vector<LayerConfig>& layers)
       : shares_(layers.size(), 0),
         progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
-                                                    : fmt::format("{} layers", layers.size())) {}
+                                                    : fmt::format("{} layers", layers.size())),
+        stalls_(sources_of(layers)) {}
 
   void show(std::size_t layer, double share) {
     const std::lock_guard lock(mutex_);
     shares_[layer] = share;
+    stalls_.got_on(layer);
     const bool is_known = std::ranges::none_of(shares_, [](double s) { return s < 0; });
     const double sum = std::accumulate(shares_.begin(), shares_.end(), 0.0);
     progress_->show(is_known ? sum / static_cast<double>(shares_.size()) : -1);
   }
+
+  /// Waits for what reads the layer, which is not watched any longer then.
+  void wait(std::size_t layer, const std::future<ServedLayer>& reading) {
+    constexpr auto kLook = std::chrono::seconds(1);
+    while (reading.wait_for(kLook) != std::future_status::ready) {
+      const std::lock_guard lock(mutex_);
+      stalls_.look();
+    }
+    const std::lock_guard lock(mutex_);
+    stalls_.finish(layer);
+  }
+
   void finish() { progress_.reset(); }
 
  private:
+  static std::vector<std::string> sources_of(const std::vector<LayerConfig>& layers) {
+    std::vector<std::string> sources;
+    for (const LayerConfig& layer : layers) sources.push_back(layer.file_to_open());
+    return sources;
+  }
+
   std::mutex mutex_;
   std::vector<double> shares_;
   std::optional<LoadProgress> progress_;
+  StallWatch stalls_;
 };
 
 /// Whether the same files lead to the same layer: all else is how it is shown.
@@ -234,7 +255,10 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
                            }));
     }
   }
-  for (auto& [i, layer] : reading) served[i] = layer.get();
+  for (auto& [i, layer] : reading) {
+    progress.wait(i, layer);
+    served[i] = layer.get();
+  }
   progress.finish();
   for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
   check_layers(served, previous);

@@ -57,4 +57,22 @@ void LoadProgress::log_line(double share) const {
   }
 }
 
+StallWatch::StallWatch(const std::vector<std::string>& sources, Clock::duration patience)
+    : patience_(patience) {
+  for (const std::string& source : sources) {
+    sources_.push_back({name_of_source(source), Clock::now()});
+  }
+}
+
+void StallWatch::look() {
+  const auto now = Clock::now();
+  for (Source& source : sources_) {
+    if (!source.is_watched || now - source.last < patience_) continue;
+    source.is_watched = false;
+    spdlog::warn(
+        "{}: loading has not got on for {:.0f} s: a step takes long, or the source does not answer",
+        source.name, std::chrono::duration<double>(now - source.last).count());
+  }
+}
+
 }  // namespace trapeze

@@ -1,14 +1,16 @@
-// Shows how far the loading of a file is: a bar when standard error is a terminal, otherwise a line
-// in the log now and then.
+// How far the loading of files is, for those who wait for it.
 //
-// Thread-safety: one thread at a time.
+// Thread-safety: one thread at a time may use an object.
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace trapeze {
 
+/// A bar when standard error is a terminal, otherwise a line in the log now and then.
 class LoadProgress {
  public:
   /// `name` is that of a source, which is shown without its password, or any words.
@@ -32,6 +34,32 @@ class LoadProgress {
   const Clock::time_point begin_;
   Clock::time_point next_;
   bool is_bar_shown_ = false;
+};
+
+/// Warns of sources that do not get on: a database that does not answer, a disk that hangs. They
+/// cannot be told from what is slow, so the warning ends nothing.
+class StallWatch {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Warns of what has not got on for so long.
+  explicit StallWatch(const std::vector<std::string>& sources,
+                      Clock::duration patience = std::chrono::seconds(30));
+
+  void got_on(std::size_t source) { sources_[source].last = Clock::now(); }
+  void finish(std::size_t source) { sources_[source].is_watched = false; }
+  /// To be called now and then; warns of a source once.
+  void look();
+
+ private:
+  struct Source {
+    std::string name;
+    Clock::time_point last;
+    bool is_watched = true;
+  };
+
+  const Clock::duration patience_;
+  std::vector<Source> sources_;
 };
 
 }  // namespace trapeze

@@ -7,7 +7,23 @@
 #include <functional>
 #include <utility>
 
+#include "server/base/heap.h"
+
 namespace trapeze {
+namespace {
+
+// What goes wrong with one who is told of a tile, for lack of memory mostly, is not to keep others
+// waiting.
+template <class Action>
+void attempt(const Action& tell) {
+  try {
+    tell();
+  } catch (const std::exception& error) {
+    spdlog::error("a tile cannot be answered: {}", error.what());
+  }
+}
+
+}  // namespace
 
 TileService::TileService(TileServiceOptions options,
                          std::vector<std::unique_ptr<MaskRenderer>> renderers)
@@ -59,10 +75,16 @@ TileService::Ticket TileService::submit(TilePlan plan, std::string key, Cost cos
       flight->key = std::move(key);
       flight->cost = cost;
       flight->submitted = now;
-      flights_.insert_or_assign(flight->key, flight);
+      const Ticket ticket = join(flight, now, std::move(callback));
       queue.push_back(flight);
+      try {
+        flights_.insert_or_assign(flight->key, flight);
+      } catch (...) {
+        queue.pop_back();  // or others would join what no worker takes
+        throw;
+      }
       wake_.notify_one();
-      return join(flight, now, std::move(callback));
+      return ticket;
     }
   }
   const TileAnswer saturated{TileOutcome::saturated, {}};
@@ -118,30 +140,30 @@ TileService::Figures TileService::figures() const {
 }
 
 void TileService::tell(const TileAnswer& answer) const {
-  if (options_.observe) options_.observe(answer);
+  if (options_.observe) attempt([&] { options_.observe(answer); });
 }
 
 void TileService::work(TilePainter& painter) {
   const std::size_t most =
       painter.gains_by_batching() ? std::max<std::size_t>(options_.batch, 1) : 1;
-  while (true) {
-    const Flights flights = take(most);
-    if (flights.empty()) return;
+  Flights flights;
+  flights.reserve(most);  // all there will be: taking needs no memory
+  while (take(most, flights)) {
     draw(painter, flights);
+    flights.clear();
   }
 }
 
-TileService::Flights TileService::take(std::size_t most) {
+bool TileService::take(std::size_t most, Flights& flights) {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty() || may_take_dear(); });
-  Flights flights;
-  if (is_stopping_) return flights;
+  if (is_stopping_) return false;
   if (may_take_dear()) {
     ++dear_drawing_;
     ++drawing_;
     flights.push_back(std::move(dear_queue_.front()));
     dear_queue_.pop_front();
-    return flights;
+    return true;
   }
   const std::size_t count = std::min(most, share_of_queue());
   for (std::size_t i = 0; i < count; ++i) {
@@ -149,7 +171,7 @@ TileService::Flights TileService::take(std::size_t most) {
     queue_.pop_front();
   }
   drawing_ += count;
-  return flights;
+  return true;
 }
 
 // A single worker draws cheap ones first, but not for ever.
@@ -163,23 +185,36 @@ std::size_t TileService::share_of_queue() const {
   return (queue_.size() + workers_ - 1) / workers_;
 }
 
+// Memory may be short even for answers; the worker lives on.
+void TileService::draw(TilePainter& painter, const Flights& flights) {
+  try {
+    answer(painter, flights);
+  } catch (const std::exception& error) {
+    spdlog::error("tiles cannot be answered: {}", error.what());
+    for (const auto& flight : flights) land(flight, {});
+  }
+  const bool is_dear = flights.front()->cost == Cost::dear;
+  if (is_dear) {
+    painter.release_memory();
+    return_free_memory();
+  }
+  const std::lock_guard lock(mutex_);
+  drawing_ -= flights.size();
+  if (is_dear) {
+    --dear_drawing_;
+    wake_.notify_one();
+  }
+}
+
 // What goes wrong with several tiles is tried again with each alone, so that only the one that is
 // to blame fails.
-void TileService::draw(TilePainter& painter, const Flights& flights) {
+void TileService::answer(TilePainter& painter, const Flights& flights) {
   std::vector<TileAnswer> answers = paint(painter, flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     if (flights.size() > 1 && answers[i].outcome == TileOutcome::failed) {
       answers[i] = paint(painter, {flights[i]}).front();
     }
     land(flights[i], std::move(answers[i]));
-  }
-  const bool is_dear = flights.front()->cost == Cost::dear;
-  if (is_dear) painter.release_memory();
-  const std::lock_guard lock(mutex_);
-  drawing_ -= flights.size();
-  if (is_dear) {
-    --dear_drawing_;
-    wake_.notify_one();
   }
 }
 
@@ -231,9 +266,10 @@ void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer)
     forget(flight);
     callbacks.swap(flight->callbacks);
   }
+  if (callbacks.empty()) return;  // has landed
   tell(answer);
   for (const Callback& callback : callbacks) {
-    if (callback != nullptr) callback(answer);
+    if (callback != nullptr) attempt([&] { callback(answer); });
   }
 }
 

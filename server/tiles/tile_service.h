@@ -79,7 +79,7 @@ class TileService {
 
   /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full,
   /// or from within withdraw(). `key` is the plan's; plans of equal key that are under way together
-  /// are drawn once.
+  /// are drawn once. Throws std::bad_alloc, and never calls it, if there is no memory to wait.
   Ticket submit(TilePlan plan, std::string key, Cost cost, Callback callback);
 
   /// Answers this one who asked, if that has not been done; what nobody else asked for is not drawn
@@ -115,8 +115,8 @@ class TileService {
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
-  /// The next flights to draw together, up to so many; none when the service stops.
-  Flights take(std::size_t most);
+  /// Appends the next flights to draw together, up to so many; false when the service stops.
+  bool take(std::size_t most, Flights& flights);
   bool may_take_dear() const;
   Queue& queue_of(Cost cost) { return cost == Cost::dear ? dear_queue_ : queue_; }
   /// How many of those that wait one worker should take, so that all workers have some.
@@ -127,9 +127,10 @@ class TileService {
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
+  void answer(TilePainter& painter, const Flights& flights);
   static std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
-  /// Answers all who asked.
+  /// Answers all who asked and have not been answered.
   void land(const std::shared_ptr<Flight>& flight, TileAnswer answer);
   void tell(const TileAnswer& answer) const;
 

@@ -37,7 +37,7 @@ class GlRendererTest : public ::testing::TestWithParam<ContextPath> {
     for (const ContextCandidate& candidate : list_context_candidates()) {
       if (candidate.path != GetParam()) continue;
       try {
-        renderers_ = renderers_of(open_context(candidate), 2);
+        make_renderers(open_context(candidate), 2);
         return;
       } catch (const std::runtime_error& error) {
         failures += std::string(" ") + error.what();
@@ -46,19 +46,15 @@ class GlRendererTest : public ::testing::TestWithParam<ContextPath> {
     GTEST_SKIP() << "no context by " << name_of(GetParam()) << " here:" << failures;
   }
 
-  static std::vector<std::unique_ptr<GlRenderer>> renderers_of(std::unique_ptr<GlContext> first,
-                                                               int count) {
-    std::vector<std::unique_ptr<GlRenderer>> renderers;
-    std::shared_ptr<GlMeshStore> store;
+  void make_renderers(std::unique_ptr<GlContext> first, int count) {
     {
       const CurrentContext current(*first);
-      store = std::make_shared<GlMeshStore>(first->gl());
+      store_ = std::make_shared<GlMeshStore>(first->gl());
     }
     for (int i = 1; i < count; ++i) {
-      renderers.push_back(std::make_unique<GlRenderer>(first->create_shared(), store));
+      renderers_.push_back(std::make_unique<GlRenderer>(first->create_shared(), store_));
     }
-    renderers.push_back(std::make_unique<GlRenderer>(std::move(first), store));
-    return renderers;
+    renderers_.push_back(std::make_unique<GlRenderer>(std::move(first), store_));
   }
 
   void expect_like_reference(const SampleMesh& mesh, const View& view, const std::string& what) {
@@ -72,6 +68,7 @@ class GlRendererTest : public ::testing::TestWithParam<ContextPath> {
   GlRenderer& renderer() { return *renderers_.front(); }
 
   SoftwareRenderer reference_;
+  std::shared_ptr<GlMeshStore> store_;
   std::vector<std::unique_ptr<GlRenderer>> renderers_;
 };
 
@@ -410,6 +407,42 @@ TEST_P(GlRendererTest, DrawsAgainWhatWasForgotten) {
     EXPECT_TRUE(mask.is_all(255));
     renderer().forget(mesh.view().id);
   }
+}
+
+TEST_P(GlRendererTest, DrawsAgainAfterItsMemoryWasReleased) {
+  SampleMesh mesh;
+  mesh.add_box(0, 0, 8, 8);
+  const TrapezoidRange all = mesh.all();
+  Mask mask;
+  for (int i = 0; i < 3; ++i) {
+    for (const auto& renderer : renderers_) {  // the first one uploads what all draw
+      renderer->draw(mesh.view(), {&all, 1}, {0, 0, 1, 8, 8}, mask);
+      EXPECT_TRUE(mask.is_all(255));
+    }
+    renderers_[static_cast<std::size_t>(i) % renderers_.size()]->release_memory();
+  }
+}
+
+TEST_P(GlRendererTest, ReleasesChunksThatItUploadedAndKeepsThoseOfOthers) {
+  SampleMesh own;
+  own.add_box(0, 0, 8, 8);
+  SampleMesh of_other;
+  of_other.add_box(0, 0, 8, 8);
+  GlContext& context = renderer().context();
+  const TrapezoidRange all = own.all();
+  Mask mask;
+  const View view{0, 0, 1, 8, 8};
+  renderers_[1]->draw(of_other.view(), {&all, 1}, view, mask);
+  renderer().draw(own.view(), {&all, 1}, view, mask);
+  const auto buffer_of = [&](const SampleMesh& mesh) {
+    const CurrentContext current(context);
+    return store_->chunk(context.gl(), mesh.view(), 0, nullptr);
+  };
+  const auto kept = buffer_of(of_other);
+  const std::weak_ptr<const GlMeshStore::Chunk> released = buffer_of(own);
+  renderer().release_memory();
+  EXPECT_EQ(buffer_of(of_other), kept);
+  EXPECT_TRUE(released.expired());
 }
 
 TEST_P(GlRendererTest, KeepsDrawingAfterAnImpossibleRequest) {

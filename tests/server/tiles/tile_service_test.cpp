@@ -248,6 +248,27 @@ TEST_F(TileServiceTest, AFailingRendererFailsTheRequestAndNotTheWorker) {
   EXPECT_EQ(submit(0).get().outcome, TileOutcome::drawn);
 }
 
+TEST_F(TileServiceTest, AnAnswerThatCannotBeSentDoesNotKeepOthersWaiting) {
+  start();
+  const TilePlan tile = plan(0);
+  service_->submit(tile, tile.key(), TileService::Cost::cheap,
+                   [](const TileAnswer&) { throw std::bad_alloc(); });
+  std::future<TileAnswer> same = submit(0);
+  std::future<TileAnswer> next = submit(1);
+  open();
+  EXPECT_EQ(same.get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(next.get().outcome, TileOutcome::drawn);
+}
+
+TEST_F(TileServiceTest, AnObserverThatFailsDoesNotKeepTilesFromBeingAnswered) {
+  TileServiceOptions options;
+  options.observe = [](const TileAnswer&) { throw std::bad_alloc(); };
+  open();
+  start(options);
+  EXPECT_EQ(submit(0).get().outcome, TileOutcome::drawn);
+  EXPECT_EQ(submit(1).get().outcome, TileOutcome::drawn);
+}
+
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   TileService service({}, make_renderers({RendererKind::software, {}}, 4).renderers);
   std::vector<std::promise<TileAnswer>> answers(64);

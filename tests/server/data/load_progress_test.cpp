@@ -1,0 +1,54 @@
+#include "server/data/load_progress.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <sstream>
+#include <thread>
+
+namespace trapeze {
+namespace {
+
+using namespace std::chrono_literals;
+
+class StallWatchTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(log_);
+    auto logger = std::make_shared<spdlog::logger>("stalls", std::move(sink));
+    logger->set_pattern("%v");
+    spdlog::set_default_logger(std::move(logger));
+  }
+  void TearDown() override { spdlog::set_default_logger(before_); }
+
+  std::string log() const { return log_.str(); }
+
+ private:
+  std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
+  std::ostringstream log_;
+};
+
+TEST_F(StallWatchTest, WarnsOnceOfWhatDoesNotGetOn) {
+  StallWatch watch({"slow.gpkg", "PG:dbname=maps password=secret"}, 0s);
+  watch.look();
+  watch.look();
+  EXPECT_EQ(
+      log(),
+      "slow.gpkg: loading has not got on for 0 s: a step takes long, or the source does not "
+      "answer\n"
+      "PG:dbname=maps password=***: loading has not got on for 0 s: a step takes long, or the "
+      "source does not answer\n");
+}
+
+TEST_F(StallWatchTest, SaysNothingOfWhatGetsOnOrIsDone) {
+  StallWatch watch({"a", "b"}, 200ms);
+  watch.finish(1);
+  std::this_thread::sleep_for(220ms);
+  watch.got_on(0);
+  watch.look();
+  EXPECT_EQ(log(), "");
+}
+
+}  // namespace
+}  // namespace trapeze
