@@ -1,6 +1,7 @@
 #include "core/adapt/history.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -55,26 +56,38 @@ void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& 
 
 }  // namespace
 
-void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
-                             const GeneralizationOptions& options, History& history,
-                             WorkShare* share) {
+std::uint64_t HistoryRecorder::most_work(std::size_t vertices) {
+  constexpr std::uint64_t kAlways = std::uint64_t{1} << 27;
+  constexpr std::uint64_t kPerVertexAndDoubling =
+      48;  // outlines of any size take 12 to 16 a vertex
+  return kAlways + kPerVertexAndDoubling * vertices * std::bit_width(vertices);
+}
+
+std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
+                                              std::span<const std::uint32_t> rows,
+                                              const GeneralizationOptions& options,
+                                              History& history, WorkShare* share) {
   rows_ = rows;
   begin(graph, history);
   stack_.assign(graph, options);
   EditLog log(graph);
   const auto vertices = static_cast<double>(graph.vertex_count());
+  const std::uint64_t most = most_work(graph.vertex_count());
   int level = 0;
+  double reached = 0;
   for (;;) {
-    const std::optional<double> epsilon = stack_.remove_next(graph, log);
+    const bool is_spent = stack_.counts().touched + stack_.counts().walked > most;
+    const std::optional<double> epsilon = is_spent ? std::nullopt : stack_.remove_next(graph, log);
     const int next = epsilon ? level_above(*epsilon) : kLastLevel + 1;
     if (next != level) {
       // All removals so far were due at `level`; the last edit is due only at `next`.
       if (epsilon) log.revert();
       if (level > 0) end_level(graph, static_cast<Level>(level));
-      if (next > kLastLevel) return;
+      if (next > kLastLevel) return is_spent ? std::optional(reached) : std::nullopt;
       log.apply();
       level = next;
     }
+    reached = *epsilon;
     note_touched(log);
     if (stack_.last_removal() == Removal::region) touch_along(graph, log);
     note_lost_area(graph, static_cast<Level>(level));
@@ -86,9 +99,10 @@ void HistoryRecorder::record(TrapezoidalGraph& graph, std::span<const std::uint3
   }
 }
 
-void HistoryRecorder::record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
-                             History& history) {
-  record(graph, std::array<std::uint32_t, 1>{0}, options, history);
+std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
+                                              const GeneralizationOptions& options,
+                                              History& history) {
+  return record(graph, std::array<std::uint32_t, 1>{0}, options, history);
 }
 
 void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {

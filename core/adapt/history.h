@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,10 +62,21 @@ class HistoryRecorder {
   /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
   /// many of the vertices have gone. Throws std::length_error if there are more versions than 32
   /// bits count.
-  void record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
-              const GeneralizationOptions& options, History& history, WorkShare* share = nullptr);
+  ///
+  /// The time of a removal grows with the trapezoids along the edges that are joined. Where that is
+  /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end
+  /// after most_work() of it: levels from then on have the vertices that were left. Returns the
+  /// tolerance at which that was (cells), and none as a rule.
+  std::optional<double> record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+                               const GeneralizationOptions& options, History& history,
+                               WorkShare* share = nullptr);
   /// The same of a single polygon, which is the feature of row 0.
-  void record(TrapezoidalGraph& graph, const GeneralizationOptions& options, History& history);
+  std::optional<double> record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
+                               History& history);
+
+  /// How many trapezoids may be examined and changed to simplify so many vertices: 50 times as many
+  /// as real outlines and coverages of any size need, and at least 2^27 (half a second).
+  static std::uint64_t most_work(std::size_t vertices);
 
   /// Of the last recording.
   const PriorityStack& stack() const { return stack_; }

@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-constexpr const char* kTooManyOverEachOther = "too many of its features lie over each other";
+constexpr const char* kTooManyOverEachOther = "too many of them lie over each other";
 
 /// None if they meet too often.
 std::optional<std::vector<OwnedSegment>> node(const std::vector<OwnedSegment>& segments,

@@ -164,13 +164,32 @@ bool may_overlap(const Rings& rings, std::span<const std::uint32_t> part_ends) {
   return do_parts_meet(parts, steps) || do_parts_contain_others(parts, steps);
 }
 
+/// The same points wherever the ring began and in whichever direction it ran.
+void append_normalized(std::span<const Point> ring, Rings& out) {
+  std::vector<Point> points(ring.begin(), ring.end());
+  std::rotate(points.begin(), std::min_element(points.begin(), points.end(), is_above),
+              points.end());
+  if (is_above(points.back(), points[1])) std::reverse(points.begin() + 1, points.end());
+  out.add(points);
+}
+
+bool precedes(const Rings& a, const Rings& b) {
+  if (a.ends != b.ends) return a.ends < b.ends;
+  return std::lexicographical_compare(a.points.begin(), a.points.end(), b.points.begin(),
+                                      b.points.end(), is_above);
+}
+
+/// Those with an area, clean.
 std::vector<Rings> split(const Rings& rings, std::span<const std::uint32_t> part_ends) {
   std::vector<Rings> parts;
   std::size_t ring = 0;
   for (const std::uint32_t end : part_ends) {
-    Rings& part = parts.emplace_back();
+    Rings part;
     for (; ring < end; ++ring) part.add(rings[ring]);
     clean_rings(part);
+    if (part.empty()) continue;
+    Rings& normalized = parts.emplace_back();
+    for (std::size_t r = 0; r < part.size(); ++r) append_normalized(part[r], normalized);
   }
   return parts;
 }
@@ -180,12 +199,18 @@ std::vector<Rings> split(const Rings& rings, std::span<const std::uint32_t> part
 PartUnion unite_parts(Rings& rings, std::span<const std::uint32_t> part_ends) {
   PartUnion result;
   if (!may_overlap(rings, part_ends)) return result;
-  const std::vector<Rings> parts = split(rings, part_ends);
+  std::vector<Rings> parts = split(rings, part_ends);
+  const std::size_t all = parts.size();
+  std::sort(parts.begin(), parts.end(), precedes);
+  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+  result.did_overlap = parts.size() < all;
+  if (parts.size() == 1 && result.did_overlap) rings = std::move(parts.front());
+  if (parts.size() < 2) return result;
   std::vector<const Rings*> pointers;
   pointers.reserve(parts.size());
   for (const Rings& part : parts) pointers.push_back(&part);
   Overlay found = overlay(pointers);
-  result.did_overlap = !found.overlaps.empty();
+  result.did_overlap = result.did_overlap || !found.overlaps.empty();
   result.failure = std::move(found.failure);
   if (!result.did_overlap) return result;
 

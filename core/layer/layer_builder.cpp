@@ -362,6 +362,7 @@ struct LayerBuilder::State {
   CoverageBuilder coverage_builder;
   TrapezoidalGraph graph;
   HistoryRecorder recorder;
+  std::optional<double> most_tolerance;
   WorkShare* share = nullptr;
 
   void begin_part(std::uint32_t row) {
@@ -387,14 +388,18 @@ LayerBuilder::~LayerBuilder() = default;
 LayerBuilder::LayerBuilder(LayerBuilder&&) noexcept = default;
 LayerBuilder& LayerBuilder::operator=(LayerBuilder&&) noexcept = default;
 
+std::optional<double> LayerBuilder::most_tolerance() const {
+  return state_->most_tolerance;
+}
+
 BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   BuildOutcome outcome = state_->graph_builder.build(rings, state_->graph);
   if (!outcome.built) return outcome;
   if (state_->share != nullptr) state_->share->enter(kGraphShare, 1);
   state_->begin_part(row);
   state_->add_outline(row, rings_of(state_->graph));
-  state_->recorder.record(state_->graph, std::span(&row, 1), state_->options, state_->stock.history,
-                          state_->share);
+  state_->most_tolerance = state_->recorder.record(
+      state_->graph, std::span(&row, 1), state_->options, state_->stock.history, state_->share);
   return outcome;
 }
 
@@ -408,8 +413,8 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);
   for (const std::uint32_t i : assembly.together) state_->add_outline(rows[i], outlines[i]);
   if (state_->share != nullptr) state_->share->enter(kAssemblyShare, 1);
-  state_->recorder.record(state_->graph, rows, state_->options, state_->stock.history,
-                          state_->share);
+  state_->most_tolerance = state_->recorder.record(state_->graph, rows, state_->options,
+                                                   state_->stock.history, state_->share);
   return assembly;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,10 @@ class LayerBuilder {
   /// rings are clean.
   Assembly add_coverage(std::span<const std::uint32_t> rows,
                         std::span<const Rings* const> features);
+
+  /// The tolerance (cells) from which on what was added last is not simplified any further, since
+  /// that would take too long; none as a rule. See HistoryRecorder::record().
+  std::optional<double> most_tolerance() const;
 
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
   /// with the same options. Calls `progress`, if there is one, with the share of the time that has

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "core/grid/web_mercator.h"
 
 namespace trapeze {
 namespace {
@@ -11,6 +14,14 @@ namespace {
 std::string percent_text(double share) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+  return text;
+}
+
+// Of a length in cells, in metres at the equator.
+std::string metres_text(double cells) {
+  const double metres = cells / cells_from_ground(1, 0);
+  char text[32];
+  std::snprintf(text, sizeof text, metres < 10 ? "%.2g m" : "%.0f m", metres);
   return text;
 }
 
@@ -26,9 +37,18 @@ void FeatureBuilder::build_apart(const FeatureKey& feature, Rings& rings) {
   }
   ++tally_.loaded;
   tally_.vertices += outcome.vertices;
+  remark_on_detail(feature);
   if (!outcome.noded) return;
   ++tally_.repaired;
   tally_.remark(feature, "repaired: its rings cross or touch");
+}
+
+void FeatureBuilder::remark_on_detail(const FeatureKey& feature) {
+  const std::optional<double> tolerance = builder_.most_tolerance();
+  if (!tolerance) return;
+  tally_.remark(feature, "drawn in more detail than asked: beyond a tolerance of " +
+                             metres_text(*tolerance) +
+                             " it is not simplified, as thousands of its edges lie side by side");
 }
 
 void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
@@ -40,6 +60,7 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
   }
   const Assembly assembly = builder_.add_coverage(rows, rings);
   tally_.coverage.apart += assembly.apart.size();
+  if (!assembly.together.empty()) remark_on_detail(features[assembly.together.front()]->key);
   if (!assembly.outcome.failure.empty()) {
     tally_.remark(features.front()->key, "built apart from " + std::to_string(features.size() - 1) +
                                              " neighbours: " + assembly.outcome.failure);

@@ -23,6 +23,8 @@ class FeatureBuilder : public FeatureWorker {
   LayerBuilder take_builder() { return std::move(builder_); }
 
  private:
+  /// If what was added last is not simplified to the end.
+  void remark_on_detail(const FeatureKey& feature);
   void count(std::span<WaitingFeature* const> features, const Assembly& assembly);
 
   LayerBuilder builder_;

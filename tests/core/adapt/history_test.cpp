@@ -97,6 +97,50 @@ TEST(History, SidesOfTrapezoidsAndHorizontalEdgesAreTheWholeBoundaryAtEveryLevel
   EXPECT_GT(horizontal_edges, 100U);
 }
 
+// Rings of rays that reach from the middle to a circle: each is beside all that begin farther out.
+Rings star(std::size_t rays) {
+  Rings rings;
+  for (std::size_t i = 0; i < 2 * rays; ++i) {
+    const double angle = 3.141592653589793 * static_cast<double>(i) / static_cast<double>(rays);
+    const double radius = i % 2 == 0 ? 1e8 : 1e7;
+    rings.points.push_back({static_cast<std::int32_t>(radius * std::cos(angle)),
+                            static_cast<std::int32_t>(radius * std::sin(angle))});
+  }
+  rings.close_ring();
+  return rings;
+}
+
+TEST(History, EndsEarlyWhereEveryRemovalChangesThousandsOfTrapezoids) {
+  GraphBuilder builder;
+  TrapezoidalGraph graph;
+  Rings rings = star(60'000);
+  ASSERT_TRUE(builder.build(rings, graph).built);
+  History history;
+  HistoryRecorder recorder;
+  const std::optional<double> reached = recorder.record(graph, {}, history);
+  ASSERT_TRUE(reached);
+  EXPECT_GT(*reached, 0);
+  const PriorityStack::Counts& counts = recorder.stack().counts();
+  EXPECT_GT(counts.removals, 1000U);
+  // The last removal is the one with which the limit was passed.
+  EXPECT_LT(counts.touched + counts.walked,
+            HistoryRecorder::most_work(120'000) + graph.nodes().size());
+  // What is left at the coarsest level is the polygon that the graph has come to.
+  EXPECT_EQ(boundary_at(history, kLastLevel), boundary_of(graph));
+  EXPECT_GT(boundary_of(graph).size(), 1000U);
+}
+
+TEST(History, OutlinesOfAllKindsAreSimplifiedToTheEnd) {
+  for (unsigned seed = 0; seed < 70; ++seed) {
+    GraphBuilder builder;
+    TrapezoidalGraph graph;
+    Rings rings = random_shape(seed);
+    if (!builder.build(rings, graph).built) continue;
+    History history;
+    EXPECT_FALSE(HistoryRecorder().record(graph, {}, history)) << "seed " << seed;
+  }
+}
+
 TEST(History, NoVersionLivesForNoTime) {
   for (unsigned seed = 0; seed < 70; ++seed) {
     GraphBuilder builder;

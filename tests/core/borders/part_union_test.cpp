@@ -50,6 +50,22 @@ TEST(PartUnion, PartThatIsThereTwiceIsThereOnce) {
   EXPECT_EQ(United({kSquare, kSquare, kSquare, "200 0, 300 0, 300 100, 200 100"}).area(), 20'000);
 }
 
+TEST(PartUnion, ThousandsOfEqualPartsAreOneWhereverTheirRingsBegin) {
+  std::vector<std::string> parts(4000, kSquare);
+  parts[7] = "100 100, 0 100, 0 0, 100 0";
+  parts[8] = "0 100, 100 100, 100 0, 0 0";
+  EXPECT_EQ(United(parts).area(), 10'000);
+  parts.push_back("50 50, 150 50, 150 150, 50 150");
+  EXPECT_EQ(United(parts).area(), 2 * 10'000 - 2'500);
+}
+
+TEST(PartUnion, PartsWithoutAreaDoNotCount) {
+  const std::string line = "0 0, 100 0, 50 0";
+  const United u({line, kSquare, line});
+  EXPECT_FALSE(u.found.did_overlap);
+  EXPECT_EQ(u.area(), 10'000);
+}
+
 TEST(PartUnion, WhatTwoPartsCoverIsNoHole) {
   const United u({kSquare, "50 50, 150 50, 150 150, 50 150"});
   EXPECT_TRUE(u.found.did_overlap);

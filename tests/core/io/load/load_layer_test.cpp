@@ -581,7 +581,7 @@ TEST_F(LoadLayerTest, TooManyOverEachOtherAreBuiltApartAndItIsSaid) {
   EXPECT_EQ(report.coverage.apart, 6000u);
   ASSERT_EQ(report.notes.size(), 1u);
   EXPECT_EQ(report.notes[0].reason,
-            "built apart from 5999 neighbours: too many of its features lie over each other");
+            "built apart from 5999 neighbours: too many of them lie over each other");
 }
 
 TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {
