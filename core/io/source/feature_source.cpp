@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::string_view kOsmAreas = "multipolygons";
 
+// Of a layer. GDAL's GeoJSON driver compares the names of all for each value of a feature: 40,000
+// take seconds a feature. Databases hold up to 2,000.
+constexpr int kMostAttributes = 4096;
+
 // Number of the first geometry field that can hold polygons, or -1.
 int polygon_field(OGRFeatureDefn& definition) {
   for (int i = 0; i < definition.GetGeomFieldCount(); ++i) {
@@ -39,6 +43,14 @@ FeatureSource::FeatureSource(const std::string& path, const SourceSelection& sel
   if (!shortage.empty()) throw std::runtime_error(name_of_source(path) + ": " + shortage);
   std::vector<SelectionProblem> problems = select(selection);
   if (!problems.empty()) throw SelectionError(name_of_source(path), std::move(problems));
+  for (const SourceLayer& layer : layers_) {
+    const int attributes = layer.layer->GetLayerDefn()->GetFieldCount();
+    if (attributes <= kMostAttributes) continue;
+    throw std::runtime_error(name_of_source(path) + ": has " + std::to_string(attributes) +
+                             " attributes, of which there can be " +
+                             std::to_string(kMostAttributes) +
+                             " at most; `ogr2ogr -select` makes a copy with those that are needed");
+  }
 }
 
 std::string FeatureSource::driver() const {

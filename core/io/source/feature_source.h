@@ -34,8 +34,9 @@ struct SourceFeature {
 class FeatureSource {
  public:
   /// Throws std::runtime_error, naming the source, if it cannot be opened or is known to be cut
-  /// off; SelectionError, with all that is wrong, if it lacks what is selected. A database is asked
-  /// for the first feature for which the condition holds, to learn whether it understands it.
+  /// off, or has thousands of attributes; SelectionError, with all that is wrong, if it lacks what
+  /// is selected. A database is asked for the first feature for which the condition holds, to learn
+  /// whether it understands it.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;

@@ -103,6 +103,25 @@ TEST_F(SourceSelectionTest, ReadsAConditionOnOpenStreetMapToo) {
   }
 }
 
+std::string with_attributes(int count) {
+  std::string properties;
+  for (int i = 0; i < count; ++i) {
+    properties += (i == 0 ? "\"c" : ",\"c") + std::to_string(i) + "\":" + std::to_string(i);
+  }
+  return R"({"type":"Feature","properties":{)" + properties +
+         R"(},"geometry":{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}})";
+}
+
+TEST_F(SourceSelectionTest, TooManyAttributesAreRefusedWithTheFigure) {
+  const std::string most = folder_.write("most.geojson", with_attributes(4096));
+  EXPECT_EQ(load_layer(most, {}).layer->features().fields().size(), 4096U);
+  const std::string wide = folder_.write("wide.geojson", with_attributes(4097));
+  EXPECT_EQ(failure_of(wide, {}),
+            wide +
+                ": has 4097 attributes, of which there can be 4096 at most; `ogr2ogr "
+                "-select` makes a copy with those that are needed");
+}
+
 TEST_F(SourceSelectionTest, KeepsTheNamedAttributesInTheOrderOfTheSource) {
   const SourceSelection selection = {.attributes = {{"text"}}};
   const LoadedLayer loaded = load_layer(town_, {.selection = selection});
