@@ -137,22 +137,32 @@ MeshIndex::MeshIndex(TrapezoidRange range, std::span<const Entry> entries)
 void MeshIndex::select(const Box& box, Level born, Level alive, std::span<const Lifespan> lifespans,
                        std::vector<TrapezoidRange>& ranges) const {
   if (range_.count == 0) return;
-  descend(heights_.size() - 2, 0, Query{box, born, alive, lifespans, ranges});
+  const Wanted wanted{box, born, alive};
+  const std::size_t root = heights_.size() - 2;
+  if (wanted.meets(entries_[heights_[root]])) {
+    descend(root, 0, Query{wanted, lifespans, ranges});
+  }
+}
+
+std::span<const MeshIndex::Entry> MeshIndex::children(std::size_t height, std::size_t index) const {
+  const std::size_t first = heights_[height - 1] + index * kFanout;
+  const std::size_t end = std::min(first + kFanout, heights_[height]);
+  return {&entries_[first], end - first};
 }
 
 void MeshIndex::descend(std::size_t height, std::size_t index, const Query& query) const {
-  const Entry& entry = entries_[heights_[height] + index];
-  if (query.born < entry.min_born || query.alive >= entry.max_dies) return;
-  if (!entry.box.intersects(query.box)) return;
   const std::size_t begin = index * kFanout;
   if (height > 0) {
-    const std::size_t end = std::min(begin + kFanout, heights_[height] - heights_[height - 1]);
-    for (std::size_t i = begin; i < end; ++i) descend(height - 1, i, query);
+    const std::span<const Entry> below = children(height, index);
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      if (query.wanted.meets(below[i])) descend(height - 1, begin + i, query);
+    }
     return;
   }
   const std::size_t end = std::min<std::size_t>(begin + kFanout, range_.count);
   for (std::size_t i = range_.first + begin; i < range_.first + end; ++i) {
-    if (query.lifespans[i].born > query.born || query.lifespans[i].dies <= query.alive) continue;
+    const Lifespan life = query.lifespans[i];
+    if (life.born > query.wanted.born || life.dies <= query.wanted.alive) continue;
     const auto id = static_cast<std::uint32_t>(i);
     if (!query.ranges.empty() && query.ranges.back().first + query.ranges.back().count == id) {
       ++query.ranges.back().count;
@@ -165,19 +175,22 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
 std::uint64_t MeshIndex::estimate(const Box& box, Level born, Level alive) const {
   constexpr std::uint64_t kFound = 5;  // of the eight of a block; 4 to 6 on maps of all kinds
   if (range_.count == 0) return 0;
-  return kFound * count_blocks(heights_.size() - 2, 0, box, born, alive);
+  const Wanted wanted{box, born, alive};
+  const std::size_t root = heights_.size() - 2;
+  if (!wanted.meets(entries_[heights_[root]])) return 0;
+  return kFound * (root == 0 ? 1 : count_blocks(root, 0, wanted));
 }
 
-std::uint64_t MeshIndex::count_blocks(std::size_t height, std::size_t index, const Box& box,
-                                      Level born, Level alive) const {
-  const Entry& entry = entries_[heights_[height] + index];
-  if (born < entry.min_born || alive >= entry.max_dies || !entry.box.intersects(box)) return 0;
-  if (height == 0) return 1;
-  const std::size_t begin = index * kFanout;
-  const std::size_t end = std::min(begin + kFanout, heights_[height] - heights_[height - 1]);
+std::uint64_t MeshIndex::count_blocks(std::size_t height, std::size_t index,
+                                      const Wanted& wanted) const {
+  const std::span<const Entry> below = children(height, index);
   std::uint64_t blocks = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    blocks += count_blocks(height - 1, i, box, born, alive);
+  if (height == 1) {
+    for (const Entry& entry : below) blocks += wanted.meets(entry);
+    return blocks;
+  }
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    if (wanted.meets(below[i])) blocks += count_blocks(height - 1, index * kFanout + i, wanted);
   }
   return blocks;
 }

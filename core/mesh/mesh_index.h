@@ -62,16 +62,26 @@ class MeshIndex {
  private:
   static constexpr std::size_t kFanout = 8;
 
-  struct Query {
+  struct Wanted {
     const Box& box;
     Level born;
     Level alive;
+
+    bool meets(const Entry& entry) const {
+      return born >= entry.min_born && alive < entry.max_dies && entry.box.intersects(box);
+    }
+  };
+  struct Query {
+    const Wanted& wanted;
     std::span<const Lifespan> lifespans;
     std::vector<TrapezoidRange>& ranges;
   };
+  /// Of an entry that is not directly above trapezoids.
+  std::span<const Entry> children(std::size_t height, std::size_t index) const;
+  /// Below an entry that is wanted.
   void descend(std::size_t height, std::size_t index, const Query& query) const;
-  std::uint64_t count_blocks(std::size_t height, std::size_t index, const Box& box, Level born,
-                             Level alive) const;
+  /// Likewise; of an entry that is not directly above trapezoids.
+  std::uint64_t count_blocks(std::size_t height, std::size_t index, const Wanted& wanted) const;
 
   TrapezoidRange range_;
   StoredArray<Entry> entries_;
