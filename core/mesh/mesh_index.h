@@ -63,12 +63,18 @@ class MeshIndex {
   static constexpr std::size_t kFanout = 8;
 
   struct Wanted {
-    const Box& box;
+    Box box;
     Level born;
     Level alive;
 
+    /// Without branches: which of eight entries are wanted is hard to predict.
     bool meets(const Entry& entry) const {
-      return born >= entry.min_born && alive < entry.max_dies && entry.box.intersects(box);
+      const Box& other = entry.box;
+      return static_cast<int>(born >= entry.min_born) & static_cast<int>(alive < entry.max_dies) &
+             static_cast<int>(box.min_x <= other.max_x) &
+             static_cast<int>(other.min_x <= box.max_x) &
+             static_cast<int>(box.min_y <= other.max_y) &
+             static_cast<int>(other.min_y <= box.max_y);
     }
   };
   struct Query {
