@@ -102,6 +102,7 @@ class SharedProgress {
  private:
   static std::vector<std::string> sources_of(const std::vector<LayerConfig>& layers) {
     std::vector<std::string> sources;
+    sources.reserve(layers.size());
     for (const LayerConfig& layer : layers) sources.push_back(layer.file_to_open());
     return sources;
   }

@@ -75,7 +75,7 @@ TileService::Ticket TileService::submit(TilePlan plan, std::string key, Cost cos
       flight->key = std::move(key);
       flight->cost = cost;
       flight->submitted = now;
-      const Ticket ticket = join(flight, now, std::move(callback));
+      Ticket ticket = join(flight, now, std::move(callback));
       queue.push_back(flight);
       try {
         flights_.insert_or_assign(flight->key, flight);
