@@ -177,6 +177,7 @@ void compress(PngJob& job) {
   job.compressed.resize(job.rows.size() + job.rows.size() / 64 + ISAL_DEF_MAX_HDR_SIZE + 64);
   isal_zstream stream;
   isal_deflate_stateless_init(&stream);
+  stream.hist_bits = 0;  // the whole window, which init leaves as it was: at random
   stream.level = 1;
   stream.level_buf = job.compressor_memory.data();
   stream.level_buf_size = static_cast<std::uint32_t>(job.compressor_memory.size());
