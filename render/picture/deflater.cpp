@@ -3,6 +3,7 @@
 #include <isa-l/igzip_lib.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -18,16 +19,21 @@ constexpr std::uint32_t kHashes = 1u << 13;
 constexpr std::uint32_t kHash = 0x1555;
 constexpr std::uintptr_t kSteps = 512 * kHashes;  // for as many streams: one in kHashes has it
 
+std::uintptr_t number_of(const void* address) {
+  return reinterpret_cast<std::uintptr_t>(address);
+}
+
 // As the processor computes it: CRC-32C of four bytes, without its inversions.
-std::uint32_t hash_of(std::uintptr_t address) {
-  auto crc = static_cast<std::uint32_t>(address / kStep);
+std::uint32_t hash_of(const void* address) {
+  auto crc = static_cast<std::uint32_t>(number_of(address) / kStep);
   for (int i = 0; i < 32; ++i) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0x82f63b78u : 0);
   return crc & (kHashes - 1);
 }
 
-void* map_at(std::uintptr_t address, int flags) {
+// Null if it fails.
+void* map(void* address, int flags) {
   constexpr int kNoFile = -1;
-  void* place = mmap(reinterpret_cast<void*>(address), sizeof(isal_zstream), PROT_READ | PROT_WRITE,
+  void* place = mmap(address, sizeof(isal_zstream), PROT_READ | PROT_WRITE,
                      MAP_PRIVATE | MAP_ANONYMOUS | flags, kNoFile, 0);
   return place == MAP_FAILED ? nullptr : place;
 }
@@ -39,15 +45,16 @@ void unmap(void* place) {
 // Below where the system would place it. Where nothing is free it is there, and all that is lost is
 // that bytes are the same.
 void* map_stream() {
-  void* usual = map_at(0, 0);
+  void* usual = map(nullptr, 0);
   if (usual == nullptr) throw std::bad_alloc();
-  const std::uintptr_t top = reinterpret_cast<std::uintptr_t>(usual) / kStep * kStep;
-  for (std::uintptr_t i = 0; i < kSteps && (i + 1) * kStep < top; ++i) {
-    const std::uintptr_t address = top - i * kStep;
-    if (hash_of(address) != kHash) continue;
-    void* place = map_at(address, MAP_FIXED_NOREPLACE);
+  char* top = static_cast<char*>(usual) - number_of(usual) % kStep;
+  const std::uintptr_t steps = std::min(kSteps, number_of(top) / kStep);
+  for (std::uintptr_t i = 0; i < steps; ++i) {
+    void* wanted = top - i * kStep;
+    if (hash_of(wanted) != kHash) continue;
+    void* place = map(wanted, MAP_FIXED_NOREPLACE);
     if (place == nullptr) continue;
-    if (reinterpret_cast<std::uintptr_t>(place) == address) {
+    if (place == wanted) {
       unmap(usual);
       return place;
     }
