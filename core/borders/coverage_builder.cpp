@@ -2,165 +2,18 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
-#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 
 #include "core/borders/border_lengths.h"
-#include "core/grid/item_count.h"
+#include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
 #include "core/sweep/owned_segments.h"
 
 namespace trapeze {
 namespace {
-
-constexpr const char* kTooManyOverEachOther = "too many of them lie over each other";
-
-/// None if they meet too often.
-std::optional<std::vector<OwnedSegment>> node(const std::vector<OwnedSegment>& segments,
-                                              HotCells cells) {
-  std::vector<Segment> alone;
-  alone.reserve(segments.size());
-  for (const OwnedSegment& s : segments) alone.push_back(s.segment);
-  const std::optional<std::vector<Piece>> noded = node_pieces(alone, cells);
-  if (!noded) return std::nullopt;
-  std::vector<OwnedSegment> pieces;
-  pieces.reserve(noded->size());
-  for (const Piece& piece : *noded) {
-    pieces.push_back({piece.segment, segments[piece.source].owner});
-  }
-  return pieces;
-}
-
-/// Numbers for small sets of features, each in ascending order; 0 is the empty one. Once they have
-/// more than kMostMembers in all, every new set is the empty one.
-class FeatureSets {
- public:
-  FeatureSets() { number({}); }
-
-  std::uint32_t number(const std::vector<std::uint32_t>& features) {
-    if (is_full()) return 0;
-    const auto [found, is_new] =
-        numbers_.try_emplace(features, static_cast<std::uint32_t>(sets_.size()));
-    if (is_new) {
-      sets_.push_back(features);
-      members_ += features.size();
-    }
-    return found->second;
-  }
-
-  bool is_full() const { return members_ > kMostMembers; }
-
-  const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
-  std::size_t size() const { return sets_.size(); }
-
-  /// The features that are in one of two sets and not in the other.
-  std::uint32_t toggled(std::uint32_t a, std::uint32_t b) {
-    if (is_full()) return 0;
-    const std::uint64_t key = std::uint64_t{a} << 32 | b;
-    const auto [found, is_new] = toggled_.try_emplace(key, 0);
-    if (is_new) {
-      std::vector<std::uint32_t> result;
-      std::ranges::set_symmetric_difference(sets_[a], sets_[b], std::back_inserter(result));
-      found->second = number(result);
-    }
-    return found->second;
-  }
-
- private:
-  static constexpr std::size_t kMostMembers = std::size_t{1} << 23;  // kept twice: 64 MiB
-
-  std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
-  std::vector<std::vector<std::uint32_t>> sets_;
-  std::size_t members_ = 0;
-  std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
-};
-
-/// Distinct segments, and for each the set of features whose boundary it belongs to.
-struct Borders {
-  std::vector<Segment> segments;
-  std::vector<std::uint32_t> owners;
-};
-
-/// A segment that a feature has twice is inside it on both sides, or outside on both.
-Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
-  sort_by_place(pieces);
-  Borders borders;
-  std::vector<std::uint32_t> owners;
-  for (std::size_t i = 0; i < pieces.size();) {
-    const Segment& segment = pieces[i].segment;
-    owners.clear();
-    for (; i < pieces.size() && pieces[i].segment == segment; ++i) {
-      if (!owners.empty() && owners.back() == pieces[i].owner) {
-        owners.pop_back();
-      } else {
-        owners.push_back(pieces[i].owner);
-      }
-    }
-    if (owners.empty()) continue;
-    borders.segments.push_back(segment);
-    borders.owners.push_back(sets.number(owners));
-  }
-  return borders;
-}
-
-/// The subdivision of the plane by the sets of features that cover it: a face is the number of a
-/// set.
-struct SetMap {
-  std::vector<OwnedSegment> pieces;
-  FeatureSets sets = {};
-  Borders borders = {};
-
-  /// False if nothing is left, or if it failed.
-  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
-             CoverageOutcome& outcome) {
-    // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
-    constexpr int kQuickPasses = 3;
-    constexpr int kMaxPasses = 6;
-    const FaceBeyond toggle = [this](EdgeId e, FaceId left) {
-      return sets.toggled(left, borders.owners[e.value]);
-    };
-    for (int pass = 0; pass <= kMaxPasses; ++pass) {
-      if (pass > 0) {
-        outcome.noded = true;
-        std::optional<std::vector<OwnedSegment>> noded = node(
-            pieces, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
-        if (!noded) {
-          outcome.failure = "their borders cross more than " +
-                            std::to_string(most_meetings(pieces.size())) + " times";
-          return false;
-        }
-        pieces = std::move(*noded);
-      }
-      if (pieces.size() > kMostSegments) {
-        outcome.failure = too_many_words(pieces.size(), "pieces of borders", kMostSegments);
-        return false;
-      }
-      borders = unite(pieces, sets);
-      if (borders.segments.empty()) return false;
-      boundary.assign(borders.segments);
-      const bool is_noded = trapezoidation.build(boundary, toggle, graph);
-      if (sets.is_full()) {
-        outcome.failure = kTooManyOverEachOther;
-        return false;
-      }
-      if (is_noded) return true;
-    }
-    outcome.failure =
-        "its borders still cross after " + std::to_string(kMaxPasses) + " passes of noding";
-    return false;
-  }
-
-  /// Segments that have been noded remain noded.
-  void leave_out(const std::vector<std::uint32_t>& features) {
-    std::erase_if(pieces, [&features](const OwnedSegment& piece) {
-      return std::binary_search(features.begin(), features.end(), piece.owner);
-    });
-  }
-};
 
 /// The features that begin and end at an edge of a subdivision by sets, in ascending order.
 struct Crossing {
@@ -241,7 +94,7 @@ bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
     crossing.assign(sets[edge.face[kLeft]], sets[edge.face[kRight]]);
     pairs += crossing.pairs();
     if (pairs > kMostPairs) {
-      outcome.failure = kTooManyOverEachOther;
+      outcome.failure = SetMap::kTooManyOverEachOther;
       return false;
     }
     areas.add(crossing, doubled_strip(g, edge));
@@ -446,11 +299,12 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
 Overlay overlay(std::span<const Rings* const> features) {
   CoverageOutcome outcome;
   outcome.areas.assign(features.size(), 0);
-  SetMap map{segments_of(features)};
+  SetMap map(features);
   Boundary boundary;
   Trapezoidation trapezoidation;
   TrapezoidalGraph graph;
-  if (map.sweep(boundary, trapezoidation, graph, outcome)) note_areas(graph, map.sets, outcome);
+  if (map.sweep(boundary, trapezoidation, graph)) note_areas(graph, map.sets(), outcome);
+  if (outcome.failure.empty()) outcome.failure = map.failure();
   return {std::move(outcome.overlaps), std::move(outcome.areas), std::move(outcome.failure)};
 }
 
@@ -461,29 +315,32 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     if (share != nullptr) share->tell(part);
   };
   CoverageOutcome outcome;
-  SetMap map{segments_of(features)};
+  SetMap map(features);
   for (;;) {
-    if (!map.sweep(boundary_, trapezoidation_, graph, outcome)) return outcome;
+    const bool is_swept = map.sweep(boundary_, trapezoidation_, graph);
+    outcome.noded = map.is_noded();
+    outcome.failure = map.failure();
+    if (!is_swept) return outcome;
     tell(0.5);
     outcome.areas.assign(features.size(), 0);
     outcome.overlaps.clear();
-    if (!note_areas(graph, map.sets, outcome)) return outcome;
+    if (!note_areas(graph, map.sets(), outcome)) return outcome;
     const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
     if (overlaps.empty()) break;
     const std::vector<std::uint32_t> apart = features_to_leave_out(
-        overlaps, count_common_edges(graph, map.borders, map.sets, features.size()));
+        overlaps, count_common_edges(graph, map.borders(), map.sets(), features.size()));
     outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
     std::sort(outcome.apart.begin(), outcome.apart.end());
     if (features.size() - outcome.apart.size() < 2) return outcome;
     map.leave_out(apart);
   }
   tell(0.6);
-  Borders& borders = map.borders;
-  Sides sides = sides_of(graph, map.sets, borders.segments.size());
+  std::vector<Segment> borders = map.take_segments();
+  Sides sides = sides_of(graph, map.sets(), borders.size());
   if (tolerance.widest_gap > 0) outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
-  if (keep_borders(borders.segments, sides)) {
-    if (borders.segments.empty()) return outcome;
-    boundary_.assign(borders.segments);
+  if (keep_borders(borders, sides)) {
+    if (borders.empty()) return outcome;
+    boundary_.assign(borders);
     const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
     if (!trapezoidation_.build(boundary_, given, graph)) return outcome;
   } else {

@@ -37,6 +37,8 @@ struct CheckArguments {
   std::vector<std::string> files;
   CoverageArguments coverage;
   SkipLimit max_skipped;  // of each file
+  std::string list;       // a file for the gaps and overlaps of the one of `files`; may be empty
+  bool overwrite = false;
 };
 int run_check(const CheckArguments& arguments);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/io/export/list_faults.h"
 #include "core/io/prepared/open_layer.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
@@ -43,8 +44,8 @@ void print_coverage(const CoverageCounts& counts) {
   fmt::print("    apart               {} features that overlap by too much\n", counts.apart);
 }
 
-void print_notes(const LoadReport& report) {
-  for (const FeatureNote& note : report.notes) {
+void print_notes(const std::vector<FeatureNote>& notes) {
+  for (const FeatureNote& note : notes) {
     fmt::print("  feature {}: {}\n", note.id, note.reason);
   }
 }
@@ -67,7 +68,7 @@ void print_report(const LoadReport& report, const Layer& layer) {
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
              report.read_seconds);
   for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
-  print_notes(report);
+  print_notes(report.notes);
 }
 
 /// False if the file cannot be read, or too much of it is skipped.
@@ -89,15 +90,47 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
   return excess.empty();
 }
 
+/// False if it cannot be written, or is not complete.
+bool list_faults_of(const std::string& file, const CheckArguments& arguments) {
+  FaultReport report;
+  try {
+    LoadProgress progress(file);
+    FaultOptions options;
+    options.overwrite = arguments.overwrite;
+    options.progress = [&progress](double share) { progress.show(share); };
+    report = list_faults(file, arguments.list, options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "trapeze: {}\n", error.what());
+    return false;
+  }
+  fmt::print("{}: gaps {}, overlaps {} between the polygons of {}\n", arguments.list, report.gaps,
+             report.overlaps, file);
+  print_notes(report.notes);
+  return report.unsearched == 0;
+}
+
+void check_arguments(const CheckArguments& arguments) {
+  if (arguments.list.empty()) {
+    if (arguments.overwrite) throw UsageError("--overwrite is for --list");
+    return;
+  }
+  check_polygon_ending("--list", arguments.list);
+  if (arguments.files.size() > 1) throw UsageError("--list takes one FILE at a time");
+}
+
 }  // namespace
 
 int run_check(const CheckArguments& arguments) {
+  check_arguments(arguments);
   OpenOptions how;
   how.coverage = coverage_or_throw(arguments.coverage);
   how.close_gaps = arguments.coverage.close_gaps;
   bool is_all_good = true;
   for (const std::string& file : arguments.files) {
     is_all_good &= check_file(file, how, arguments.max_skipped);
+  }
+  if (is_all_good && !arguments.list.empty()) {
+    is_all_good = list_faults_of(arguments.files.front(), arguments);
   }
   fmt::print("memory of the process   {} bytes at most\n", process_figures().peak_resident_bytes);
   return is_all_good ? 0 : 1;

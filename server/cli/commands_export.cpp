@@ -1,15 +1,11 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <string>
-#include <vector>
 
 #include "core/grid/tolerance.h"
 #include "core/grid/web_mercator.h"
 #include "core/io/export/export_layer.h"
-#include "server/base/nearest_name.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
 
@@ -22,16 +18,6 @@ constexpr double kPixelsPerTile = 256;
 double epsilon_of(int zoom, double pixels) {
   const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
   return epsilon_of_level(nearest_level(pixels * cells_per_pixel));
-}
-
-void check_ending(const std::string& output) {
-  const std::vector<std::string> endings = {".fgb", ".gpkg", ".geojson"};
-  const std::string ending = in_lower_case(std::filesystem::path(output).extension().string());
-  if (std::ranges::find(endings, ending) != endings.end()) return;
-  throw UsageError(
-      fmt::format("--output takes a name that ends in .fgb (FlatGeobuf), .gpkg "
-                  "(GeoPackage) or .geojson (GeoJSON), given was \"{}\"{}",
-                  output, did_you_mean(ending, endings)));
 }
 
 ExportOptions options_from(const ExportArguments& arguments) {
@@ -72,7 +58,7 @@ void print_report(const ExportReport& report, const std::string& output) {
 }  // namespace
 
 int run_export(const ExportArguments& arguments) {
-  check_ending(arguments.output);
+  check_polygon_ending("--output", arguments.output);
   ExportOptions options = options_from(arguments);
   ExportReport report;
   {

@@ -77,9 +77,13 @@ constexpr const char* kConfigFooter =
 constexpr const char* kCheckFooter =
     "\nExamples:\n"
     "  trapeze check countries.fgb buildings.shp\n"
-    "  trapeze check --strict delivery.gpkg\n\n"
+    "  trapeze check --strict delivery.gpkg\n"
+    "  trapeze check --coverage auto --list errors.geojson parcels.gpkg\n\n"
     "The exit status is 1 if a file cannot be read, or if more features are skipped than\n"
-    "--max-skipped allows; repaired and other skipped features are only listed.";
+    "--max-skipped allows; repaired and other skipped features are only listed. --list writes the\n"
+    "places where polygons do not fit together, as they are in FILE: kind (gap or overlap), area "
+    "in\n"
+    "square metres, width in metres, and the ids of the features.";
 
 constexpr const char* kPrepareFooter =
     "\nExamples:\n"
@@ -258,6 +262,12 @@ void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
   add_coverage(*check, arguments.coverage);
   add_max_skipped(*check, arguments.max_skipped, "100%");
+  check
+      ->add_option("--list", arguments.list,
+                   "A file to write with the gaps and overlaps between the polygons of FILE, their "
+                   "areas, widths and features: .geojson, .gpkg or .fgb")
+      ->type_name("OUT");
+  check->add_flag("--overwrite", arguments.overwrite, "Replace OUT if it exists");
 }
 
 void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {

@@ -2,7 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 
 #include "server/base/nearest_name.h"
@@ -58,6 +60,16 @@ double number_or_throw(const std::string& option, const std::string& text, doubl
                      is_bounded ? fmt::format("a number from {} to {}", min, max)
                                 : fmt::format("a number that is {} or more", min),
                      text);
+}
+
+void check_polygon_ending(const std::string& option, const std::string& output) {
+  const std::vector<std::string> endings = {".fgb", ".gpkg", ".geojson"};
+  const std::string ending = in_lower_case(std::filesystem::path(output).extension().string());
+  if (std::ranges::find(endings, ending) != endings.end()) return;
+  throw UsageError(
+      fmt::format("{} takes a name that ends in .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson "
+                  "(GeoJSON), given was \"{}\"{}",
+                  option, output, did_you_mean(ending, endings)));
 }
 
 SkipLimit skip_limit_or_throw(const std::string& option, const std::string& text) {

@@ -41,6 +41,9 @@ int integer_or_throw(const std::string& option, const std::string& text, int min
 /// A number within the bounds, both included.
 double number_or_throw(const std::string& option, const std::string& text, double min, double max);
 
+/// Refuses the name of an output that is in none of the formats that polygons are written in.
+void check_polygon_ending(const std::string& option, const std::string& output);
+
 /// A number of features or a share of them.
 SkipLimit skip_limit_or_throw(const std::string& option, const std::string& text);
 

@@ -11,6 +11,7 @@
 #include "core/borders/polygons.h"
 #include "core/io/export/polygon_file.h"
 #include "core/io/export/polygon_geometry.h"
+#include "core/io/export/vector_file.h"
 #include "core/io/load/feature_pipeline.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/open_source.h"
@@ -257,7 +258,7 @@ class Export {
 
 ExportReport export_layer(const std::string& source, const std::string& output,
                           const ExportOptions& options) {
-  PolygonFile::check_path(output, source, options.overwrite);
+  VectorFile::check_path(output, source, options.overwrite);
   FeatureSource features(source);
   PolygonFile file(output, features, options.crs);
   try {

@@ -1,0 +1,81 @@
+// The subdivision of the plane by the sets of features that cover it.
+//
+// All rings are noded together. The sweep knows for each face which features cover it: crossing an
+// edge toggles those that own it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/graph/trapezoidal_graph.h"
+#include "core/grid/rings.h"
+#include "core/sweep/boundary.h"
+#include "core/sweep/owned_segments.h"
+#include "core/sweep/trapezoidation.h"
+
+namespace trapeze {
+
+/// Numbers for small sets of features, each in ascending order; 0 is the empty one. Once they have
+/// more than kMostMembers in all, every new set is the empty one.
+class FeatureSets {
+ public:
+  FeatureSets() { number({}); }
+
+  std::uint32_t number(const std::vector<std::uint32_t>& features);
+  bool is_full() const { return members_ > kMostMembers; }
+  const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
+
+  /// The features that are in one of two sets and not in the other.
+  std::uint32_t toggled(std::uint32_t a, std::uint32_t b);
+
+ private:
+  static constexpr std::size_t kMostMembers = std::size_t{1} << 23;  // kept twice: 64 MiB
+
+  std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
+  std::vector<std::vector<std::uint32_t>> sets_;
+  std::size_t members_ = 0;
+  std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
+};
+
+/// Distinct segments, and for each the set of features whose boundary it belongs to.
+struct Borders {
+  std::vector<Segment> segments;
+  std::vector<std::uint32_t> owners;
+};
+
+class SetMap {
+ public:
+  static constexpr const char* kTooManyOverEachOther = "too many of them lie over each other";
+
+  /// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
+  explicit SetMap(std::span<const Rings* const> features) : pieces_(segments_of(features)) {}
+
+  /// Makes `graph` the subdivision: its edges are those of borders(), and a face is the number of a
+  /// set. False if nothing is left, or if it failed.
+  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph);
+  /// To be followed by another sweep; what has been noded remains so. In ascending order.
+  void leave_out(const std::vector<std::uint32_t>& features);
+
+  const FeatureSets& sets() const { return sets_; }
+  const Borders& borders() const { return borders_; }
+  std::vector<Segment> take_segments() { return std::move(borders_.segments); }
+  /// Whether vertices were missing on one side of a border, or borders crossed.
+  bool is_noded() const { return is_noded_; }
+  /// Why the last sweep failed; empty if it did not.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  std::vector<OwnedSegment> pieces_;
+  FeatureSets sets_;
+  Borders borders_;
+  bool is_noded_ = false;
+  std::string failure_;
+};
+
+}  // namespace trapeze
