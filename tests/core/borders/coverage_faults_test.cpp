@@ -123,7 +123,8 @@ TEST(CoverageFaults, OverlapsAreWhereSeveralFeaturesAreAndGapsWhereNoneIs) {
     std::uniform_real_distribution<double> x(box.min_x, box.max_x);
     std::uniform_real_distribution<double> y(box.min_y, box.max_y);
     for (int i = 0; i < 200; ++i) {
-      Cover place(x(random), y(random));
+      const double column = x(random);
+      Cover place(column, y(random));
       std::vector<std::uint32_t> here;
       for (std::uint32_t f = 0; f < features.size(); ++f) {
         if (place.covers(features[f])) here.push_back(f);
@@ -149,8 +150,8 @@ TEST(CoverageFaults, OverlapsAreWhereSeveralFeaturesAreAndGapsWhereNoneIs) {
       }
     }
   }
-  EXPECT_GT(overlaps_seen, 100u);
-  EXPECT_GT(gaps_seen, 100u);
+  EXPECT_GT(overlaps_seen, 50u);
+  EXPECT_GT(gaps_seen, 50u);
 }
 
 TEST(CoverageFaults, AreAsManyGapsAsTheCoverageHas) {
