@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 
 #include "render/text/usual_fonts.h"
 #include "render/text/utf8.h"
+#include "tests/core/io/temporary_folder.h"
 
 namespace trapeze {
 namespace {
@@ -355,15 +355,8 @@ TEST(NoFontsTest, WithoutAFontNothingIsDrawnAndNothingBreaks) {
 
 class FontFilesTest : public ::testing::Test {
  protected:
-  FontFilesTest() : folder_(::testing::TempDir() + "font_files_test") {
-    std::filesystem::create_directories(folder_);
-  }
-  ~FontFilesTest() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& bytes) const {
-    const std::string path = folder_ + "/" + name;
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path;
+    return folder_.write(name, bytes);
   }
   static std::string dejavu_bytes() {
     std::ifstream file(dejavu(), std::ios::binary);
@@ -379,12 +372,12 @@ class FontFilesTest : public ::testing::Test {
     }
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(FontFilesTest, WhatIsWrongWithAFontIsSaidWithTheNameOfItsFile) {
   EXPECT_EQ(fault_of("/nowhere/a.ttf"), "the font /nowhere/a.ttf is not there");
-  EXPECT_THAT(fault_of(folder_), HasSubstr("is not there")) << "a folder";
+  EXPECT_THAT(fault_of(folder_.file("")), HasSubstr("is not there")) << "a folder";
   const std::string words = write("words.ttf", "these are words");
   EXPECT_EQ(fault_of(words), "the font " + words + " is in no format of fonts that is known");
   EXPECT_THAT(fault_of(write("empty.ttf", "")), HasSubstr("empty.ttf is "));
