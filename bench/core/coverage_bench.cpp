@@ -46,6 +46,7 @@ struct Options {
   std::string program = built_trapeze();
   std::size_t tiles = 16;
   int rounds = 3;
+  bool only_build = false;
   std::string json = "out/bench/coverage.json";
 };
 
@@ -244,6 +245,7 @@ void measure(const Options& options, const std::string& layer, std::vector<Figur
   const std::string path = path_of(options, layer);
   const Pair pair = build(path, options.rounds);
   report_build(layer, path, pair, figures);
+  if (options.only_build) return;
   report_tiles(options, layer, path, pair, figures);
   std::unique_ptr<Mapshaper> mapshaper;
   if (Mapshaper::is_installed()) mapshaper = std::make_unique<Mapshaper>(options.program, path);
@@ -268,9 +270,10 @@ int run(int argc, char** argv) {
   app.add_option("--rounds", options.rounds, "How often each is built and drawn")
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
+  app.add_flag("--only-build", options.only_build, "Leave out tiles and vertices");
   app.add_option("--json", options.json, "Where the figures go")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  if (!Mapshaper::is_installed()) {
+  if (!options.only_build && !Mapshaper::is_installed()) {
     std::printf("mapshaper is not installed; script/bootstrap peers does that\n");
   }
   std::vector<Figure> figures;

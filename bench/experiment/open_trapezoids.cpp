@@ -3,19 +3,13 @@
 #include <algorithm>
 
 #include "bench/experiment/beyond_view.h"
+#include "core/sweep/boundary.h"
 
 namespace trapeze::experiment {
 namespace {
 
 // Fewer than this are sorted and searched one by one.
 constexpr std::size_t kFew = 16;
-
-constexpr std::uint64_t sweep_key(Point p) {
-  const auto biased = [](std::int32_t v) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) + 0x80000000u);
-  };
-  return biased(p.y) << 32 | biased(p.x);
-}
 
 constexpr Point point_of_key(std::uint64_t key) {
   const auto unbiased = [](std::uint64_t v) {

@@ -1,7 +1,6 @@
 #include "core/adapt/adaptable_graph.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/graph/fetch_ahead.h"
+#include "core/grid/for_each_in_parallel.h"
 
 namespace trapeze {
 namespace {
@@ -22,38 +22,27 @@ constexpr std::size_t kEdgesAhead = 16;
 constexpr std::size_t kNodesAhead = 8;
 constexpr std::size_t kNeighboursAhead = 4;
 
-std::pair<VertexId, VertexId> longest_side(const TrapezoidalGraph& graph,
-                                           const std::array<VertexId, 3>& triangle) {
-  std::pair<VertexId, VertexId> longest;
-  double greatest = -1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Point a = graph.point(triangle[i]);
-    const Point b = graph.point(triangle[(i + 1) % 3]);
-    const double length =
-        std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
-    if (length > greatest) longest = {triangle[i], triangle[(i + 1) % 3]};
-    greatest = std::max(greatest, length);
-  }
-  return longest;
-}
-
 }  // namespace
 
-void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options) {
+void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options,
+                           unsigned threads) {
   graph_ = &graph;
   options_ = options;
   const std::size_t count = graph.corners().size();
   weights_.assign(count, std::numeric_limits<double>::quiet_NaN());
   order_.clear();
-  for (std::size_t i = 0; i < count && graph.is_coverage(); ++i) {
-    const Corner& corner = graph.corner(CornerId(i));
-    if (corner.is_end() && corner.prev.is_none()) weigh_arc(CornerId(i));
+  if (graph.is_coverage()) {
+    std::vector<Candidate> regions;
+    for_each_in_parallel(2, threads, [&](std::size_t i) {
+      if (i == 0) weigh_corners();
+      if (i == 1) weigh_regions(regions);
+    });
+    const auto corners = static_cast<std::ptrdiff_t>(order_.size());
+    order_.insert(order_.end(), regions.begin(), regions.end());
+    std::inplace_merge(order_.begin(), order_.begin() + corners, order_.end());
+  } else {
+    weigh_corners();
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (std::isnan(weights_[CornerId(i)])) weigh_loop(CornerId(i));
-  }
-  if (graph.is_coverage()) add_regions();
-  std::sort(order_.begin(), order_.end());
   position_ = 0;
   epsilon_ = 0;
   retries_.clear();
@@ -62,6 +51,18 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
   waiting_.clear();
   has_blocked_ = false;
   counts_ = {};
+}
+
+void PriorityStack::weigh_corners() {
+  const std::size_t count = graph_->corners().size();
+  for (std::size_t i = 0; i < count && graph_->is_coverage(); ++i) {
+    const Corner& corner = graph_->corner(CornerId(i));
+    if (corner.is_end() && corner.prev.is_none()) weigh_arc(CornerId(i));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::isnan(weights_[CornerId(i)])) weigh_loop(CornerId(i));
+  }
+  std::sort(order_.begin(), order_.end());
 }
 
 void PriorityStack::weigh_loop(CornerId first) {
@@ -95,15 +96,18 @@ void PriorityStack::add_candidates(std::span<const double> weights) {
   }
 }
 
-void PriorityStack::add_regions() {
+void PriorityStack::weigh_regions(std::vector<Candidate>& candidates) {
   borders_.assign(*graph_);
   region_weights_.clear();
   for (std::size_t i = 0; i < borders_.count(); ++i) {
     const double weight = borders_.weight(RegionId(i));
     region_weights_.push_back(weight);
-    if (std::isfinite(weight)) order_.push_back({weight, {}, corner_for(RegionId(i))});
+    if (std::isfinite(weight)) candidates.push_back({weight, {}, corner_for(RegionId(i))});
   }
-  is_dissolved_.assign(weights_.size(), false);
+  std::sort(candidates.begin(), candidates.end());
+  is_in_place_.assign(weights_.size(), false);
+  gone_from_.assign(graph_->edges().size(), CornerId());
+  next_gone_.assign(weights_.size(), CornerId());
 }
 
 std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
@@ -181,13 +185,9 @@ bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
   const VertexId prev = graph.corner(gone.prev).vertex;
   const VertexId next = graph.corner(gone.next).vertex;
   const EdgeId edge_before = graph.corner(gone.prev).edge;
-  if (decision.removal == Removal::loop) {
-    last_side_ = longest_side(graph, {prev, gone.vertex, next});
-    if (graph.is_coverage()) {
-      const TriangleLoop loop = triangle_loop_at(graph, c);
-      borders_.note_lost_loop(loop.long_edge, loop.side, graph.point(last_side_.first),
-                              graph.point(last_side_.second));
-    }
+  if (decision.removal == Removal::loop && graph.is_coverage()) {
+    const TriangleLoop loop = triangle_loop_at(graph, c);
+    borders_.note_lost_loop(loop.long_edge, loop.side);
   }
   Generalization(graph, log).remove(c, decision.removal);
   last_corner_ = c;
@@ -198,18 +198,33 @@ bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
     retry_waiting(next);
     return true;
   }
-  if (graph.is_coverage()) {
-    const EdgeId joined = graph.corner(gone.prev).edge;
-    borders_.note_joined(joined == edge_before ? gone.edge : edge_before, joined, gone.prev);
-  }
+  if (graph.is_coverage()) note_joined(gone, c, edge_before);
   retry_if_blocked(gone.prev);
   retry_if_blocked(gone.next);
   return true;
 }
 
-/// A junction that became a corner is weighed against its present neighbours whenever it is popped.
+/// Of a coverage, after a corner went; `edge_before` led to it.
+void PriorityStack::note_joined(const Corner& gone, CornerId corner, EdgeId edge_before) {
+  const EdgeId joined = graph_->corner(gone.prev).edge;
+  const EdgeId other = joined == edge_before ? gone.edge : edge_before;
+  borders_.note_joined(other, joined, gone.prev);
+  // Two circles become one when the successors of one of each are exchanged.
+  next_gone_[corner] = corner;
+  for (const EdgeId edge : {joined, other}) {
+    if (!gone_from_[edge].is_none()) {
+      std::swap(next_gone_[corner], next_gone_[gone_from_[edge]]);
+    }
+  }
+  gone_from_[joined] = corner;
+  if (!is_in_place_[corner.value]) return;
+  is_in_place_[gone.prev.value] = true;
+  is_in_place_[gone.next.value] = true;
+}
+
+/// A corner that is weighed where it stands is weighed whenever it is popped.
 bool PriorityStack::is_to_wait(CornerId c) {
-  if (!graph_->is_coverage() || !is_dissolved_[c.value]) return false;
+  if (!graph_->is_coverage() || !is_in_place_[c.value]) return false;
   weights_[c] = weight_in_place(c);
   if (weights_[c] <= epsilon_) return false;
   state_[c] = State::queued;
@@ -220,7 +235,19 @@ bool PriorityStack::is_to_wait(CornerId c) {
 double PriorityStack::weight_in_place(CornerId c) const {
   const auto at = [this](CornerId corner) { return graph_->point(graph_->corner(corner).vertex); };
   const Corner& corner = graph_->corner(c);
-  return std::sqrt(squared_distance(at(c), at(corner.prev), at(corner.next)));
+  const SegmentDistance distance(at(corner.prev), at(corner.next));
+  double squared = distance.squared(at(c));
+  if (!graph_->is_coverage()) return std::sqrt(squared);
+  for (const EdgeId edge : {graph_->corner(corner.prev).edge, corner.edge}) {
+    const CornerId first = gone_from_[edge];
+    if (first.is_none()) continue;
+    CornerId gone = first;
+    do {
+      squared = std::max(squared, distance.squared(at(gone)));
+      gone = next_gone_[gone];
+    } while (gone != first);
+  }
+  return std::sqrt(squared);
 }
 
 /// Gives a weight to the remaining anchors of rings; false if there are none.
@@ -249,7 +276,7 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
   last_removal_ = Removal::region;
   for (const VertexId v : borders_.changed()) retry_waiting(v);
   for (const CornerId c : borders_.dissolved()) {
-    is_dissolved_[c.value] = true;
+    is_in_place_[c.value] = true;
     is_to_wait(c);
     if (state_[c] != State::queued) {
       state_[c] = State::queued;

@@ -14,7 +14,10 @@
 // always has two vertices whose triangle is empty, so that in the end nothing is left.
 //
 // In a coverage, each arc is weighed by itself, so that a border is the same for the polygons on
-// both sides, and regions are in the stack as well (see region_borders.h).
+// both sides, and regions are in the stack as well (see region_borders.h). Where a junction has
+// become a corner of one arc, the weights of the arcs that met there no longer say how far that arc
+// will be from what it was: it, and the corners beside those that go so, are weighed where they
+// stand, by all vertices that went between their neighbours.
 //
 // Thread-safety: none; different graphs may be used by different threads.
 #pragma once
@@ -42,8 +45,10 @@ struct GeneralizationOptions {
 /// The corners of a graph in the order in which they are to be removed, and those that are blocked.
 class PriorityStack {
  public:
-  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use.
-  void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options);
+  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use. On up to
+  /// `threads` threads.
+  void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options,
+              unsigned threads = 1);
 
   /// Carries out the next removal of the sequence, through `log`, and returns its tolerance
   /// (cells): the graph at a tolerance has had all removals of smaller ones. None if no vertex of
@@ -61,11 +66,9 @@ class PriorityStack {
   /// Whether any vertex has been blocked so far.
   bool has_blocked() const { return has_blocked_; }
 
-  /// The corner that went last, how it went, and, if its whole loop went, the longest side of the
-  /// triangle that was left of it.
+  /// The corner that went last, and how it went.
   CornerId last_corner() const { return last_corner_; }
   Removal last_removal() const { return last_removal_; }
-  std::pair<VertexId, VertexId> last_side() const { return last_side_; }
   /// In a coverage: the areas that went to another face when a loop or a region was removed last.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
   double weight(CornerId c) const { return weights_[c]; }
@@ -80,10 +83,11 @@ class PriorityStack {
     friend auto operator<=>(const Candidate&, const Candidate&) = default;
   };
 
+  void weigh_corners();
+  void weigh_regions(std::vector<Candidate>& candidates);
   void weigh_loop(CornerId first);
   void weigh_arc(CornerId first);
   void add_candidates(std::span<const double> weights);
-  void add_regions();
   std::optional<Candidate> next_candidate();
   Candidate pop();
   void fetch_candidates() const;
@@ -92,6 +96,7 @@ class PriorityStack {
   CornerId corner_for(RegionId region) const { return CornerId(weights_.size() + region.value); }
   RegionId region_of(CornerId c) const { return RegionId(c.value - weights_.size()); }
   bool remove_region(RegionId region, EditLog& log);
+  void note_joined(const Corner& gone, CornerId corner, EdgeId edge_before);
   bool is_to_wait(CornerId corner);
   bool remove_corner(CornerId corner, EditLog& log);
   void requeue_region(RegionId region, double weight);
@@ -104,7 +109,7 @@ class PriorityStack {
   const TrapezoidalGraph* graph_ = nullptr;
   GeneralizationOptions options_;
   Table<CornerId, double> weights_;
-  std::vector<Candidate> order_;
+  LargeArray<Candidate> order_;
   std::size_t position_ = 0;
   double epsilon_ = 0;  // greatest weight popped
 
@@ -124,11 +129,13 @@ class PriorityStack {
   // Of a coverage.
   RegionBorders borders_;
   Table<RegionId, double> region_weights_;  // as they were queued last
-  std::vector<bool> is_dissolved_;          // by corner: was a junction, is weighed where it stands
+  std::vector<bool> is_in_place_;           // by corner: is weighed where it stands
+  // Corners that went from an edge: one of them, and from each of them to the next, around.
+  Table<EdgeId, CornerId> gone_from_;
+  Table<CornerId, CornerId> next_gone_;
   bool has_blocked_ = false;
   CornerId last_corner_;
   Removal last_removal_ = Removal::blocked;
-  std::pair<VertexId, VertexId> last_side_;
   Counts counts_;
 };
 

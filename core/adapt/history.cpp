@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/adapt/loop_sizes.h"
+#include "core/grid/for_each_in_parallel.h"
 #include "core/grid/item_count.h"
 
 namespace trapeze {
@@ -41,6 +43,11 @@ Lifespan& lifespan_of(History& history, std::uint32_t version) {
              : history.horizontal_edges[version ^ kHorizontalBit].lifespan;
 }
 
+/// Whether one of the levels from `level` up to that before `next` is a tolerance of whole zooms.
+bool reaches_tolerance_of_zoom(int level, int next) {
+  return level % kLevelsPerOctave == 1 || next - level >= kLevelsPerOctave;
+}
+
 /// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
 /// while the order in which they were touched is that of weights, all over the map.
 template <class IdType>
@@ -66,10 +73,15 @@ std::uint64_t HistoryRecorder::most_work(std::size_t vertices) {
 std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
                                               std::span<const std::uint32_t> rows,
                                               const GeneralizationOptions& options,
-                                              History& history, WorkShare* share) {
+                                              History& history, WorkShare* share,
+                                              unsigned threads) {
   rows_ = rows;
-  begin(graph, history);
-  stack_.assign(graph, options);
+  for_each_in_parallel(2, threads, [&](std::size_t i) {
+    if (i == 0) stack_.assign(graph, options, threads);
+    if (i == 1) begin(graph, history);
+  });
+  milestones_.begin(graph, stack_);
+  milestones_.note(0, vertex_base_, history.milestones);
   EditLog log(graph);
   const auto vertices = static_cast<double>(graph.vertex_count());
   const std::uint64_t most = most_work(graph.vertex_count());
@@ -82,12 +94,16 @@ std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
     if (next != level) {
       // All removals so far were due at `level`; the last edit is due only at `next`.
       if (epsilon) log.revert();
-      if (level > 0) end_level(graph, static_cast<Level>(level));
+      const bool is_noted = reaches_tolerance_of_zoom(level, next);
+      for_each_in_parallel(is_noted ? 2 : 1, threads, [&](std::size_t i) {
+        if (i == 0 && level > 0) end_level(graph, static_cast<Level>(level));
+        if (i == 1) milestones_.note(static_cast<Level>(level), vertex_base_, history.milestones);
+      });
       if (next > kLastLevel) return is_spent ? std::optional(reached) : std::nullopt;
       log.apply();
       level = next;
     }
-    reached = *epsilon;
+    reached = epsilon.value_or(reached);
     note_touched(log);
     if (stack_.last_removal() == Removal::region) touch_along(graph, log);
     note_lost_area(graph, static_cast<Level>(level));
@@ -118,6 +134,7 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
   touched_nodes_.clear();
   edge_is_touched_.assign(graph.edges().size(), 0);
   node_is_touched_.assign(graph.nodes().size(), 0);
+  measure_loop_sizes(graph, loop_sizes_);
   for (std::size_t e = 0; e < graph.edges().size(); ++e) {
     if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
   }
@@ -132,6 +149,7 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
     if (loop_of_[CornerId(i)] != kNoVersion) continue;
     // Doubled area, positive if the loop runs clockwise on the map.
     Int128 doubled = 0;
+    BoundaryMoments moments(graph.point(graph.corner(CornerId(i)).vertex));
     CornerId c(i);
     do {
       loop_of_[c] = static_cast<std::uint32_t>(loops_.size());
@@ -139,6 +157,7 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
       const Point a = graph.point(corner.vertex);
       const Point b = graph.point(graph.corner(corner.next).vertex);
       doubled += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(b.x) * a.y;
+      moments.add(a, b);
       c = corner.next;
     } while (c != CornerId(i));
     // The inside of a clockwise loop is left of an edge that leads down and right of one that leads
@@ -147,8 +166,8 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
     const bool goes_down = first.vertex == graph.edge(first.edge).end[kUp];
     const bool clockwise = doubled > 0;
     const Side own = goes_down == clockwise ? kLeft : kRight;
-    loops_.push_back(
-        {std::abs(static_cast<double>(doubled)) / 2, graph.edge(first.edge).face[own] == kOutside});
+    loops_.push_back({moments.sum().axis(), std::abs(static_cast<double>(doubled)) / 2,
+                      graph.edge(first.edge).face[own] == kOutside});
   }
 }
 
@@ -186,7 +205,7 @@ void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& 
 void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level) {
   const Removal removal = stack_.last_removal();
   if (removal != Removal::loop && removal != Removal::region) return;
-  if (!graph.is_coverage()) return note_lost_loop(graph, level);
+  if (!graph.is_coverage()) return note_lost_loop(level);
   for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
 }
 
@@ -194,20 +213,17 @@ void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level)
 void HistoryRecorder::note_taken(const Taken& taken, Level level) {
   if (taken.face == kOutside) {
     history_->grains.push_back(
-        {taken.from, taken.to, -taken.area, level, row_of(taken.taker), Grain::kNobody});
+        {taken.axis, -taken.area, level, row_of(taken.taker), Grain::kNobody});
   } else {
-    history_->grains.push_back({taken.from, taken.to, taken.area, level, row_of(taken.face),
+    history_->grains.push_back({taken.axis, taken.area, level, row_of(taken.face),
                                 taken.taker == kOutside ? Grain::kNobody : row_of(taken.taker)});
   }
 }
 
-void HistoryRecorder::note_lost_loop(const TrapezoidalGraph& graph, Level level) {
-  // The last triangle was no wider than the tolerance: its longest side stands for the loop.
+void HistoryRecorder::note_lost_loop(Level level) {
   const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
-  const auto [from, to] = stack_.last_side();
-  history_->grains.push_back({graph.point(from), graph.point(to),
-                              loop.is_hole ? -loop.area : loop.area, level, rows_.front(),
-                              Grain::kNobody});
+  history_->grains.push_back(
+      {loop.axis, loop.is_hole ? -loop.area : loop.area, level, rows_.front(), Grain::kNobody});
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
@@ -251,6 +267,7 @@ void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
   edge_version_[e] = static_cast<std::uint32_t>(history_->edges.size());
   history_->edges.push_back(
       {vertex_base_ + edge.end[kUp].value - 1, vertex_base_ + edge.end[kDown].value - 1});
+  history_->loop_sizes.push_back(loop_sizes_[e]);
   require_countable(history_->edges.size(), "versions of edges");
 }
 

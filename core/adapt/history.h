@@ -14,20 +14,21 @@
 #include <vector>
 
 #include "core/adapt/adaptable_graph.h"
+#include "core/adapt/milestones.h"
 #include "core/graph/trapezoidal_graph.h"
+#include "core/grid/area_moments.h"
 #include "core/grid/tolerance.h"
 #include "core/grid/work_share.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
 
-/// A loop that became too small to keep: its area stays on the map as dust, spread along the
-/// segment that was left of it.
+/// A loop that became too small to keep: its area stays on the map as dust where it was. A
+/// rectangle of that area stands for the place; one that winds leaves several.
 struct Grain {
   static constexpr std::uint32_t kNobody = 0xffffffff;
 
-  Point from;
-  Point to;
+  Axis axis;              // of the rectangle
   double area = 0;        // cells squared; negative if the loop was a hole
   Level born = 0;         // the first level without the loop
   std::uint32_t row = 0;  // of the feature
@@ -48,6 +49,8 @@ struct HorizontalEdge {
 struct History {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
+  std::vector<LoopSize> loop_sizes;  // by edge
+  std::vector<MilestoneNote> milestones;
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;  // by trapezoid
   std::vector<std::uint32_t> rows;  // by trapezoid: the feature that it is a part of
@@ -55,13 +58,13 @@ struct History {
   std::vector<Grain> grains;
 };
 
-/// Reusable memory for recording; one a thread.
+/// Reusable memory for recording; one call at a time.
 class HistoryRecorder {
  public:
   /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
   /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
   /// many of the vertices have gone. Throws std::length_error if there are more versions than 32
-  /// bits count.
+  /// bits count. On up to `threads` threads; the history does not depend on their number.
   ///
   /// The time of a removal grows with the trapezoids along the edges that are joined. Where that is
   /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end
@@ -69,7 +72,7 @@ class HistoryRecorder {
   /// tolerance at which that was (cells), and none as a rule.
   std::optional<double> record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
                                const GeneralizationOptions& options, History& history,
-                               WorkShare* share = nullptr);
+                               WorkShare* share = nullptr, unsigned threads = 1);
   /// The same of a single polygon, which is the feature of row 0.
   std::optional<double> record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
                                History& history);
@@ -87,7 +90,7 @@ class HistoryRecorder {
   void note_touched(const EditLog& log);
   void touch_along(const TrapezoidalGraph& graph, const EditLog& log);
   void note_lost_area(const TrapezoidalGraph& graph, Level level);
-  void note_lost_loop(const TrapezoidalGraph& graph, Level level);
+  void note_lost_loop(Level level);
   void note_taken(const Taken& taken, Level level);
   void end_level(const TrapezoidalGraph& graph, Level level);
   void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
@@ -107,6 +110,8 @@ class HistoryRecorder {
   // a node without height is a horizontal edge, flagged with kHorizontalBit, if it has one.
   Table<EdgeId, std::uint32_t> edge_version_;
   Table<NodeId, std::uint32_t> node_version_;
+  Table<EdgeId, LoopSize> loop_sizes_;  // as it was at first
+  Milestones milestones_;
   // Touched since the last level.
   std::vector<EdgeId> touched_edges_;
   std::vector<NodeId> touched_nodes_;
@@ -114,6 +119,7 @@ class HistoryRecorder {
   Table<NodeId, std::uint8_t> node_is_touched_;
   // Loops as they were at first.
   struct Loop {
+    Axis axis;
     double area = 0;  // cells squared
     bool is_hole = false;
   };

@@ -10,9 +10,11 @@
 #include "core/borders/border_lengths.h"
 #include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
-#include "core/sweep/owned_segments.h"
 
 namespace trapeze {
+
+using Sides = CoverageBuilder::Sides;
+
 namespace {
 
 /// The features that begin and end at an edge of a subdivision by sets, in ascending order.
@@ -47,6 +49,13 @@ class OverlapAreas {
   void add(const Crossing& crossing, Int128 doubled_strip) {
     add_side(crossing.left, crossing.staying, doubled_strip);
     add_side(crossing.right, crossing.staying, -doubled_strip);
+  }
+
+  /// Where at most one feature is on either side.
+  void add(const std::vector<std::uint32_t>& left, const std::vector<std::uint32_t>& right,
+           Int128 doubled_strip) {
+    if (!left.empty()) doubled_[left.front()] += doubled_strip;
+    if (!right.empty()) doubled_[right.front()] -= doubled_strip;
   }
 
   void store(CoverageOutcome& outcome) const {
@@ -91,7 +100,13 @@ bool note_areas(const TrapezoidalGraph& g, const FeatureSets& sets, CoverageOutc
   for (std::size_t i = 0; i < g.edges().size(); ++i) {
     if (g.is_frame(EdgeId(i))) continue;
     const Edge& edge = g.edge(EdgeId(i));
-    crossing.assign(sets[edge.face[kLeft]], sets[edge.face[kRight]]);
+    const std::vector<std::uint32_t>& left = sets[edge.face[kLeft]];
+    const std::vector<std::uint32_t>& right = sets[edge.face[kRight]];
+    if (left.size() <= 1 && right.size() <= 1) {
+      if (left != right) areas.add(left, right, doubled_strip(g, edge));
+      continue;
+    }
+    crossing.assign(left, right);
     pairs += crossing.pairs();
     if (pairs > kMostPairs) {
       outcome.failure = SetMap::kTooManyOverEachOther;
@@ -164,20 +179,38 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
   return apart;
 }
 
-/// The feature of a set that is drawn: the last one.
-FaceId face_of(const std::vector<std::uint32_t>& set) {
-  return set.empty() ? kOutside : set.back() + 1;
+/// Leaves features out of what was found of all; they are in ascending order.
+void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outcome) {
+  const auto is_out = [&features](std::uint32_t feature) {
+    return std::binary_search(features.begin(), features.end(), feature);
+  };
+  std::erase_if(outcome.overlaps, [&](const Overlap& overlap) {
+    return is_out(overlap.lower) || is_out(overlap.upper);
+  });
+  for (const std::uint32_t feature : features) outcome.areas[feature] = 0;
+  outcome.apart = features;
 }
 
-/// The faces beside each edge.
-using Sides = std::vector<std::pair<FaceId, FaceId>>;
+/// By number of a set: the feature that is drawn, the last one that is not left out.
+std::vector<FaceId> faces_of(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+  std::vector<FaceId> faces;
+  faces.reserve(sets.size());
+  for (std::uint32_t i = 0; i < sets.size(); ++i) {
+    const std::vector<std::uint32_t>& set = sets[i];
+    const auto last = std::find_if(set.rbegin(), set.rend(), [&left_out](std::uint32_t feature) {
+      return !std::binary_search(left_out.begin(), left_out.end(), feature);
+    });
+    faces.push_back(last == set.rend() ? kOutside : *last + 1);
+  }
+  return faces;
+}
 
-Sides sides_of(const TrapezoidalGraph& g, const FeatureSets& sets, std::size_t edges) {
+Sides sides_of(const TrapezoidalGraph& g, const std::vector<FaceId>& faces, std::size_t edges) {
   Sides sides;
   sides.reserve(edges);
   for (std::size_t e = 0; e < edges; ++e) {
     const Edge& edge = g.edge(EdgeId(e));
-    sides.emplace_back(face_of(sets[edge.face[kLeft]]), face_of(sets[edge.face[kRight]]));
+    sides.emplace_back(faces[edge.face[kLeft]], faces[edge.face[kRight]]);
   }
   return sides;
 }
@@ -227,18 +260,18 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
   return filled;
 }
 
-/// Drops the segments with one feature on both sides; returns whether there are any.
-bool keep_borders(std::vector<Segment>& segments, Sides& sides) {
-  const std::size_t count = segments.size();
+/// Drops the edges with one feature on both sides; returns whether there are any.
+bool keep_borders(Boundary& boundary, Sides& sides) {
+  std::vector<bool> is_kept(sides.size());
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (sides[i].first == sides[i].second) continue;
-    segments[kept] = segments[i];
-    sides[kept++] = sides[i];
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    is_kept[i] = sides[i].first != sides[i].second;
+    if (is_kept[i]) sides[kept++] = sides[i];
   }
-  segments.resize(kept);
+  if (kept == sides.size()) return false;
   sides.resize(kept);
-  return kept < count;
+  boundary.keep(is_kept);
+  return true;
 }
 
 void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOutcome& outcome) {
@@ -308,43 +341,44 @@ Overlay overlay(std::span<const Rings* const> features) {
   return {std::move(outcome.overlaps), std::move(outcome.areas), std::move(outcome.failure)};
 }
 
+/// Makes `graph` that of the edges with different faces on their sides. False if there are none.
+bool CoverageBuilder::keep_what_divides(Sides& sides, TrapezoidalGraph& graph, unsigned threads) {
+  if (!keep_borders(boundary_, sides)) {
+    BorderArcs::name_faces(sides, graph);
+    return true;
+  }
+  const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
+  return !sides.empty() && trapezoidation_.build(boundary_, given, graph, threads);
+}
+
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
                                        const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
-                                       WorkShare* share) {
+                                       WorkShare* share, unsigned threads) {
   const auto tell = [share](double part) {
     if (share != nullptr) share->tell(part);
   };
   CoverageOutcome outcome;
-  SetMap map(features);
-  for (;;) {
-    const bool is_swept = map.sweep(boundary_, trapezoidation_, graph);
-    outcome.noded = map.is_noded();
-    outcome.failure = map.failure();
-    if (!is_swept) return outcome;
-    tell(0.5);
-    outcome.areas.assign(features.size(), 0);
-    outcome.overlaps.clear();
-    if (!note_areas(graph, map.sets(), outcome)) return outcome;
-    const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
-    if (overlaps.empty()) break;
-    const std::vector<std::uint32_t> apart = features_to_leave_out(
-        overlaps, count_common_edges(graph, map.borders(), map.sets(), features.size()));
-    outcome.apart.insert(outcome.apart.end(), apart.begin(), apart.end());
-    std::sort(outcome.apart.begin(), outcome.apart.end());
+  SetMap map(features, threads);
+  const bool is_swept = map.sweep(boundary_, trapezoidation_, graph);
+  outcome.noded = map.is_noded();
+  outcome.failure = map.failure();
+  if (!is_swept) return outcome;
+  tell(0.5);
+  outcome.areas.assign(features.size(), 0);
+  if (!note_areas(graph, map.sets(), outcome)) return outcome;
+  const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
+  if (!overlaps.empty()) {
+    leave_out(features_to_leave_out(
+                  overlaps, count_common_edges(graph, map.borders(), map.sets(), features.size())),
+              outcome);
     if (features.size() - outcome.apart.size() < 2) return outcome;
-    map.leave_out(apart);
   }
   tell(0.6);
-  std::vector<Segment> borders = map.take_segments();
-  Sides sides = sides_of(graph, map.sets(), borders.size());
-  if (tolerance.widest_gap > 0) outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
-  if (keep_borders(borders, sides)) {
-    if (borders.empty()) return outcome;
-    boundary_.assign(borders);
-    const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
-    if (!trapezoidation_.build(boundary_, given, graph)) return outcome;
-  } else {
-    BorderArcs::name_faces(sides, graph);
+  Sides sides = sides_of(graph, faces_of(map.sets(), outcome.apart), boundary_.edges.size());
+  if (!keep_what_divides(sides, graph, threads)) return outcome;
+  if (tolerance.widest_gap > 0) {
+    outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
+    if (!keep_what_divides(sides, graph, threads)) return outcome;
   }
   tell(0.8);
   const Regions regions(graph);

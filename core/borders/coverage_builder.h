@@ -1,15 +1,15 @@
 // Builds one trapezoidal graph from the rings of several features that share borders.
 //
-// All rings are noded together, so that a border that two features share occurs once. The sweep
-// knows for each face which features cover it: crossing an edge toggles those that own it. A face
-// that several features cover belongs to the one drawn last; edges that then have the same feature
-// on both sides are removed.
+// All rings are noded together (see set_map.h), so that a border that two features share occurs
+// once. A face that several features cover belongs to the one drawn last; edges that then have the
+// same feature on both sides are removed.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/borders/border_arcs.h"
@@ -17,7 +17,6 @@
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"
 #include "core/sweep/boundary.h"
-#include "core/sweep/noding.h"
 #include "core/sweep/trapezoidation.h"
 
 namespace trapeze {
@@ -60,7 +59,7 @@ struct Overlay {
 /// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
 Overlay overlay(std::span<const Rings* const> features);
 
-/// Holds working memory for reuse; one thread at a time.
+/// Holds working memory for reuse; one call at a time.
 class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
@@ -70,11 +69,17 @@ class CoverageBuilder {
   /// that border times `widest_gap`. Of features that overlap by more than is tolerated, those that
   /// share the fewest edges with neighbours are left out. If fewer than two remain, nothing is
   /// built. Never throws for bad geometry: `graph` is meaningful only if the outcome says built.
-  /// Tells `share`, if there is one, how far it is.
+  /// Tells `share`, if there is one, how far it is. On up to `threads` threads; the graph does not
+  /// depend on their number.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
-                        TrapezoidalGraph& graph, WorkShare* share = nullptr);
+                        TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1);
+
+  /// The faces to the left and right of each edge.
+  using Sides = std::vector<std::pair<FaceId, FaceId>>;
 
  private:
+  bool keep_what_divides(Sides& sides, TrapezoidalGraph& graph, unsigned threads);
+
   Boundary boundary_;
   Trapezoidation trapezoidation_;
   BorderArcs arcs_;

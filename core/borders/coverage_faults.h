@@ -36,9 +36,8 @@ struct CoverageFaults {
   std::string failure;  // why they could not be found, empty otherwise
 };
 
-/// All of them. Each feature is by even-odd of its own
-/// rings, which are clean (see clean_rings.h). A hole of one feature that no other one touches is
-/// no gap.
+/// All of them. Each feature is by even-odd of its own rings, which are clean (see clean_rings.h).
+/// A hole of one feature that no other one touches is no gap.
 CoverageFaults find_faults(std::span<const Rings* const> features);
 
 }  // namespace trapeze

@@ -44,21 +44,14 @@ class Ties {
   std::vector<std::uint32_t> parent_;
 };
 
-void tie_by_edges(std::span<const Rings* const> features, Ties& ties) {
-  std::vector<OwnedSegment> segments = segments_of(features);
-  sort_by_place(segments);
-  for (std::size_t i = 1; i < segments.size(); ++i) {
-    if (segments[i - 1].segment == segments[i].segment) {
-      ties.tie(segments[i - 1].owner, segments[i].owner);
-    }
-  }
-}
+/// The box of a feature.
+struct Place {
+  Box box;
+  std::uint32_t feature;
+};
 
-void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
-  struct Place {
-    Box box;
-    std::uint32_t feature;
-  };
+/// From west to east.
+std::vector<Place> places_of(std::span<const Rings* const> features) {
   std::vector<Place> places;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     Place place{Box(), i};
@@ -68,15 +61,65 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     return std::tuple(a.box.min_x, a.feature) < std::tuple(b.box.min_x, b.feature);
   });
+  return places;
+}
+
+/// Calls visit(a, b) for every two places whose boxes meet, until it has been looking for as long
+/// as `most_steps`; returns whether all have been found.
+template <typename Visit>
+bool for_each_meeting(const std::vector<Place>& places, std::size_t most_steps,
+                      const Visit& visit) {
   // A sweep from west to east over the boxes; those not passed yet are kept.
   std::vector<Place> open;
+  std::size_t steps = 0;
   for (const Place& place : places) {
+    steps += open.size();
+    if (steps > most_steps) return false;
     std::erase_if(open, [&](const Place& other) { return other.box.max_x < place.box.min_x; });
     for (const Place& other : open) {
-      if (other.box.intersects(place.box)) ties.tie(other.feature, place.feature);
+      if (other.box.intersects(place.box)) visit(other, place);
     }
     open.push_back(place);
   }
+  return true;
+}
+
+/// By feature: the box around all it has in common with the boxes of others, so that no segment
+/// beyond can be an edge of two; empty if there is nothing.
+std::vector<Box> common_boxes(std::span<const Rings* const> features) {
+  constexpr std::size_t kMostStepsOfEach = 1024;  // less than sorting the segments takes
+  std::vector<Box> common(features.size());
+  const std::vector<Place> places = places_of(features);
+  const bool are_all_found = for_each_meeting(
+      places, kMostStepsOfEach * places.size(), [&common](const Place& a, const Place& b) {
+        const Box both{std::max(a.box.min_x, b.box.min_x), std::max(a.box.min_y, b.box.min_y),
+                       std::min(a.box.max_x, b.box.max_x), std::min(a.box.max_y, b.box.max_y)};
+        common[a.feature].include(both);
+        common[b.feature].include(both);
+      });
+  if (!are_all_found) {
+    for (const Place& place : places) common[place.feature] = place.box;
+  }
+  return common;
+}
+
+void tie_by_edges(std::span<const Rings* const> features, unsigned threads, Ties& ties) {
+  const std::vector<Box> common = common_boxes(features);
+  LargeArray<OwnedSegment> segments;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    if (!common[i].is_empty()) append_segments(*features[i], i, common[i], segments);
+  }
+  sort_by_place(segments, threads);
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    if (segments[i - 1].segment == segments[i].segment) {
+      ties.tie(segments[i - 1].owner, segments[i].owner);
+    }
+  }
+}
+
+void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
+  for_each_meeting(places_of(features), std::numeric_limits<std::size_t>::max(),
+                   [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
 }
 
 /// The greatest overlap of two neighbours, as a share of the area of the smaller one.
@@ -87,20 +130,22 @@ double most_overlap(CoverageMode coverage) {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       CoverageMode coverage) {
+                                                       CoverageMode coverage, unsigned threads) {
   Ties ties(features.size());
   if (coverage == CoverageMode::on) {
     tie_by_boxes(features, ties);
   } else {
-    tie_by_edges(features, ties);
+    tie_by_edges(features, threads, ties);
   }
   return ties.groups();
 }
 
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
-                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share) {
+                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share,
+                  unsigned threads) {
   Assembly assembly;
-  assembly.outcome = builder.build(features, {most_overlap(coverage), widest_gap}, graph, share);
+  assembly.outcome =
+      builder.build(features, {most_overlap(coverage), widest_gap}, graph, share, threads);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

@@ -21,7 +21,7 @@ enum class CoverageMode : std::uint8_t {
 };
 
 /// The default.
-constexpr CoverageMode kUsualCoverage = CoverageMode::off;
+constexpr CoverageMode kUsualCoverage = CoverageMode::automatic;
 
 inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
     {"auto", CoverageMode::automatic},
@@ -32,9 +32,9 @@ inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
 /// Groups of two or more features, each feature by its position in `features`, in ascending order;
 /// the groups are in order of their first features. With `automatic`, two features are in the same
 /// group if they have an edge in common; with `on`, if their boxes meet. `coverage` is not `off`.
-/// Rings are clean (see clean_rings.h).
+/// Rings are clean (see clean_rings.h). On up to `threads` threads.
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       CoverageMode coverage);
+                                                       CoverageMode coverage, unsigned threads = 1);
 
 /// A group, split into the features that share a graph and those that do not; by their positions,
 /// in ascending order.
@@ -47,8 +47,9 @@ struct Assembly {
 /// Makes `graph` the graph of those features of a group that can share one, see CoverageBuilder:
 /// features that overlap by too much stay apart, and so do all if fewer than two remain or if they
 /// cannot be noded. Gaps of up to `widest_gap` metres are filled. Tells `share`, if there is one,
-/// how far it is.
+/// how far it is. On up to `threads` threads; the result does not depend on their number.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
-                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share = nullptr);
+                  CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share = nullptr,
+                  unsigned threads = 1);
 
 }  // namespace trapeze

@@ -4,10 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/borders/border_lengths.h"
 #include "core/graph/generalization.h"
+#include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
 namespace {
@@ -15,23 +17,56 @@ namespace {
 // Of a square, area over diagonal is its width over the square root of two.
 constexpr double kWeightOfMeanWidth = 0.70710678118654752;
 
+struct Piece {
+  Axis axis;
+  double area = 0;
+};
+
+/// The trapezoid of a node, as the longer of the lines between the middles of opposite sides; none
+/// if it has no height.
+std::optional<Piece> piece_of(const TrapezoidalGraph& graph, const Node& node) {
+  const Point top = graph.point(node.end[kUp]);
+  const Point bottom = graph.point(node.end[kDown]);
+  if (top.y == bottom.y) return std::nullopt;
+  const auto line_of = [&graph](EdgeId e) {
+    const Edge& edge = graph.edge(e);
+    return EdgeLine(graph.point(edge.end[kUp]), graph.point(edge.end[kDown]));
+  };
+  const EdgeLine left = line_of(node.edge[kLeft]);
+  const EdgeLine right = line_of(node.edge[kRight]);
+  const auto middle_at = [&](double y) { return (left.x_at(y) + right.x_at(y)) / 2; };
+  const double height = static_cast<double>(bottom.y) - top.y;
+  const double y = top.y + height / 2;
+  const double width = right.x_at(y) - left.x_at(y);
+  const double lean = middle_at(bottom.y) - middle_at(top.y);
+  const auto at = [](double px, double py) {
+    return Point{static_cast<std::int32_t>(std::lround(px)),
+                 static_cast<std::int32_t>(std::lround(py))};
+  };
+  const bool is_wide = width > std::hypot(lean, height);
+  const Axis axis = is_wide ? Axis{at(left.x_at(y), y), at(right.x_at(y), y)}
+                            : Axis{at(middle_at(top.y), top.y), at(middle_at(bottom.y), bottom.y)};
+  return Piece{axis, width * height};
+}
+
 }  // namespace
 
 void RegionBorders::assign(const TrapezoidalGraph& graph) {
   graph_ = &graph;
   Regions regions(graph);
+  measure_regions(regions);
   beside_ = std::move(regions.beside);
-  area_ = std::move(regions.area);
   unbounded_ = regions.unbounded;
   const std::size_t edges = graph.edges().size();
   parent_.clear();
-  for (std::size_t r = 0; r < area_.size(); ++r) parent_.push_back(RegionId(r));
+  for (std::size_t r = 0; r < moments_.size(); ++r) parent_.push_back(RegionId(r));
   replaced_by_.clear();
   for (std::size_t e = 0; e < edges; ++e) replaced_by_.push_back(EdgeId(e));
   corner_of_.assign(edges, CornerId());
   seen_.assign(edges, 0);
   stamp_ = 0;
-  lists_.assign(area_.size(), List());
+  lists_.assign(moments_.size(), List());
+  may_have_junction_.assign(moments_.size(), 0);
   seeds_.clear();
   ends_.clear();
   for (std::size_t i = 0; i < graph.corners().size(); ++i) {
@@ -47,8 +82,35 @@ void RegionBorders::assign(const TrapezoidalGraph& graph) {
     const EdgeId e(i);
     if (corner_of_[e].is_none() || seen_[e] == stamp_) continue;
     edges_.clear();
-    walk_arc(e);
-    for (const RegionId region : beside_[e]) add_seed(region, e);
+    const bool has_ends = !walk_arc(e).is_closed;
+    for (const RegionId region : beside_[e]) {
+      add_seed(region, e);
+      if (has_ends) may_have_junction_[region] = 1;
+    }
+  }
+}
+
+void RegionBorders::measure_regions(const Regions& regions) {
+  Table<RegionId, BoundaryMoments> sums;
+  sums.assign(regions.area.size(), BoundaryMoments());
+  std::vector<bool> has_begun(regions.area.size(), false);
+  for (std::size_t i = 0; i < graph_->edges().size(); ++i) {
+    const EdgeId e(i);
+    const Edge& edge = graph_->edge(e);
+    if (!edge.is_alive() || graph_->is_frame(e)) continue;
+    const Point upper = graph_->point(edge.end[kUp]);
+    const Point lower = graph_->point(edge.end[kDown]);
+    for (const Side s : {kLeft, kRight}) {
+      const RegionId region = regions.beside[e][s];
+      if (!has_begun[region.value]) sums[region] = BoundaryMoments(upper);
+      has_begun[region.value] = true;
+      sums[region].add(s == kLeft ? upper : lower, s == kLeft ? lower : upper);
+    }
+  }
+  moments_.clear();
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    moments_.push_back(sums[RegionId(r)].sum());
+    moments_[RegionId(r)].area = regions.area[RegionId(r)];
   }
 }
 
@@ -81,7 +143,8 @@ void RegionBorders::unite(RegionId a, RegionId b) {
   b = find(b);
   if (a == b) return;
   parent_[b] = a;
-  area_[a] += area_[b];
+  moments_[a].unite(moments_[b]);
+  may_have_junction_[a] |= may_have_junction_[b];
   if (b == unbounded_) unbounded_ = a;
   List& list = lists_[a];
   const List more = lists_[b];
@@ -95,21 +158,24 @@ void RegionBorders::note_joined(EdgeId gone, EdgeId kept, CornerId corner) {
   corner_of_[kept] = corner;
 }
 
-void RegionBorders::note_lost_loop(EdgeId edge, Side side, Point from, Point to) {
+void RegionBorders::note_lost_loop(EdgeId edge, Side side) {
   const Edge& border = graph_->edge(edge);
   const RegionId inside = find(beside_[edge][side]);
-  taken_.assign(1, {from, to, area_[inside], border.face[side], border.face[opposite(side)]});
+  const AreaMoments& lost = moments_[inside];
+  taken_.assign(1, {lost.axis(), lost.area, border.face[side], border.face[opposite(side)]});
   unite(beside_[edge][opposite(side)], inside);
 }
 
 double RegionBorders::weight(RegionId region) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  if (find(region) != region || region == unbounded_) return kNever;
+  if (find(region) != region || region == unbounded_ || may_have_junction_[region] == 0) {
+    return kNever;
+  }
   collect_arcs(region);
   if (!has_junction_) return kNever;
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
                                      static_cast<double>(box_.max_y) - box_.min_y);
-  return kWeightOfMeanWidth * area_[region] / diagonal;
+  return kWeightOfMeanWidth * moments_[region].area / diagonal;
 }
 
 void RegionBorders::collect_arcs(RegionId region) {
@@ -156,7 +222,6 @@ RegionBorders::Arc RegionBorders::walk_arc(EdgeId edge) {
     if (corner.edge.is_none()) break;
     edges_.push_back(corner.edge);
     seen_[corner.edge] = stamp_;
-    arc.length += length_of(*graph_, graph_->edge(corner.edge));
     c = corner.next;
   } while (c != arc.first);
   arc.end = edges_.size();
@@ -172,7 +237,12 @@ Side RegionBorders::side_of(EdgeId edge, RegionId region) {
 FaceId RegionBorders::choose_taker() const {
   BorderLengths lengths;
   for (const Arc& arc : arcs_) {
-    if (arc.beyond != kOutside) lengths.add(arc.beyond, arc.length);
+    if (arc.beyond == kOutside) continue;
+    double length = 0;
+    for (std::size_t i = arc.begin; i < arc.end; ++i) {
+      length += length_of(*graph_, graph_->edge(edges_[i]));
+    }
+    lengths.add(arc.beyond, length);
   }
   return lengths.longest();
 }
@@ -182,7 +252,7 @@ std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
   const FaceId taker = choose_taker();
   const EdgeId any = edges_.front();
   const FaceId face = graph_->edge(any).face[side_of(any, region)];
-  note_taken(face, taker, area_[region]);
+  note_taken(region, face, taker);
   changed_.clear();
   dissolved_.clear();
   std::vector<VertexId> junctions;
@@ -219,17 +289,31 @@ std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
   return takers;
 }
 
-// The area is spread along the whole border, from which the region is nowhere farther away than a
-// fraction of a pixel; the border that disappears may be short.
-void RegionBorders::note_taken(FaceId face, FaceId taker, double area) {
+void RegionBorders::note_taken(RegionId region, FaceId face, FaceId taker) {
   taken_.clear();
-  double length = 0;
-  for (const Arc& arc : arcs_) length += arc.length;
-  for (const EdgeId e : edges_) {
-    const Edge& edge = graph_->edge(e);
-    taken_.push_back({graph_->point(edge.end[kUp]), graph_->point(edge.end[kDown]),
-                      area * length_of(*graph_, edge) / length, face, taker});
+  const AreaMoments& lost = moments_[region];
+  if (lost.is_compact()) {
+    taken_.push_back({lost.axis(), lost.area, face, taker});
+  } else {
+    note_pieces(region, face, taker);
   }
+}
+
+/// Of a region that winds, each trapezoid has its share.
+void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
+  double sum = 0;
+  for (const EdgeId e : edges_) {
+    // The edges that are left sides of its trapezoids.
+    if (side_of(e, region) != kRight) continue;
+    for (NodeId n = graph_->edge(e).extreme[kRight][kUp]; !n.is_none();
+         n = graph_->node(n).link[kLeft][kDown]) {
+      const std::optional<Piece> piece = piece_of(*graph_, graph_->node(n));
+      if (!piece) continue;
+      sum += piece->area;
+      taken_.push_back({piece->axis, piece->area, face, taker});
+    }
+  }
+  for (Taken& taken : taken_) taken.area *= moments_[region].area / sum;
 }
 
 void RegionBorders::repair_junction(VertexId v, EditLog& log) {

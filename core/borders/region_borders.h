@@ -18,15 +18,15 @@
 #include "core/borders/regions.h"
 #include "core/graph/edit_log.h"
 #include "core/graph/trapezoidal_graph.h"
+#include "core/grid/area_moments.h"
 #include "core/grid/grid.h"
 
 namespace trapeze {
 
-/// A part of an area that went from one face to another, along a segment of the border of the
-/// region that was removed.
+/// An area that went from one face to another, or a part of it: a rectangle of that area, with this
+/// axis, stands for the place where it was.
 struct Taken {
-  Point from;
-  Point to;
+  Axis axis;
   double area = 0;          // cells squared, of the region as it was at first
   FaceId face = kOutside;   // what it was
   FaceId taker = kOutside;  // what covers it now
@@ -55,7 +55,7 @@ class RegionBorders {
   void note_joined(EdgeId gone, EdgeId kept, CornerId corner);
   /// To be called before a triangular loop is removed. `edge` is one of its edges, and its inside
   /// lies on `side` of that edge: the region inside becomes a part of the one outside.
-  void note_lost_loop(EdgeId edge, Side side, Point from, Point to);
+  void note_lost_loop(EdgeId edge, Side side);
 
   // What the last removal did.
   /// Areas that went from one face to another.
@@ -85,7 +85,6 @@ class RegionBorders {
     CornerId first;
     bool is_closed = false;
     FaceId beyond = kOutside;  // the face on its other side
-    double length = 0;
   };
 
   RegionId find(RegionId region);
@@ -97,7 +96,9 @@ class RegionBorders {
   Arc walk_arc(EdgeId edge);
   FaceId choose_taker() const;
   Side side_of(EdgeId edge, RegionId region);
-  void note_taken(FaceId face, FaceId taker, double area);
+  void measure_regions(const Regions& regions);
+  void note_taken(RegionId region, FaceId face, FaceId taker);
+  void note_pieces(RegionId region, FaceId face, FaceId taker);
   void repair_junction(VertexId v, EditLog& log);
   void join_ends(CornerId a, CornerId b, EditLog& log);
   void reverse(CornerId end, EditLog& log);
@@ -108,8 +109,9 @@ class RegionBorders {
   Table<EdgeId, EdgeId> replaced_by_;
   Table<EdgeId, CornerId> corner_of_;  // that the edge leaves
   Table<RegionId, RegionId> parent_;
-  Table<RegionId, double> area_;
+  Table<RegionId, AreaMoments> moments_;  // as they were at first
   Table<RegionId, List> lists_;
+  Table<RegionId, std::uint8_t> may_have_junction_;
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order

@@ -1,57 +1,65 @@
 #include "core/borders/regions.h"
 
+#include <algorithm>
+
 namespace trapeze {
 namespace {
 
-/// Links lead to every node that can be reached without crossing an edge.
-class Flood {
+/// The region of every node: links lead to all that can be reached without crossing an edge.
+class NodeRegions {
  public:
-  Flood(const TrapezoidalGraph& graph, Regions& regions) : g_(graph), regions_(regions) {
-    region_of_.resize(graph.nodes().size());
-    for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
+  NodeRegions(const TrapezoidalGraph& graph, Regions& regions) {
+    const std::size_t count = graph.nodes().size();
+    first_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) first_.push_back(NodeId(i));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Node& node = graph.node(NodeId(i));
+      if (!node.is_alive()) continue;
+      for (const Side s : {kLeft, kRight}) {
+        const NodeId above = node.link[s][kUp];
+        if (!above.is_none()) unite(NodeId(i), above);
+      }
+    }
+    region_of_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
       const NodeId n(i);
-      if (!graph.node(n).is_alive() || !region_of_[n].is_none()) continue;
-      fill(n, regions.face.push_back(graph.face(graph.node(n))));
+      const Node& node = graph.node(n);
+      if (!node.is_alive()) continue;
+      // The first node of a region comes before all others of it.
+      const NodeId first = find(n);
+      region_of_[n] = first == n ? regions.face.push_back(graph.face(node)) : region_of_[first];
+      if (graph.is_frame(node.edge[kLeft])) regions.unbounded = region_of_[n];
     }
   }
 
   RegionId operator[](NodeId n) const { return region_of_[n]; }
 
  private:
-  void fill(NodeId start, RegionId region) {
-    region_of_[start] = region;
-    waiting_.assign(1, start);
-    while (!waiting_.empty()) {
-      const Node& node = g_.node(waiting_.back());
-      waiting_.pop_back();
-      if (g_.is_frame(node.edge[kLeft])) regions_.unbounded = region;
-      for (const auto& links : node.link) {
-        for (const NodeId next : links) {
-          if (next.is_none() || !region_of_[next].is_none()) continue;
-          region_of_[next] = region;
-          waiting_.push_back(next);
-        }
-      }
-    }
+  NodeId find(NodeId n) {
+    while (first_[n] != n) n = first_[n] = first_[first_[n]];
+    return n;
+  }
+  void unite(NodeId a, NodeId b) {
+    a = find(a);
+    b = find(b);
+    first_[std::max(a, b)] = std::min(a, b);
   }
 
-  const TrapezoidalGraph& g_;
-  Regions& regions_;
+  Table<NodeId, NodeId> first_;  // leads to the first node of the region
   Table<NodeId, RegionId> region_of_;
-  std::vector<NodeId> waiting_;
 };
 
 }  // namespace
 
 Regions::Regions(const TrapezoidalGraph& graph) {
-  const Flood flood(graph, *this);
+  const NodeRegions region_of(graph, *this);
   beside.resize(graph.edges().size());
   std::vector<Int128> doubled(face.size(), 0);
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const EdgeId e(i);
     const Edge& edge = graph.edge(e);
     if (!edge.is_alive() || graph.is_frame(e)) continue;
-    for (const Side s : {kLeft, kRight}) beside[e][s] = flood[edge.extreme[s][kUp]];
+    for (const Side s : {kLeft, kRight}) beside[e][s] = region_of[edge.extreme[s][kUp]];
     const Int128 strip = doubled_strip(graph, edge);
     doubled[beside[e][kLeft].value] += strip;
     doubled[beside[e][kRight].value] -= strip;

@@ -6,46 +6,50 @@
 
 #include "core/grid/item_count.h"
 #include "core/sweep/noding.h"
+#include "core/sweep/owned_segments.h"
 
 namespace trapeze {
 namespace {
 
-/// None if they meet too often.
-std::optional<std::vector<OwnedSegment>> node(const std::vector<OwnedSegment>& segments,
-                                              HotCells cells) {
-  std::vector<Segment> alone;
-  alone.reserve(segments.size());
-  for (const OwnedSegment& s : segments) alone.push_back(s.segment);
-  const std::optional<std::vector<Piece>> noded = node_pieces(alone, cells);
-  if (!noded) return std::nullopt;
-  std::vector<OwnedSegment> pieces;
-  pieces.reserve(noded->size());
-  for (const Piece& piece : *noded) {
-    pieces.push_back({piece.segment, segments[piece.source].owner});
-  }
-  return pieces;
-}
-
 /// A segment that a feature has twice is inside it on both sides, or outside on both.
-Borders unite(std::vector<OwnedSegment>& pieces, FeatureSets& sets) {
-  sort_by_place(pieces);
+Borders unite(const LargeArray<OwnedSegment>& pieces, FeatureSets& sets) {
   Borders borders;
+  borders.segments.reserve(pieces.size());
+  borders.owners.reserve(pieces.size());
   std::vector<std::uint32_t> owners;
   for (std::size_t i = 0; i < pieces.size();) {
     const Segment& segment = pieces[i].segment;
-    owners.clear();
-    for (; i < pieces.size() && pieces[i].segment == segment; ++i) {
-      if (!owners.empty() && owners.back() == pieces[i].owner) {
-        owners.pop_back();
-      } else {
-        owners.push_back(pieces[i].owner);
+    const std::size_t begin = i;
+    while (i < pieces.size() && pieces[i].segment == segment) ++i;
+    std::uint32_t set = 0;
+    if (i == begin + 1) {
+      set = sets.number_of_one(pieces[begin].owner);
+    } else {
+      owners.clear();
+      for (std::size_t k = begin; k < i; ++k) {
+        if (!owners.empty() && owners.back() == pieces[k].owner) {
+          owners.pop_back();
+        } else {
+          owners.push_back(pieces[k].owner);
+        }
       }
+      if (owners.empty()) continue;
+      set = sets.number(owners);
     }
-    if (owners.empty()) continue;
     borders.segments.push_back(segment);
-    borders.owners.push_back(sets.number(owners));
+    borders.owners.push_back(set);
   }
   return borders;
+}
+
+/// Pieces of borders in order of place, each with the set of its features as its owner.
+LargeArray<OwnedSegment> in_order(const std::vector<Piece>& pieces, const Borders& borders) {
+  LargeArray<OwnedSegment> ordered;
+  ordered.reserve(pieces.size());
+  for (const Piece& piece : pieces)
+    ordered.push_back({piece.segment, borders.owners[piece.source]});
+  sort_by_place(ordered);
+  return ordered;
 }
 
 }  // namespace
@@ -61,6 +65,12 @@ std::uint32_t FeatureSets::number(const std::vector<std::uint32_t>& features) {
   return found->second;
 }
 
+std::uint32_t FeatureSets::number_of_one(std::uint32_t feature) {
+  std::uint32_t& known = of_one_[feature];
+  if (known == kUnknown) known = number({feature});
+  return known;
+}
+
 std::uint32_t FeatureSets::toggled(std::uint32_t a, std::uint32_t b) {
   if (is_full()) return 0;
   const std::uint64_t key = std::uint64_t{a} << 32 | b;
@@ -73,6 +83,13 @@ std::uint32_t FeatureSets::toggled(std::uint32_t a, std::uint32_t b) {
   return found->second;
 }
 
+SetMap::SetMap(std::span<const Rings* const> features, unsigned threads)
+    : threads_(threads), sets_(features.size()) {
+  LargeArray<OwnedSegment> pieces = segments_of(features);
+  sort_by_place(pieces, threads);
+  borders_ = unite(pieces, sets_);
+}
+
 bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph) {
   // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
   constexpr int kQuickPasses = 3;
@@ -83,23 +100,21 @@ bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, Trapezoid
   for (int pass = 0; pass <= kMaxPasses; ++pass) {
     if (pass > 0) {
       is_noded_ = true;
-      std::optional<std::vector<OwnedSegment>> noded = node(
-          pieces_, pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
-      if (!noded) {
+      const HotCells cells =
+          pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices;
+      if (!node_borders(boundary, cells)) {
         failure_ = "their borders cross more than " +
-                   std::to_string(most_meetings(pieces_.size())) + " times";
+                   std::to_string(most_meetings(borders_.segments.size())) + " times";
         return false;
       }
-      pieces_ = std::move(*noded);
     }
-    if (pieces_.size() > kMostSegments) {
-      failure_ = too_many_words(pieces_.size(), "pieces of borders", kMostSegments);
+    if (borders_.segments.size() > kMostSegments) {
+      failure_ = too_many_words(borders_.segments.size(), "pieces of borders", kMostSegments);
       return false;
     }
-    borders_ = unite(pieces_, sets_);
     if (borders_.segments.empty()) return false;
-    boundary.assign(borders_.segments);
-    const bool is_noded = trapezoidation.build(boundary, toggle, graph);
+    boundary.assign_sorted(borders_.segments, threads_);
+    const bool is_noded = trapezoidation.build(boundary, toggle, graph, threads_);
     if (sets_.is_full()) {
       failure_ = kTooManyOverEachOther;
       return false;
@@ -110,10 +125,47 @@ bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, Trapezoid
   return false;
 }
 
-void SetMap::leave_out(const std::vector<std::uint32_t>& features) {
-  std::erase_if(pieces_, [&features](const OwnedSegment& piece) {
-    return std::binary_search(features.begin(), features.end(), piece.owner);
-  });
+/// `boundary` has the borders as its edges. False if they meet too often.
+bool SetMap::node_borders(const Boundary& boundary, HotCells cells) {
+  const std::optional<Noding> noding = node(borders_.segments, boundary, cells, threads_);
+  if (!noding) return false;
+  const LargeArray<OwnedSegment> pieces = in_order(noding->pieces, borders_);
+  // Those that stay and the pieces of others, in order of place; what coincides is toggled.
+  Borders noded;
+  noded.segments.reserve(borders_.segments.size() + pieces.size());
+  noded.owners.reserve(borders_.segments.size() + pieces.size());
+  const auto append = [&](const Segment& segment, std::uint32_t owners) {
+    if (!noded.segments.empty() && noded.segments.back() == segment) {
+      noded.owners.back() = sets_.toggled(noded.owners.back(), owners);
+    } else {
+      if (!noded.owners.empty() && noded.owners.back() == 0) {
+        noded.owners.pop_back();
+        noded.segments.pop_back();
+      }
+      noded.segments.push_back(segment);
+      noded.owners.push_back(owners);
+    }
+  };
+  auto piece = pieces.begin();
+  auto cut = noding->cut.begin();
+  for (std::uint32_t i = 0; i < borders_.segments.size(); ++i) {
+    if (cut != noding->cut.end() && *cut == i) {
+      ++cut;
+      continue;
+    }
+    const Segment& segment = borders_.segments[i];
+    for (; piece != pieces.end() && !precedes(segment, piece->segment); ++piece) {
+      append(piece->segment, piece->owner);
+    }
+    append(segment, borders_.owners[i]);
+  }
+  for (; piece != pieces.end(); ++piece) append(piece->segment, piece->owner);
+  if (!noded.owners.empty() && noded.owners.back() == 0) {
+    noded.owners.pop_back();
+    noded.segments.pop_back();
+  }
+  borders_ = std::move(noded);
+  return true;
 }
 
 }  // namespace trapeze

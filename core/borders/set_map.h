@@ -16,7 +16,7 @@
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
 #include "core/sweep/boundary.h"
-#include "core/sweep/owned_segments.h"
+#include "core/sweep/noding.h"
 #include "core/sweep/trapezoidation.h"
 
 namespace trapeze {
@@ -25,10 +25,13 @@ namespace trapeze {
 /// more than kMostMembers in all, every new set is the empty one.
 class FeatureSets {
  public:
-  FeatureSets() { number({}); }
+  explicit FeatureSets(std::size_t features) : of_one_(features, kUnknown) { number({}); }
 
   std::uint32_t number(const std::vector<std::uint32_t>& features);
+  std::uint32_t number_of_one(std::uint32_t feature);
+  /// Whether there are more than that: what was numbered since means nothing.
   bool is_full() const { return members_ > kMostMembers; }
+  std::size_t size() const { return sets_.size(); }
   const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
 
   /// The features that are in one of two sets and not in the other.
@@ -36,42 +39,46 @@ class FeatureSets {
 
  private:
   static constexpr std::size_t kMostMembers = std::size_t{1} << 23;  // kept twice: 64 MiB
+  static constexpr std::uint32_t kUnknown = 0xffffffff;
 
   std::map<std::vector<std::uint32_t>, std::uint32_t> numbers_;
   std::vector<std::vector<std::uint32_t>> sets_;
+  std::vector<std::uint32_t> of_one_;  // the number of the set of a feature alone
   std::size_t members_ = 0;
   std::unordered_map<std::uint64_t, std::uint32_t> toggled_;
 };
 
-/// Distinct segments, and for each the set of features whose boundary it belongs to.
+/// Distinct segments in order of place (see owned_segments.h), and for each the set of features
+/// whose boundary it belongs to.
 struct Borders {
   std::vector<Segment> segments;
   std::vector<std::uint32_t> owners;
 };
 
+/// The features are by their positions. One thread at a time.
 class SetMap {
  public:
   static constexpr const char* kTooManyOverEachOther = "too many of them lie over each other";
 
   /// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
-  explicit SetMap(std::span<const Rings* const> features) : pieces_(segments_of(features)) {}
+  /// Works on up to `threads` threads; the subdivision does not depend on their number.
+  explicit SetMap(std::span<const Rings* const> features, unsigned threads = 1);
 
   /// Makes `graph` the subdivision: its edges are those of borders(), and a face is the number of a
   /// set. False if nothing is left, or if it failed.
   bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph);
-  /// To be followed by another sweep; what has been noded remains so. In ascending order.
-  void leave_out(const std::vector<std::uint32_t>& features);
 
   const FeatureSets& sets() const { return sets_; }
   const Borders& borders() const { return borders_; }
-  std::vector<Segment> take_segments() { return std::move(borders_.segments); }
   /// Whether vertices were missing on one side of a border, or borders crossed.
   bool is_noded() const { return is_noded_; }
   /// Why the last sweep failed; empty if it did not.
   const std::string& failure() const { return failure_; }
 
  private:
-  std::vector<OwnedSegment> pieces_;
+  bool node_borders(const Boundary& boundary, HotCells cells);
+
+  unsigned threads_;
   FeatureSets sets_;
   Borders borders_;
   bool is_noded_ = false;

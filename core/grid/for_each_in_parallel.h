@@ -15,6 +15,10 @@ namespace trapeze {
 /// the exceptions.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, std::size_t max_threads, const Work& work) {
+  if (std::min(count, max_threads) <= 1) {  // asking for the cores takes a system call
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
   std::atomic<std::size_t> next = 0;
   const auto run = [&] {
     for (std::size_t i = next++; i < count; i = next++) work(i);

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "core/grid/large_array.h"
 
 namespace trapeze {
 
@@ -43,7 +44,7 @@ class Table {
   friend bool operator==(const Table&, const Table&) = default;
 
  private:
-  std::vector<T> items_;
+  LargeArray<T> items_;
 };
 
 using VertexId = Id<struct VertexTag>;

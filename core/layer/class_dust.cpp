@@ -8,6 +8,9 @@
 namespace trapeze {
 namespace {
 
+// In cells: corners are rounded to cells, which changes the area of a narrow one.
+constexpr double kNarrowestPatch = 16;
+
 std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixel) {
   const auto number = [pixel](double v) {
     return static_cast<std::uint64_t>(std::max(0.0, (v - kGridMin) / pixel)) & 0xfffffff;
@@ -32,26 +35,23 @@ Box within_pixel(const Box& box, double x, double y, double pixel) {
 
 }  // namespace
 
-void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, double pixel,
-                       std::span<const std::uint8_t> classes, std::vector<ClassMote>& motes) {
+void ClassDust::gather(const GrainIndex& grains, const DustSelection& selection,
+                       std::span<const std::uint8_t> classes, ClassShapes& shapes) {
   sums_.clear();
   keys_.clear();
-  motes.clear();
+  shapes.motes.clear();
+  shapes.patches.clear();
   // The key distinguishes pixels of more cells than the side of the grid over 2^28.
-  pixel = std::max(pixel, static_cast<double>(kGridSize) / (1 << 28));
-  grains.visit(box, level, [&](const FeatureGrain& grain) {
-    const std::uint8_t feature_class = classes[grain.row];
+  const double pixel = std::max(selection.pixel, static_cast<double>(kGridSize) / (1 << 28));
+  grains.visit(selection.box, selection.births, [&](const FeatureGrain& grain) {
+    const std::uint8_t feature_class = classes.empty() ? std::uint8_t{0} : classes[grain.row];
     if (feature_class == kNotDrawn) return;
-    const double grain_area = static_cast<double>(grain.doubled_area) / 2;
-    const int count = count_of_motes(grain.from, grain.to, pixel, kMostMotes);
-    lay_out(grain.from, grain.to, grain_area, count, [&](double x, double y, double area) {
-      Sum& sum = sums_[key_of(feature_class, x, y, pixel)];
-      const double weight = std::abs(area);
-      sum.x += weight * x;
-      sum.y += weight * y;
-      sum.area += area;
-      sum.weight += weight;
-    });
+    const Strip strip = grain.strip();
+    if (strip.width >= std::max(pixel, kNarrowestPatch)) {
+      shapes.patches.push_back({strip.corners(), feature_class, grain.doubled_area < 0});
+    } else {
+      add_motes(grain, feature_class, pixel);
+    }
   });
   for (const auto& [key, sum] : sums_) keys_.push_back(key);
   std::sort(keys_.begin(), keys_.end());
@@ -60,9 +60,22 @@ void ClassDust::gather(const GrainIndex& grains, const Box& box, Level level, do
     if (std::abs(sum.area) < kSmallestMote) continue;
     const double x = sum.x / sum.weight;
     const double y = sum.y / sum.weight;
-    motes.push_back({within_pixel(box_of_mote(x, y, std::abs(sum.area)), x, y, pixel),
-                     static_cast<std::uint8_t>(key >> 56), sum.area < 0});
+    shapes.motes.push_back({within_pixel(box_of_mote(x, y, std::abs(sum.area)), x, y, pixel),
+                            static_cast<std::uint8_t>(key >> 56), sum.area < 0});
   }
+}
+
+void ClassDust::add_motes(const FeatureGrain& grain, std::uint8_t feature_class, double pixel) {
+  const Axis axis{grain.from, grain.to};
+  const int count = count_of_motes(axis, pixel, kMostMotes);
+  lay_out(axis, grain.area(), count, [&](double x, double y, double area) {
+    Sum& sum = sums_[key_of(feature_class, x, y, pixel)];
+    const double weight = std::abs(area);
+    sum.x += weight * x;
+    sum.y += weight * y;
+    sum.area += area;
+    sum.weight += weight;
+  });
 }
 
 }  // namespace trapeze

@@ -26,6 +26,10 @@ std::uint64_t morton(double x, double y) {
   return spread_bits(biased(x)) | spread_bits(biased(y)) << 1;
 }
 
+std::int32_t cell(double v) {
+  return static_cast<std::int32_t>(std::clamp(std::round(v), double{kGridMin}, double{kGridMax}));
+}
+
 Mote merged(const std::vector<Mote>& motes, Level level) {
   Mote sum{0, 0, 0, {level, kNeverDies}, true};
   double weight = 0;
@@ -42,7 +46,7 @@ Mote merged(const std::vector<Mote>& motes, Level level) {
 }
 
 int count_of_motes(const Grain& grain, int most) {
-  return count_of_motes(grain.from, grain.to, pixel_of_level(grain.born), most);
+  return count_of_motes(grain.axis, pixel_of_level(grain.born), most);
 }
 
 /// The motes that are alive or yet to be born, in order of place, through the octaves.
@@ -51,7 +55,7 @@ class Settling {
   Settling(const std::vector<Grain>& grains, int most) {
     std::vector<Mote> motes;
     for (const Grain& grain : grains) {
-      lay_out(grain.from, grain.to, grain.area, count_of_motes(grain, most),
+      lay_out(grain.axis, grain.area, count_of_motes(grain, most),
               [&](double x, double y, double area) {
                 motes.push_back({x, y, area, {grain.born, kNeverDies}, false});
               });
@@ -140,12 +144,26 @@ double pixel_of_level(Level level) {
   return 4 * epsilon_of_level(level);
 }
 
+std::array<Point, 4> Strip::corners() const {
+  const double x = (static_cast<double>(axis.from.x) + axis.to.x) / 2;
+  const double y = (static_cast<double>(axis.from.y) + axis.to.y) / 2;
+  const double dx = static_cast<double>(axis.to.x) - axis.from.x;
+  const double dy = static_cast<double>(axis.to.y) - axis.from.y;
+  const double span = std::hypot(dx, dy);
+  const double along_x = span > 0 ? dx / span : 1;
+  const double along_y = span > 0 ? dy / span : 0;
+  const auto corner = [&](double along, double across) {
+    return Point{cell(x + along * along_x - across * along_y),
+                 cell(y + along * along_y + across * along_x)};
+  };
+  const double a = length / 2;
+  const double b = width / 2;
+  return {corner(-a, -b), corner(a, -b), corner(a, b), corner(-a, b)};
+}
+
 Box box_of_mote(double x, double y, double area) {
   const double width = std::max(1.0, std::round(std::sqrt(area)));
   const double height = std::max(1.0, std::round(area / width));
-  const auto cell = [](double v) {
-    return static_cast<std::int32_t>(std::clamp(std::round(v), double{kGridMin}, double{kGridMax}));
-  };
   const std::int32_t min_x = cell(x - width / 2);
   const std::int32_t min_y = cell(y - height / 2);
   return {min_x, min_y, cell(min_x + width), cell(min_y + height)};

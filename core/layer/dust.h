@@ -1,19 +1,22 @@
 // Dust: the area of loops too small to draw, kept as covered area, so that a town at a small scale
 // is a grey tint and not a hole.
 //
-// A grain that a loop left behind is laid out as square motes. From one octave of tolerance to the
-// next, motes that fall into one pixel (four times the tolerance: the default tolerance is a
-// quarter of a pixel) become one, so that the motes of a tile are bounded by its pixels, however
-// many polygons fall into it. Each mote has a lifespan, like a trapezoid. Motes of holes have
-// negative area.
+// A grain that a loop left behind is laid out as square motes along the axis of its rectangle,
+// which is no wider than a pixel at the tolerance at which the loop went. From one octave of
+// tolerance to the next, motes that fall into one pixel (four times the tolerance: the default
+// tolerance is a quarter of a pixel) become one, so that the motes of a tile are bounded by its
+// pixels, however many polygons fall into it. Each mote has a lifespan, like a trapezoid. Motes of
+// holes have negative area.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "core/adapt/history.h"
+#include "core/grid/area_moments.h"
 #include "core/grid/grid.h"
 #include "core/grid/tolerance.h"
 
@@ -36,24 +39,44 @@ constexpr double kSmallestMote = 0.5;
 /// The most motes that a grain is laid out as.
 constexpr int kMostMotes = 256;
 
-/// How many motes a loop is laid out as along the segment that was left of it: one for each pixel,
-/// `pixel` cells long, and at least one, but no more than `most`.
-inline int count_of_motes(Point from, Point to, double pixel, int most) {
-  const double dx = static_cast<double>(to.x) - from.x;
-  const double dy = static_cast<double>(to.y) - from.y;
-  return static_cast<int>(
-      std::clamp(std::ceil(std::hypot(dx, dy) / pixel), 1.0, static_cast<double>(most)));
+/// The rectangle that stands for a grain.
+struct Strip {
+  Axis axis;
+  double length = 0;  // cells, at least as much as the width
+  double width = 0;
+
+  /// The corners, one after the other, rounded to cells. They may lie off the axis' ends, but not
+  /// off the grid.
+  std::array<Point, 4> corners() const;
+};
+
+/// The rectangle of that area with that axis; a square if the axis is short.
+inline Strip strip_of(Axis axis, double area) {
+  const double dx = static_cast<double>(axis.to.x) - axis.from.x;
+  const double dy = static_cast<double>(axis.to.y) - axis.from.y;
+  const double side = std::sqrt(std::abs(area));
+  const double length = std::max(std::sqrt(dx * dx + dy * dy), side);
+  return {axis, length, length > 0 ? side * (side / length) : 0};
 }
 
-/// Calls visit(x, y, area) for `count` motes of a loop of that area, distributed evenly along the
-/// segment that was left of it.
+/// How many motes a grain is laid out as along its axis: one for each pixel, `pixel` cells long,
+/// and at least one, but no more than `most`.
+inline int count_of_motes(Axis axis, double pixel, int most) {
+  const double dx = static_cast<double>(axis.to.x) - axis.from.x;
+  const double dy = static_cast<double>(axis.to.y) - axis.from.y;
+  return static_cast<int>(
+      std::clamp(std::ceil(std::sqrt(dx * dx + dy * dy) / pixel), 1.0, static_cast<double>(most)));
+}
+
+/// Calls visit(x, y, area) for `count` motes of a grain of that area, distributed evenly along its
+/// axis.
 template <typename Visit>
-void lay_out(Point from, Point to, double area, int count, const Visit& visit) {
-  const double dx = static_cast<double>(to.x) - from.x;
-  const double dy = static_cast<double>(to.y) - from.y;
+void lay_out(Axis axis, double area, int count, const Visit& visit) {
+  const double dx = static_cast<double>(axis.to.x) - axis.from.x;
+  const double dy = static_cast<double>(axis.to.y) - axis.from.y;
   for (int i = 0; i < count; ++i) {
     const double along = (i + 0.5) / count;
-    visit(from.x + along * dx, from.y + along * dy, area / count);
+    visit(axis.from.x + along * dx, axis.from.y + along * dy, area / count);
   }
 }
 

@@ -28,13 +28,12 @@ GrainIndex::GrainIndex(StoredArray<FeatureGrain> grains)
     Block& block = blocks_[i / kBlock];
     block.box.include(grains_[i].box());
     block.min_born = std::min(block.min_born, grains_[i].born);
+    block.max_born = std::max(block.max_born, grains_[i].born);
   }
 }
 
-std::size_t GrainIndex::count_near(const Box& box, Level level) const {
-  const auto is_near = [&](const Block& block) {
-    return block.min_born <= level && block.box.intersects(box);
-  };
+std::size_t GrainIndex::count_near(const Box& box, Births births) const {
+  const auto is_near = [&](const Block& block) { return block.meets(box, births); };
   const auto blocks = static_cast<std::size_t>(std::ranges::count_if(blocks_, is_near));
   return std::min(blocks * kBlock, grains_.size());
 }

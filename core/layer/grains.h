@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,24 +14,33 @@
 #include "core/grid/hilbert.h"
 #include "core/grid/stored_array.h"
 #include "core/grid/tolerance.h"
+#include "core/layer/dust.h"
 
 namespace trapeze {
 
 /// A grain (see history.h) as it is stored.
 struct FeatureGrain {
-  Point from;
+  Point from;  // the axis of the rectangle that stands for it
   Point to;
   std::int64_t doubled_area = 0;  // cells squared; negative if it was a hole
   std::uint32_t row = 0;          // of the feature
   std::uint32_t born = 0;         // the level
 
-  Box box() const {
-    Box box;
-    box.include(from);
-    box.include(to);
-    return box;
-  }
+  double area() const { return static_cast<double>(doubled_area) / 2; }
+  Strip strip() const { return strip_of({from, to}, area()); }
+  /// A box that holds the rectangle, with some room around it: it is asked for often.
+  Box box() const;
 };
+
+// The rectangle reaches no further beyond its axis than a square of its area would be wide.
+inline Box FeatureGrain::box() const {
+  const auto reach = static_cast<std::int64_t>(std::sqrt(std::abs(area()))) + 2;
+  const auto cell = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, kGridMin, kGridMax));
+  };
+  return {cell(std::min(from.x, to.x) - reach), cell(std::min(from.y, to.y) - reach),
+          cell(std::max(from.x, to.x) + reach), cell(std::max(from.y, to.y) + reach)};
+}
 
 /// Sorts grains so that those born in the same octave and near each other on the map are near each
 /// other in the array.
@@ -42,21 +52,29 @@ class GrainIndex {
   GrainIndex() = default;
   explicit GrainIndex(StoredArray<FeatureGrain> grains);
 
-  /// Calls visit(grain) for every grain that is born at `level` or before and whose segment may
-  /// meet the box.
+  /// The levels, from the first to the last, at which grains were born.
+  struct Births {
+    Level first = 0;
+    Level last = kLastLevel;
+
+    bool is_empty() const { return first > last; }
+    bool contains(std::uint32_t level) const { return first <= level && level <= last; }
+  };
+
+  /// Calls visit(grain) for every grain of these births whose rectangle may meet the box.
   template <typename Visit>
-  void visit(const Box& box, Level level, const Visit& visit) const {
+  void visit(const Box& box, Births births, const Visit& visit) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      if (blocks_[b].min_born > level || !blocks_[b].box.intersects(box)) continue;
+      if (!blocks_[b].meets(box, births)) continue;
       const std::size_t end = std::min(grains_.size(), (b + 1) * kBlock);
       for (std::size_t i = b * kBlock; i < end; ++i) {
-        if (grains_[i].born <= level && grains_[i].box().intersects(box)) visit(grains_[i]);
+        if (births.contains(grains_[i].born) && grains_[i].box().intersects(box)) visit(grains_[i]);
       }
     }
   }
 
   /// As many grains as visit() looks at: at least those that it visits.
-  std::size_t count_near(const Box& box, Level level) const;
+  std::size_t count_near(const Box& box, Births births) const;
 
   std::span<const FeatureGrain> grains() const { return grains_; }
   std::size_t memory() const { return grains_.memory() + blocks_.capacity() * sizeof(Block); }
@@ -66,6 +84,11 @@ class GrainIndex {
   struct Block {
     Box box;
     std::uint32_t min_born = kNeverDies;
+    std::uint32_t max_born = 0;
+
+    bool meets(const Box& other, Births births) const {
+      return min_born <= births.last && max_born >= births.first && box.intersects(other);
+    }
   };
 
   StoredArray<FeatureGrain> grains_;

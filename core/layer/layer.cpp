@@ -19,6 +19,9 @@ const Box& Layer::bounds() const {
 const MeshView& Layer::mesh() const {
   return contents_->view;
 }
+const OutlineView& Layer::outline() const {
+  return contents_->outline;
+}
 
 void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
   ranges.clear();
@@ -27,12 +30,11 @@ void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& rang
   if (selection.small == SmallPolygons::dust) select_dust(selection, ranges);
 }
 
-// Merged motes are those of the picture's pixels. Of the single ones, all that the tolerance has
-// made are wanted, unless a merged one stands for them already.
+// What the tolerance has made that is larger than pixels are the later_births().
 void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
   const Level resolution = std::min(selection.level, selection.pixel_level);
   const LayerContents& c = *contents_;
-  c.mote_index.select(selection.box, selection.level, resolution, c.lifespans, ranges);
+  c.mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
   c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
 }
 
@@ -48,7 +50,7 @@ std::uint64_t Layer::estimate_trapezoids(const Selection& selection) const {
   const std::uint64_t polygons = c.polygon_index.estimate(box, level, level);
   if (small != SmallPolygons::dust) return polygons;
   const Level resolution = std::min(level, pixel_level);
-  return polygons + c.mote_index.estimate(box, level, resolution) +
+  return polygons + c.mote_index.estimate(box, resolution, resolution) +
          c.merged_mote_index.estimate(box, resolution, resolution);
 }
 
@@ -57,12 +59,20 @@ std::uint64_t Layer::estimate_horizontal_edges(const Selection& selection) const
   return c.horizontal_edge_index.estimate(selection.box, selection.level, selection.level);
 }
 
-std::uint64_t Layer::count_grains(const Selection& selection) const {
-  return contents_->grains.count_near(selection.box, selection.level);
+GrainIndex::Births Layer::Selection::later_births() const {
+  return {static_cast<Level>(std::min(level, pixel_level) + 1), level};
 }
 
 const GrainIndex& Layer::grains() const {
   return contents_->grains;
+}
+
+const OverlapTable& Layer::overlaps() const {
+  return contents_->overlaps;
+}
+
+bool Layer::has_all_overlaps() const {
+  return contents_->has_all_overlaps;
 }
 
 bool Layer::fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const {
@@ -106,10 +116,12 @@ LayerSize Layer::size() const {
 
 std::size_t Layer::memory() const {
   const LayerContents& c = *contents_;
-  return c.vertices.memory() + c.edges.memory() + c.trapezoids.memory() + c.lifespans.memory() +
-         c.feature_of.memory() + c.outline_points.memory() + c.ring_ends.memory() +
-         c.outline_ends.memory() + c.polygon_index.memory() + c.horizontal_edge_index.memory() +
-         c.mote_index.memory() + c.merged_mote_index.memory() + c.grains.memory();
+  return c.vertices.memory() + c.edges.memory() + c.loop_sizes.memory() +
+         c.milestone_ends.memory() + c.milestones.memory() + c.milestone_levels.memory() +
+         c.trapezoids.memory() + c.lifespans.memory() + c.feature_of.memory() +
+         c.outline_points.memory() + c.ring_ends.memory() + c.outline_ends.memory() +
+         c.polygon_index.memory() + c.horizontal_edge_index.memory() + c.mote_index.memory() +
+         c.merged_mote_index.memory() + c.grains.memory() + c.overlaps.memory();
 }
 
 }  // namespace trapeze

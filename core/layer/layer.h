@@ -15,6 +15,8 @@
 #include "core/layer/feature_table.h"
 #include "core/layer/grains.h"
 #include "core/layer/layer_size.h"
+#include "core/layer/overlaps.h"
+#include "core/mesh/outline.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
@@ -47,6 +49,8 @@ class Layer {
   /// The smallest box that holds all polygons; empty if there are none.
   const Box& bounds() const;
   const MeshView& mesh() const;
+  /// Of the edges and vertices of the mesh, those of dust left out.
+  const OutlineView& outline() const;
 
   /// The part of the mesh that is asked for.
   struct Selection {
@@ -56,6 +60,10 @@ class Layer {
     /// greater the tolerance is.
     Level pixel_level = kLastLevel;
     SmallPolygons small = SmallPolygons::dust;
+
+    /// Grains that are larger than a pixel, as the tolerance is: select() does not find them. None
+    /// unless it is greater than a quarter of a pixel.
+    GrainIndex::Births later_births() const;
   };
 
   /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
@@ -74,12 +82,16 @@ class Layer {
   std::uint64_t estimate_trapezoids(const Selection& selection) const;
   /// About how many select_horizontal_edges() finds.
   std::uint64_t estimate_horizontal_edges(const Selection& selection) const;
-  /// No fewer than there are grains in the box at the level.
-  std::uint64_t count_grains(const Selection& selection) const;
 
-  /// What small polygons and holes left behind, feature by feature: the same dust that select()
-  /// finds, before any of it is merged.
+  /// What small polygons and holes left behind, feature by feature: the dust that select() finds,
+  /// before any of it is merged, and the later_births().
   const GrainIndex& grains() const;
+
+  /// Which features lie over each other.
+  const OverlapTable& overlaps() const;
+  /// False if there were too many to find them all: of the others, neither lies over the other.
+  /// Known only of a layer that has just been built.
+  bool has_all_overlaps() const;
 
   /// True only if the ranges that were selected cover the whole box of the selection, so that it is
   /// filled without being drawn; may be false although they do.

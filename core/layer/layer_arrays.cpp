@@ -72,6 +72,15 @@ void check_mesh(const LayerArrays& a) {
   require(a.lifespans.size() == a.trapezoids.size(), "there is not one lifespan a trapezoid");
 }
 
+void check_outline(const LayerArrays& a) {
+  const OutlineView& outline = a.outline;
+  require(outline.loop_sizes.size() <= a.edges.size(), "there are loops without edges");
+  require(outline.milestone_ends.size() <= a.vertices.size() &&
+              is_sorted_up_to(outline.milestone_ends, outline.milestones.size()) &&
+              outline.milestone_levels.size() == outline.milestones.size(),
+          "milestones are not in order");
+}
+
 void check_features(const LayerArrays& a) {
   const std::size_t rows = a.cells.ids.size();
   require(a.feature_of.size() <= a.trapezoids.size(), "there is dust that has a feature");
@@ -120,11 +129,13 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.trapezoids = c.trapezoids;
   arrays.lifespans = c.lifespans;
   arrays.feature_of = c.feature_of;
+  arrays.outline = c.outline;
   arrays.polygon_index = c.polygon_index.entries();
   arrays.mote_index = c.mote_index.entries();
   arrays.merged_mote_index = c.merged_mote_index.entries();
   arrays.horizontal_edge_index = c.horizontal_edge_index.entries();
   arrays.grains = c.grains.grains();
+  arrays.overlaps = c.overlaps.pairs();
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
@@ -140,6 +151,7 @@ LayerArrays arrays_of(const Layer& layer) {
 
 std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<const void> mapping) {
   check_mesh(arrays);
+  check_outline(arrays);
   check_features(arrays);
   check_sums(arrays);
   auto layer = std::make_unique<LayerContents>();
@@ -149,6 +161,11 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   look_at(arrays.trapezoids, layer->trapezoids);
   look_at(arrays.lifespans, layer->lifespans);
   look_at(arrays.feature_of, layer->feature_of);
+  look_at(arrays.outline.loop_sizes, layer->loop_sizes);
+  look_at(arrays.outline.milestone_ends, layer->milestone_ends);
+  look_at(arrays.outline.milestones, layer->milestones);
+  look_at(arrays.outline.milestone_levels, layer->milestone_levels);
+  layer->outline = arrays.outline;
   look_at(arrays.outline_points, layer->outline_points);
   look_at(arrays.ring_ends, layer->ring_ends);
   look_at(arrays.outline_ends, layer->outline_ends);
@@ -162,6 +179,8 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   layer->merged_mote_index =
       MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index);
   layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));
+  layer->overlaps = OverlapTable(StoredArray<FeatureOverlap>::looking_at(arrays.overlaps),
+                                 arrays.cells.ids.size());
   layer->features = FeatureTable(arrays.fields, arrays.cells);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->size = arrays.size;

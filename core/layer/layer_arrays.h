@@ -10,6 +10,7 @@
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
 #include "core/mesh/mesh_index.h"
+#include "core/mesh/outline.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
@@ -22,11 +23,13 @@ struct LayerArrays {
   std::span<const MeshTrapezoid> trapezoids;
   std::span<const Lifespan> lifespans;
   std::span<const std::uint32_t> feature_of;  // of those of polygons and for horizontal edges
+  OutlineView outline;                        // of edges and vertices without those of dust
   std::span<const MeshIndex::Entry> polygon_index;
   std::span<const MeshIndex::Entry> horizontal_edge_index;
   std::span<const MeshIndex::Entry> mote_index;
   std::span<const MeshIndex::Entry> merged_mote_index;
   std::span<const FeatureGrain> grains;
+  std::span<const FeatureOverlap> overlaps;
   std::span<const Point> outline_points;
   std::span<const std::uint32_t> ring_ends;
   std::span<const std::uint32_t> outline_ends;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "core/grid/item_count.h"
 #include "core/layer/dust.h"
 #include "core/layer/layer_contents.h"
+#include "core/layer/overlaps.h"
 
 namespace trapeze {
 namespace {
@@ -26,6 +28,7 @@ struct Stock {
     std::uint32_t row;     // the first one of a coverage
     std::size_t vertices;  // where its arrays begin
     std::size_t edges;
+    std::size_t milestones;
     std::size_t trapezoids;
     std::size_t horizontal_edges;
     std::size_t grains;
@@ -83,13 +86,15 @@ std::vector<PartOf> in_order_of_rows(const std::vector<Stock>& stocks) {
 
 FeatureGrain grain_of(const Grain& grain, double area, std::uint32_t row) {
   const double doubled = std::clamp(2 * area, -kMostDoubledArea, kMostDoubledArea);
-  return {grain.from, grain.to, std::llround(doubled), row, grain.born};
+  return {grain.axis.from, grain.axis.to, std::llround(doubled), row, grain.born};
 }
 
 /// The arrays of a layer while they grow.
 struct GrowingLayer {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
+  std::vector<LoopSize> loop_sizes;
+  std::vector<MilestoneNote> milestone_notes;
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
@@ -98,6 +103,7 @@ struct GrowingLayer {
   std::vector<FeatureGrain> feature_grains;
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
+  std::vector<std::uint32_t> graph_of;  // by row
 };
 
 /// An area that one feature has taken over from another is the dust of one and less of the other;
@@ -135,17 +141,32 @@ std::vector<T> take_items(std::vector<Stock>& stocks, const std::vector<PartOf>&
 void check_counts(const std::vector<Stock>& stocks) {
   LayerSize size;
   std::size_t grains = 0;
+  std::size_t milestones = 0;
   for (const Stock& stock : stocks) {
     const History& history = stock.history;
     size.vertices += history.vertices.size();
     size.edges += history.edges.size();
+    milestones += history.milestones.size();
     size.trapezoids += history.trapezoids.size() + history.horizontal_edges.size();
     grains += history.grains.size();
   }
   require_countable(size.vertices, "vertices");
   require_countable(size.edges, "versions of edges");
   require_countable(size.trapezoids, "versions of trapezoids");
+  require_countable(milestones, "milestones");
   require_countable(2 * grains, "loops that become dust");
+}
+
+/// By row, the number of the graph that the feature is a part of.
+void note_graphs(const std::vector<PartOf>& parts, std::vector<std::uint32_t>& graph_of) {
+  std::uint32_t graph = 0;
+  for (const PartOf& part : parts) {
+    for (const std::uint32_t row : items_of(part, &History::rows, &Stock::Part::trapezoids)) {
+      if (row >= graph_of.size()) graph_of.resize(row + std::size_t{1});
+      graph_of[row] = graph;
+    }
+    ++graph;
+  }
 }
 
 void concatenate_histories(std::vector<Stock>& stocks, GrowingLayer& layer) {
@@ -159,6 +180,7 @@ void concatenate_histories(std::vector<Stock>& stocks, GrowingLayer& layer) {
                                   t.left += part.edge_shift;
                                   t.right += part.edge_shift;
                                 });
+  note_graphs(parts, layer.graph_of);
   layer.feature_of = take_items(stocks, parts, &History::rows, &Part::trapezoids, as_it_is);
   layer.lifespans = take_items(stocks, parts, &History::lifespans, &Part::trapezoids, as_it_is);
   layer.horizontal_edges =
@@ -174,6 +196,10 @@ void concatenate_histories(std::vector<Stock>& stocks, GrowingLayer& layer) {
         e.upper += part.vertex_shift;
         e.lower += part.vertex_shift;
       });
+  layer.loop_sizes = take_items(stocks, parts, &History::loop_sizes, &Part::edges, as_it_is);
+  layer.milestone_notes =
+      take_items(stocks, parts, &History::milestones, &Part::milestones,
+                 [](MilestoneNote& note, const PartOf& part) { note.vertex += part.vertex_shift; });
   layer.vertices = take_items(stocks, parts, &History::vertices, &Part::vertices, as_it_is);
 }
 
@@ -273,11 +299,14 @@ void append_horizontal_edges(GrowingLayer& layer) {
 void order_edges_and_vertices(GrowingLayer& layer) {
   std::vector<std::uint32_t> number(layer.edges.size(), kUnused);
   std::vector<MeshEdge> edges;
+  std::vector<LoopSize> loop_sizes;
   edges.reserve(layer.edges.size());
+  loop_sizes.reserve(layer.edges.size());
   const auto edge = [&](std::uint32_t& e) {
     if (number[e] == kUnused) {
       number[e] = static_cast<std::uint32_t>(edges.size());
       edges.push_back(layer.edges[e]);
+      loop_sizes.push_back(layer.loop_sizes[e]);
     }
     e = number[e];
   };
@@ -287,6 +316,8 @@ void order_edges_and_vertices(GrowingLayer& layer) {
   }
   layer.edges.swap(edges);
   edges = {};
+  layer.loop_sizes.swap(loop_sizes);
+  loop_sizes = {};
 
   number.assign(layer.vertices.size(), kUnused);
   std::vector<Point> vertices;
@@ -307,6 +338,32 @@ void order_edges_and_vertices(GrowingLayer& layer) {
     vertex(t.bottom);
   }
   layer.vertices.swap(vertices);
+  vertices = {};
+  for (MilestoneNote& note : layer.milestone_notes) note.vertex = number[note.vertex];
+}
+
+/// Those of each vertex together, in the order in which they were noted: in that of levels.
+void order_milestones(GrowingLayer& layer, LayerContents& to) {
+  std::vector<std::uint32_t> ends(layer.vertices.size() + 1, 0);
+  for (const MilestoneNote& note : layer.milestone_notes) {
+    if (note.vertex != kUnused) ++ends[note.vertex + 1];
+  }
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Milestone> milestones(ends.back());
+  std::vector<Level> levels(ends.back());
+  for (const MilestoneNote& note : layer.milestone_notes) {
+    if (note.vertex == kUnused) continue;
+    const std::uint32_t place = ends[note.vertex]++;
+    milestones[place] = note.milestone;
+    levels[place] = note.level;
+  }
+  layer.milestone_notes = {};
+  // Where those of a vertex began, they end by now.
+  ends.pop_back();
+  ends.shrink_to_fit();
+  to.milestone_ends = std::move(ends);
+  to.milestones = std::move(milestones);
+  to.milestone_levels = std::move(levels);
 }
 
 /// The square of a mote as a trapezoid; one of negative area has its edges swapped.
@@ -345,6 +402,7 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
 void move_arrays(GrowingLayer& from, LayerContents& to) {
   to.vertices = std::move(from.vertices);
   to.edges = std::move(from.edges);
+  to.loop_sizes = std::move(from.loop_sizes);
   to.trapezoids = std::move(from.trapezoids);
   to.lifespans = std::move(from.lifespans);
   to.feature_of = std::move(from.feature_of);
@@ -368,8 +426,8 @@ struct LayerBuilder::State {
   void begin_part(std::uint32_t row) {
     const History& history = stock.history;
     stock.parts.push_back({row, history.vertices.size(), history.edges.size(),
-                           history.trapezoids.size(), history.horizontal_edges.size(),
-                           history.grains.size()});
+                           history.milestones.size(), history.trapezoids.size(),
+                           history.horizontal_edges.size(), history.grains.size()});
   }
 
   void add_outline(std::uint32_t row, const Rings& rings) {
@@ -404,17 +462,17 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
 }
 
 Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
-                                    std::span<const Rings* const> features) {
+                                    std::span<const Rings* const> features, unsigned threads) {
   if (state_->share != nullptr) state_->share->enter(0, kAssemblyShare);
   Assembly assembly = assemble(features, state_->options.coverage, state_->options.close_gaps,
-                               state_->coverage_builder, state_->graph, state_->share);
+                               state_->coverage_builder, state_->graph, state_->share, threads);
   if (assembly.together.empty()) return assembly;
   state_->begin_part(rows[assembly.together.front()]);
   const std::vector<Rings> outlines = rings_of_faces(state_->graph);
   for (const std::uint32_t i : assembly.together) state_->add_outline(rows[i], outlines[i]);
   if (state_->share != nullptr) state_->share->enter(kAssemblyShare, 1);
   state_->most_tolerance = state_->recorder.record(state_->graph, rows, state_->options,
-                                                   state_->stock.history, state_->share);
+                                                   state_->stock.history, state_->share, threads);
   return assembly;
 }
 
@@ -437,9 +495,16 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   order_trapezoids(arrays);
   tell(0.5);
   const auto polygons = static_cast<std::uint32_t>(arrays.trapezoids.size());
+  FeatureOverlaps overlaps = find_overlaps({{0, arrays.vertices, arrays.edges, arrays.trapezoids},
+                                            arrays.lifespans,
+                                            arrays.feature_of,
+                                            arrays.graph_of});
+  layer->has_all_overlaps = overlaps.is_complete;
+  layer->overlaps = OverlapTable(std::move(overlaps.pairs), arrays.graph_of.size());
   append_horizontal_edges(arrays);
   const auto horizontal_edges = static_cast<std::uint32_t>(arrays.trapezoids.size());
   order_edges_and_vertices(arrays);
+  order_milestones(arrays, *layer);
   tell(0.7);
   for (const Point p : arrays.vertices) layer->bounds.include(p);
   layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
@@ -452,6 +517,8 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   features.shrink_to_fit();
   layer->features = std::move(features);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
+  layer->outline = OutlineView{layer->loop_sizes, layer->milestone_ends, layer->milestones,
+                               layer->milestone_levels};
   const auto index = [&layer](std::uint32_t from, std::uint32_t to) {
     return MeshIndex(layer->view, {from, to - from}, layer->lifespans);
   };

@@ -39,9 +39,9 @@ class LayerBuilder {
 
   /// Builds one graph of those features of a group that can live in one, see assemble(): the
   /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
-  /// rings are clean.
-  Assembly add_coverage(std::span<const std::uint32_t> rows,
-                        std::span<const Rings* const> features);
+  /// rings are clean. On up to `threads` threads.
+  Assembly add_coverage(std::span<const std::uint32_t> rows, std::span<const Rings* const> features,
+                        unsigned threads = 1);
 
   /// The tolerance (cells) from which on what was added last is not simplified any further, since
   /// that would take too long; none as a rule. See HistoryRecorder::record().

@@ -9,7 +9,9 @@
 #include "core/layer/grains.h"
 #include "core/layer/layer_options.h"
 #include "core/layer/layer_size.h"
+#include "core/layer/overlaps.h"
 #include "core/mesh/mesh_index.h"
+#include "core/mesh/outline.h"
 
 namespace trapeze {
 
@@ -21,6 +23,11 @@ struct LayerContents {
   StoredArray<Lifespan> lifespans;        // by trapezoid
   StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
   MeshView view;                          // of the arrays above
+  StoredArray<LoopSize> loop_sizes;
+  StoredArray<std::uint32_t> milestone_ends;
+  StoredArray<Milestone> milestones;
+  StoredArray<Level> milestone_levels;
+  OutlineView outline;  // of these
   // Trapezoids of polygons come first, then those that stand for horizontal edges, then those of
   // single motes, then those of merged motes.
   MeshIndex polygon_index;
@@ -28,6 +35,8 @@ struct LayerContents {
   MeshIndex mote_index;
   MeshIndex merged_mote_index;
   GrainIndex grains;
+  OverlapTable overlaps;
+  bool has_all_overlaps = true;
   LayerSize size;
   LayerOptions options;
   // The rings of all features, in order of rows, as in Rings.

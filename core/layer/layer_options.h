@@ -8,7 +8,7 @@ namespace trapeze {
 
 /// How each graph is generalized, and which features live in one.
 struct LayerOptions : GeneralizationOptions {
-  CoverageMode coverage = CoverageMode::off;
+  CoverageMode coverage = kUsualCoverage;
   double close_gaps = 0;  // metres on the ground, up to kWidestGap; where there are coverages
 };
 

@@ -7,6 +7,7 @@
 // Thread-safety: immutable after construction, any number of threads may read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,12 +46,36 @@ struct MeshView {
   std::span<const MeshTrapezoid> trapezoids;
 };
 
+/// The line along an edge that is not horizontal, in double precision.
+class EdgeLine {
+ public:
+  EdgeLine(const MeshView& mesh, std::uint32_t edge)
+      : EdgeLine(mesh.vertices[mesh.edges[edge].upper], mesh.vertices[mesh.edges[edge].lower]) {}
+  EdgeLine(Point upper, Point lower)
+      : x_(upper.x),
+        y_(upper.y),
+        slope_((static_cast<double>(lower.x) - upper.x) /
+               (static_cast<double>(lower.y) - upper.y)) {}
+
+  double x_at(double y) const { return x_ + (y - y_) * slope_; }
+
+ private:
+  double x_;
+  double y_;
+  double slope_;
+};
+
 /// An id that no mesh of this process has had; never 0. Thread-safe.
 std::uint64_t new_mesh_id();
 
 /// Appends a rectangle to the arrays of a mesh: four vertices, two edges, one trapezoid.
 void append_box(const Box& box, std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
                 std::vector<MeshTrapezoid>& trapezoids);
+
+/// Appends a rectangle of any direction: four vertices, four edges, and one to three trapezoids.
+/// The corners follow each other around it, rounded to cells; it is many cells wide.
+void append_rectangle(const std::array<Point, 4>& corners, std::vector<Point>& vertices,
+                      std::vector<MeshEdge>& edges, std::vector<MeshTrapezoid>& trapezoids);
 
 /// Trapezoids first, first + 1, ..., first + count - 1 of a mesh.
 struct TrapezoidRange {

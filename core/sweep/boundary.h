@@ -10,9 +10,17 @@
 
 #include "core/grid/grid.h"
 #include "core/grid/ids.h"
+#include "core/grid/radix_sort.h"
 #include "core/grid/rings.h"
 
 namespace trapeze {
+
+/// Ascending in sweep order.
+constexpr std::uint64_t sweep_key(Point p) {
+  constexpr std::uint32_t kBias = 0x80000000u;
+  return std::uint64_t{static_cast<std::uint32_t>(p.y) ^ kBias} << 32 |
+         (static_cast<std::uint32_t>(p.x) ^ kBias);
+}
 
 /// Vertices 1 .. n are the distinct points in sweep order; vertices 0 and n + 1 belong to the frame
 /// and have no edges here. Memory is kept for reuse. Thread-safety: none.
@@ -43,17 +51,23 @@ struct Boundary {
   void assign(const Rings& rings);
   /// Edges between points; each edge once, its end points distinct.
   void assign(std::span<const std::pair<Point, Point>> segments);
+  /// The same, faster, for segments with their upper ends first and in sweep order by these. On up
+  /// to `threads` threads.
+  void assign_sorted(std::span<const std::pair<Point, Point>> segments, unsigned threads = 1);
+
+  /// Drops the edges for which it is false, and the vertices that have none then. What is left
+  /// keeps its order.
+  void keep(const std::vector<bool>& edges_to_keep);
 
  private:
+  void begin_vertices(std::size_t count);
+  void end_vertices();
+  VertexId vertex_at(std::uint64_t key);
   void index_incident_edges();
-
-  struct SortKey {
-    std::uint64_t key;  // sweep order
-    std::uint32_t index;
-  };
   void number_vertices(std::size_t count);
 
-  std::vector<SortKey> sorted_;
+  LargeArray<KeyedIndex> sorted_;  // by sweep order
+  LargeArray<KeyedIndex> scratch_;
   std::vector<VertexId> vertex_of_;  // by index of point
 };
 

@@ -43,8 +43,9 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
   constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
-    std::optional<std::vector<Segment>> noded = node_segments(
-        segments, pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
+    std::optional<std::vector<Segment>> noded =
+        node_segments(segments, boundary_,
+                      pass < kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices);
     if (!noded) {
       outcome.failure =
           "crosses itself more than " + std::to_string(most_meetings(segments.size())) + " times";

@@ -1,7 +1,13 @@
 #include "core/sweep/meetings.h"
 
 #include <algorithm>
+#include <atomic>
+#include <deque>
 #include <functional>
+#include <unordered_map>
+
+#include "core/grid/for_each_in_parallel.h"
+#include "core/sweep/sweep_slabs.h"
 
 namespace trapeze {
 namespace {
@@ -65,28 +71,37 @@ class CrossingPoint {
   Int128 den_;
 };
 
+/// The vertices [first, last) of a boundary, swept as if alone.
 class MeetingSweep {
  public:
-  MeetingSweep(const std::vector<Segment>& segments, std::size_t most) : most_(most) {
-    boundary_.assign(segments);
-    slot_of_.assign(segments.size(), Order::kNoSlot);
+  /// `slot_of`, by edge, is shared by the slabs of a boundary: each uses those of the edges that
+  /// begin there.
+  MeetingSweep(const Boundary& boundary, std::size_t most, VertexId first, VertexId last,
+               LargeArray<std::uint32_t>& slot_of)
+      : most_(most),
+        boundary_(boundary),
+        first_(first),
+        last_(last),
+        vertex_(first),
+        slot_of_(slot_of) {
     order_.clear();
   }
 
+  /// False if there are more meetings than that.
   bool run() {
-    for (std::size_t i = 1; i + 1 < boundary_.vertices.size(); ++i) {
+    if (first_.value > 1) begin_below(edges_across(boundary_, first_));
+    for (std::size_t i = first_.value; i < last_.value; ++i) {
       vertex_ = VertexId(i);
       if (!swap_what_has_crossed()) return false;
       if (!pass_vertex()) return false;
     }
-    return true;
+    // What has crossed since the last vertex is in its new order where the next slab begins.
+    vertex_ = last_;
+    return swap_what_has_crossed();
   }
 
-  std::vector<Point> take() {
-    std::sort(points_.begin(), points_.end(), is_above);
-    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
-    return std::move(points_);
-  }
+  std::size_t count() const { return count_; }
+  const std::vector<Point>& points() const { return points_; }
 
  private:
   using Order = SweepOrder<EdgeId>;
@@ -105,6 +120,19 @@ class MeetingSweep {
     const Boundary::Ends ends = boundary_.edges[e];
     return {point(ends.upper), point(ends.lower)};
   }
+  void begin_below(const std::vector<EdgeId>& across) {
+    Slot last = Order::kFirst;
+    for (const EdgeId e : across) {
+      last = order_.insert_after(last, e);
+      slot_of(e) = last;
+    }
+    for (Slot slot = order_.next(Order::kFirst); !is_end(slot); slot = order_.next(slot)) {
+      expect_crossing(order_.prev(slot), slot);
+    }
+  }
+  Slot& slot_of(EdgeId e) {
+    return boundary_.edges[e].upper < first_ ? slot_across_[e.value] : slot_of_[e.value];
+  }
   static bool is_end(Slot slot) { return slot == Order::kFirst || slot == Order::kLast; }
 
   // Every two that have crossed since the last vertex are the wrong way round now. While there are
@@ -114,7 +142,7 @@ class MeetingSweep {
       std::pop_heap(crossings_.begin(), crossings_.end(), std::greater<>());
       const Crossing crossing = crossings_.back();
       crossings_.pop_back();
-      const Slot left = slot_of_[crossing.left.value];
+      const Slot left = slot_of(crossing.left);
       const Slot right = order_.next(left);
       if (is_end(right) || order_[right] != crossing.right) continue;  // no neighbours any more
       points_.push_back(CrossingPoint(segment(crossing.left), segment(crossing.right)).rounded());
@@ -129,7 +157,7 @@ class MeetingSweep {
 
   void place(EdgeId e, Slot slot) {
     order_[slot] = e;
-    slot_of_[e.value] = slot;
+    slot_of(e) = slot;
   }
 
   /// Notes when two neighbours cross, if they do so other than at a vertex.
@@ -192,7 +220,7 @@ class MeetingSweep {
     Slot last = left;
     for (const EdgeId e : below_) {
       last = order_.insert_after(last, e);
-      slot_of_[e.value] = last;
+      slot_of(e) = last;
     }
     expect_crossing(left, order_.next(left));
     expect_crossing(last, right);
@@ -206,7 +234,7 @@ class MeetingSweep {
       const Segment s = segment(e);
       return side_of(s.first, s.second, point(vertex_));
     };
-    Slot slot = ending.is_none() ? Order::kNoSlot : slot_of_[ending.value];
+    Slot slot = ending.is_none() ? Order::kNoSlot : slot_of(ending);
     if (slot == Order::kNoSlot) {
       const Order::Location found = order_.locate(side);
       if (found.on == Order::kNoSlot) return found.left;
@@ -236,11 +264,14 @@ class MeetingSweep {
 
   const std::size_t most_;
   std::size_t count_ = 0;
-  Boundary boundary_;
+  const Boundary& boundary_;
+  const VertexId first_;
+  const VertexId last_;
   VertexId vertex_;
   Order order_;
-  std::vector<Slot> slot_of_;        // by edge
-  std::vector<Crossing> crossings_;  // a heap, those due first in front
+  LargeArray<Slot>& slot_of_;                            // by edge
+  std::unordered_map<std::uint32_t, Slot> slot_across_;  // of edges that begin further up
+  std::vector<Crossing> crossings_;                      // a heap, those due first in front
   std::vector<EdgeId> below_;
   std::vector<Point> points_;
 };
@@ -249,9 +280,36 @@ class MeetingSweep {
 
 std::optional<std::vector<Point>> find_meetings(const std::vector<Segment>& segments,
                                                 std::size_t most) {
-  MeetingSweep sweep(segments, most);
-  if (!sweep.run()) return std::nullopt;
-  return sweep.take();
+  Boundary boundary;
+  boundary.assign(segments);
+  return find_meetings(boundary, most);
+}
+
+std::optional<std::vector<Point>> find_meetings(const Boundary& boundary, std::size_t most,
+                                                unsigned threads) {
+  LargeArray<std::uint32_t> slot_of(boundary.edges.size(), 0xffffffff);
+  const std::vector<VertexId> firsts = cut_into_slabs(boundary, threads);
+  std::deque<MeetingSweep> slabs;
+  for (std::size_t i = 0; i + 1 < firsts.size(); ++i) {
+    slabs.emplace_back(boundary, most, firsts[i], firsts[i + 1], slot_of);
+  }
+  std::atomic<bool> is_over = false;
+  for_each_in_parallel(slabs.size(), threads, [&](std::size_t i) {
+    if (!slabs[i].run()) is_over = true;
+  });
+  std::size_t count = 0;
+  std::vector<Point> points;
+  for (const MeetingSweep& slab : slabs) {
+    count += slab.count();
+    points.insert(points.end(), slab.points().begin(), slab.points().end());
+  }
+  if (is_over || count > most) {
+    // One that lies where slabs meet may have been counted twice.
+    return slabs.size() > 1 ? find_meetings(boundary, most) : std::nullopt;
+  }
+  std::sort(points.begin(), points.end(), is_above);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
 }
 
 }  // namespace trapeze

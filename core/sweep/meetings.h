@@ -28,4 +28,9 @@ namespace trapeze {
 std::optional<std::vector<Point>> find_meetings(const std::vector<Segment>& segments,
                                                 std::size_t most);
 
+/// The same for the edges of a boundary, on up to `threads` threads; the result does not depend on
+/// their number.
+std::optional<std::vector<Point>> find_meetings(const Boundary& boundary, std::size_t most,
+                                                unsigned threads = 1);
+
 }  // namespace trapeze

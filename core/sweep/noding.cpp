@@ -1,6 +1,7 @@
 #include "core/sweep/noding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "core/sweep/meetings.h"
@@ -67,18 +68,65 @@ class Reach {
   Box box_;
 };
 
-std::optional<std::vector<Point>> hot_cells(const std::vector<Segment>& segments, HotCells cells) {
-  std::optional<std::vector<Point>> hot = find_meetings(segments, most_meetings(segments.size()));
+std::optional<std::vector<Point>> hot_cells(const Boundary& boundary, HotCells cells,
+                                            unsigned threads) {
+  std::optional<std::vector<Point>> hot =
+      find_meetings(boundary, most_meetings(boundary.edges.size()), threads);
   if (hot && cells == HotCells::crossings_and_vertices) {
-    for (const Segment& segment : segments) {
-      hot->push_back(segment.first);
-      hot->push_back(segment.second);
-    }
+    hot->insert(hot->end(), boundary.vertices.begin() + 1, boundary.vertices.end() - 1);
     std::sort(hot->begin(), hot->end(), is_above);
     hot->erase(std::unique(hot->begin(), hot->end()), hot->end());
   }
   return hot;
 }
+
+/// Knows of most segments at once that no hot cell is near them: hot cells are few beside segments.
+class HotBlocks {
+ public:
+  HotBlocks(const std::vector<Point>& hot, const std::vector<Segment>& segments)
+      : shift_(shift_for(segments)), is_hot_(kBits, false) {
+    for (const Point p : hot) is_hot_[bit_of(p.x >> shift_, p.y >> shift_)] = true;
+  }
+
+  bool may_pass_one(const Segment& segment) const {
+    // Cells reach half a cell beyond their centres.
+    const Box box = box_of(segment);
+    const std::int32_t x0 = (box.min_x - 1) >> shift_;
+    const std::int32_t x1 = (box.max_x + 1) >> shift_;
+    const std::int32_t y0 = (box.min_y - 1) >> shift_;
+    const std::int32_t y1 = (box.max_y + 1) >> shift_;
+    if ((std::int64_t{x1} - x0 + 1) * (std::int64_t{y1} - y0 + 1) > kMostBlocks) return true;
+    for (std::int32_t y = y0; y <= y1; ++y) {
+      for (std::int32_t x = x0; x <= x1; ++x) {
+        if (is_hot_[bit_of(x, y)]) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kBits = std::uint32_t{1} << 20;
+  static constexpr std::int64_t kMostBlocks = 64;
+
+  /// Blocks about as large as the mean segment.
+  static int shift_for(const std::vector<Segment>& segments) {
+    double sum = 0;
+    for (const auto& [a, b] : segments) {
+      sum += std::max(std::abs(static_cast<double>(b.x) - a.x),
+                      std::abs(static_cast<double>(b.y) - a.y));
+    }
+    const double mean = sum / static_cast<double>(std::max<std::size_t>(segments.size(), 1));
+    return std::clamp(std::ilogb(std::max(mean, 1.0)), 1, 30);
+  }
+  static std::uint32_t bit_of(std::int32_t x, std::int32_t y) {
+    return (static_cast<std::uint32_t>(x) * 0x9e3779b1u ^
+            static_cast<std::uint32_t>(y) * 0x85ebca77u) >>
+           12;
+  }
+
+  const int shift_;
+  std::vector<bool> is_hot_;  // by hash
+};
 
 /// Hot cells, in an order and under a tree in which those near each other are found together.
 class HotTree {
@@ -171,34 +219,49 @@ std::size_t most_meetings(std::size_t segments) {
   return std::clamp(2 * segments, kLeast, kMost);
 }
 
-std::optional<std::vector<Piece>> node_pieces(const std::vector<Segment>& segments,
-                                              HotCells cells) {
-  const std::optional<std::vector<Point>> hot = hot_cells(segments, cells);
+std::optional<Noding> node(const std::vector<Segment>& segments, const Boundary& boundary,
+                           HotCells cells, unsigned threads) {
+  const std::optional<std::vector<Point>> hot = hot_cells(boundary, cells, threads);
   if (!hot) return std::nullopt;
   const HotTree tree(*hot);
+  const HotBlocks blocks(*hot, segments);
   // A crossing is passed by two segments, an end of a segment by itself; rounding adds some.
   constexpr std::size_t kPassesOfEach = 4;
   const std::size_t most_pieces =
       kPassesOfEach * (segments.size() + most_meetings(segments.size()));
-  std::vector<Piece> pieces;
-  pieces.reserve(segments.size() + 2 * hot->size());
+  Noding noding;
   std::vector<Point> passed;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
+  for (std::uint32_t i = 0; i < segments.size(); ++i) {
+    if (!blocks.may_pass_one(segments[i])) continue;
     passed.clear();
     tree.append_passed(segments[i], passed);
-    add_pieces(segments[i], static_cast<std::uint32_t>(i), passed, pieces);
-    if (pieces.size() > most_pieces) return std::nullopt;
+    const auto is_end = [&segment = segments[i]](Point p) {
+      return p == segment.first || p == segment.second;
+    };
+    if (std::all_of(passed.begin(), passed.end(), is_end)) continue;
+    noding.cut.push_back(i);
+    add_pieces(segments[i], i, passed, noding.pieces);
+    if (noding.pieces.size() > most_pieces) return std::nullopt;
   }
-  return pieces;
+  return noding;
 }
 
 std::optional<std::vector<Segment>> node_segments(const std::vector<Segment>& segments,
-                                                  HotCells cells) {
-  const std::optional<std::vector<Piece>> noded = node_pieces(segments, cells);
-  if (!noded) return std::nullopt;
+                                                  const Boundary& boundary, HotCells cells) {
+  const std::optional<Noding> noding = node(segments, boundary, cells);
+  if (!noding) return std::nullopt;
   std::vector<Segment> pieces;
-  pieces.reserve(noded->size());
-  for (const Piece& piece : *noded) pieces.push_back(piece.segment);
+  pieces.reserve(segments.size() + noding->pieces.size());
+  auto cut = noding->cut.begin();
+  for (std::uint32_t i = 0; i < segments.size(); ++i) {
+    if (cut != noding->cut.end() && *cut == i) {
+      ++cut;
+    } else {
+      const auto& [a, b] = segments[i];
+      pieces.push_back(is_above(a, b) ? Segment{a, b} : Segment{b, a});
+    }
+  }
+  for (const Piece& piece : noding->pieces) pieces.push_back(piece.segment);
   cancel_pairs(pieces);
   return pieces;
 }

@@ -13,6 +13,7 @@
 
 #include "core/grid/grid.h"
 #include "core/grid/rings.h"
+#include "core/sweep/boundary.h"
 #include "core/sweep/segment.h"
 
 namespace trapeze {
@@ -38,15 +39,23 @@ struct Piece {
 /// are quadratic by nature, those of real data a fraction of its vertices.
 std::size_t most_meetings(std::size_t segments);
 
-/// Routes the segments through the hot cells and returns all pieces, including those that coincide.
-/// None if the segments meet more often than most_meetings(), or pass through hot cells so much
-/// more often than that that time and memory would not be bounded.
-std::optional<std::vector<Piece>> node_pieces(const std::vector<Segment>& segments, HotCells cells);
+/// What becomes of segments that are routed through hot cells.
+struct Noding {
+  std::vector<std::uint32_t> cut;  // those that do not stay as they are, in ascending order
+  std::vector<Piece> pieces;       // that take their place, segment by segment
+};
+
+/// Routes the segments through the hot cells; pieces may coincide. `boundary` has them as its
+/// edges, in the same order. None if they meet more often than most_meetings(), or pass through hot
+/// cells so much more often than that that time and memory would not be bounded. On up to `threads`
+/// threads; the result does not depend on their number.
+std::optional<Noding> node(const std::vector<Segment>& segments, const Boundary& boundary,
+                           HotCells cells, unsigned threads = 1);
 
 /// Routes the segments through the hot cells and returns the pieces, upper end first. Of an odd
 /// number of coinciding pieces one is returned, of an even number none. None under the same
 /// conditions.
 std::optional<std::vector<Segment>> node_segments(const std::vector<Segment>& segments,
-                                                  HotCells cells);
+                                                  const Boundary& boundary, HotCells cells);
 
 }  // namespace trapeze

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "core/grid/large_array.h"
 #include "core/grid/rings.h"
 #include "core/sweep/segment.h"
 
@@ -16,10 +16,17 @@ struct OwnedSegment {
 };
 
 /// All segments of the rings, feature by feature.
-std::vector<OwnedSegment> segments_of(std::span<const Rings* const> features);
+LargeArray<OwnedSegment> segments_of(std::span<const Rings* const> features);
 
-/// Sorts by upper end, then lower end, in sweep order, then by owner: segments that coincide become
-/// neighbours in the array.
-void sort_by_place(std::vector<OwnedSegment>& segments);
+/// Appends those of one feature that lie in the box.
+void append_segments(const Rings& rings, std::uint32_t owner, const Box& box,
+                     LargeArray<OwnedSegment>& segments);
+
+/// In order of upper ends, then lower ends, in sweep order. Both with the upper end first.
+bool precedes(const Segment& a, const Segment& b);
+
+/// Sorts by place, see precedes(), then by owner: segments that coincide become
+/// neighbours in the array. On up to `threads` threads.
+void sort_by_place(LargeArray<OwnedSegment>& segments, unsigned threads = 1);
 
 }  // namespace trapeze

@@ -7,14 +7,14 @@
 // found (Shamos and Hoey): the sweep either succeeds or reports that the boundary is not noded.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "core/graph/trapezoidal_graph.h"
 #include "core/sweep/boundary.h"
-#include "core/sweep/sweep_order.h"
 
 namespace trapeze {
 
@@ -22,53 +22,41 @@ namespace trapeze {
 /// that no other edge has separate the same two faces.
 using FaceBeyond = std::function<FaceId(EdgeId edge, FaceId left)>;
 
-/// The sweep, with working memory for reuse; one thread at a time.
+/// The sweep, with working memory for reuse; one call at a time.
 class Trapezoidation {
  public:
+  Trapezoidation();
+  ~Trapezoidation();
+  Trapezoidation(Trapezoidation&&) noexcept;
+  Trapezoidation& operator=(Trapezoidation&&) noexcept;
+
   /// Makes `graph` the trapezoidal graph of the boundary, with even-odd faces; its corners are left
   /// empty (see BoundaryLoops). Returns false, leaving `graph` unspecified, if the boundary is not
   /// noded: two edges cross or overlap, or a vertex lies on an edge.
   bool build(const Boundary& boundary, TrapezoidalGraph& graph);
 
-  /// The same with faces given by the caller; what lies to the left of all edges is kOutside.
-  bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph);
+  /// The same with faces given by the caller; what lies to the left of all edges is kOutside. Faces
+  /// are asked for when the boundary is known to be noded, in sweep order of the edges' upper ends,
+  /// from left to right. On up to `threads` threads; the graph does not depend on their number.
+  bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph,
+             unsigned threads = 1);
 
  private:
-  // An edge that crosses the sweep line, and the open node to its right.
-  struct Crossing {
-    EdgeId edge;
-    NodeId right;  // between this edge and the next
-  };
-  using Status = SweepOrder<Crossing>;
-  using Slot = Status::Slot;
+  class Slab;
 
-  bool sweep();
-  void start();
-  bool sweep_vertex(VertexId v);
-  bool sweep_regular(VertexId v, EdgeId ending, EdgeId starting);
-  bool sweep_general(VertexId v);
-  bool sort_starting_edges(VertexId v);
-  /// The first of the slots, which must be neighbours, whose edges end at v; none if they are not.
-  Slot first_of_run(VertexId v, std::size_t count) const;
-
-  /// Closes the node right of `slot` at v and returns it.
-  NodeId close(Slot slot, VertexId v);
-  /// Opens a node right of `slot` at v.
-  NodeId open(Slot slot, VertexId v);
-  void link(Side side, NodeId upper, NodeId lower);
-
-  /// The slot of the edge directly left of v; none if v lies on an edge.
-  Slot locate(VertexId v) const;
-  /// The neighbours `left` and `right` do not meet below the sweep line, but for a common end.
-  bool is_apart(Slot left, Slot right) const;
+  bool sweep(unsigned threads);
+  void start(std::size_t guests);
+  bool join_slabs();
+  void join(const Slab& upper, const Slab& lower);
+  void name_faces(const FaceBeyond& face_beyond);
 
   const Boundary* boundary_ = nullptr;
-  const FaceBeyond* face_beyond_ = nullptr;  // none: even-odd
   TrapezoidalGraph* graph_ = nullptr;
-  Status status_;              // its ends are the edges of the frame
-  std::vector<Slot> slot_of_;  // by edge
-  // At the current vertex: edges that end there and that start there, from left to right.
-  std::vector<EdgeId> ending_;
+  bool is_even_odd_ = false;
+  std::vector<std::unique_ptr<Slab>> slabs_;
+  std::size_t used_ = 0;               // of the slabs
+  LargeArray<std::uint32_t> slot_of_;  // by edge, in the slab in which it begins
+  std::vector<NodeId> joined_;         // what stands for a node that a slab began with
   std::vector<EdgeId> starting_;
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 namespace trapeze {
@@ -18,7 +20,17 @@ constexpr double kMergedParts = 32;  // of a pixel: the grid of ends that are me
 constexpr double kLeastHalfOfNearest = 2;
 // Patterns of dashes that repeat within fewer pixels cannot be told from a tint.
 constexpr double kLeastPeriod = 1.0 / 8;
+constexpr double kLeastRate = 1.0 / 16;  // of the growth along a line, as dashes have it
+constexpr int kBlock = 4;                // columns that are drawn at once
 constexpr std::size_t kMostBandPixels = std::size_t{1} << 21;
+
+// Pixels side by side, by the vector extensions of g++ and clang.
+using Floats __attribute__((vector_size(kBlock * sizeof(float)))) = float;
+using Ints __attribute__((vector_size(kBlock * sizeof(std::int32_t)))) = std::int32_t;
+using Shorts __attribute__((vector_size(kBlock * sizeof(std::int16_t)))) = std::int16_t;
+using Bytes __attribute__((vector_size(kBlock))) = std::uint8_t;
+
+constexpr Floats kSteps{0, 1, 2, 3};
 
 std::uint8_t to_value(float share) {
   return static_cast<std::uint8_t>(share * 255 + 0.5f);
@@ -27,12 +39,14 @@ std::uint8_t to_value(float share) {
 struct Columns {
   int begin;
   int end;
+
+  bool is_empty() const { return begin == end; }
 };
 
 /// The columns whose centres lie between two places, within a picture.
 Columns columns_between(double min, double max, int width) {
-  const double first = std::clamp(min - 0.5, 0.0, static_cast<double>(width));
-  const double last = std::clamp(max - 0.5, -1.0, static_cast<double>(width - 1));
+  const double first = std::min(std::max(min - 0.5, 0.0), static_cast<double>(width));
+  const double last = std::min(std::max(max - 0.5, -1.0), static_cast<double>(width - 1));
   const int begin = static_cast<int>(first) + (first > static_cast<int>(first) ? 1 : 0);
   const int end = last < 0 ? 0 : static_cast<int>(last) + 1;
   return {begin, std::max(begin, end)};
@@ -76,6 +90,10 @@ bool Stroke::is_dashed() const {
   return false;
 }
 
+double Stroke::ink_of_ring(double extent) const {
+  return extent < kFullExtent * width ? extent / (kFullExtent * width) : 1;
+}
+
 double Stroke::reach(int scale) const {
   const double half = width * scale / 2;
   return (join == LineJoin::miter ? kMiterLimit * half : half) + 0.5;
@@ -94,26 +112,61 @@ std::uint64_t Stroke::most_values(std::uint64_t edges, const View& view, int sca
 }
 
 Stroker::Line Stroker::Line::turned() const {
-  return {to, from, -dx, -dy, length, along + length};
+  return {to, from, -dx, -dy, length, along + length * rate, -rate, ink};
+}
+
+Stroker::Line Stroker::Line::between(PicturePlace new_from, PicturePlace new_to) const {
+  const double x = new_to.x - new_from.x;
+  const double y = new_to.y - new_from.y;
+  const double new_length = std::sqrt(x * x + y * y);
+  return {new_from, new_to, x / new_length, y / new_length, new_length, along, rate, ink};
 }
 
 // A line's width and dashes, in pixels of one picture.
 class Stroker::Pen {
  public:
   Pen(const Stroke& stroke, int scale, Mask& mask)
-      : half_(stroke.width * scale / 2), join_(stroke.join), mask_(mask) {
+      : half_(stroke.width * scale / 2),
+        most_(std::min(1.0f, static_cast<float>(2 * half_))),
+        join_(stroke.join),
+        mask_(mask) {
     if (!stroke.is_dashed()) return;
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
       dashes_.push_back({period_, stroke.dashes[i] * scale});
       period_ += (stroke.dashes[i] + stroke.dashes[i + 1]) * scale;
-      ink_ += stroke.dashes[i] * scale;
+      inked_ += stroke.dashes[i] * scale;
     }
   }
 
   double half() const { return half_; }
   double reach() const { return half_ + 0.5; }
+  bool has_round_ends() const { return join_ == LineJoin::round; }
   std::uint64_t values() const { return values_; }
 
+  // With round ends, so that lines that meet need no join.
+  void draw_round_line(const Line& line) {
+    const auto [west, east] = std::minmax(line.from.x, line.to.x);
+    const auto [north, south] = std::minmax(line.from.y, line.to.y);
+    const Columns rows = columns_between(north - reach(), south + reach(), mask_.height());
+    const Columns columns = columns_between(west - reach(), east + reach(), mask_.width());
+    if (rows.is_empty() || columns.is_empty()) return;
+    const RoundLine round(line, *this);
+    if (columns.end - columns.begin <= 2 * kBlock) {
+      for (int row = rows.begin; row < rows.end; ++row) draw_round_row(round, row, columns);
+      return;
+    }
+    const Slab near(line.dy, -reach(), reach());
+    for (int row = rows.begin; row < rows.end; ++row) {
+      double min = columns.begin - line.from.x;
+      double max = columns.end - line.from.x;
+      near.narrow(-(row + 0.5 - line.from.y) * line.dx, min, max);
+      if (min > max) continue;
+      draw_round_row(round, row,
+                     columns_between(min + line.from.x, max + line.from.x, mask_.width()));
+    }
+  }
+
+  // Its ends are cut off at right angles.
   void draw_line(const Line& line) {
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
@@ -130,11 +183,11 @@ class Stroker::Pen {
     }
   }
 
-  // Round what is nearest to the end of lines that nothing or too much is joined to.
-  void draw_dot(PicturePlace centre, double along) {
-    const float dash = dash_share(along);
-    for_each_pixel_around(centre, reach(), [&](double x, double y) {
-      return dash * across(static_cast<float>(std::sqrt(x * x + y * y)));
+  // Round what is nearest to the beginning of a line that nothing or too much is joined to.
+  void draw_dot(const Line& line) {
+    const float ink = line.ink * dash_share(line, 0);
+    for_each_pixel_around(line.from, reach(), [&](double x, double y) {
+      return ink * across(static_cast<float>(std::sqrt(x * x + y * y)));
     });
   }
 
@@ -147,26 +200,28 @@ class Stroker::Pen {
     const LineJoin join =
         join_ == LineJoin::miter && half_cosine * kMiterLimit < 1 ? LineJoin::bevel : join_;
     const double radius = join == LineJoin::miter ? half_ / half_cosine + 0.5 : reach();
-    const float dash = dash_share(out.along);
+    const float ink = std::max(in.ink, out.ink) * dash_share(out, 0);
     for_each_pixel_around(out.from, radius, [&](double x, double y) {
       const bool is_beside_a_line = x * in.dx + y * in.dy < 0 || x * out.dx + y * out.dy > 0;
       if (is_beside_a_line) return 0.0f;
-      return dash * across(static_cast<float>(distance(join, in, out, half_cosine, x, y)));
+      return ink * across(static_cast<float>(distance(join, in, out, half_cosine, x, y)));
     });
   }
 
-  // The share of a pixel at that distance from the middle of the line that the line covers.
+  // The share of a pixel at that distance from the middle of the line that the line covers: of
+  // those that lie on it, no more than there is of a line thinner than a pixel.
   float across(float distance) const {
-    const auto half = static_cast<float>(half_);
-    const float covered = std::min(distance + 0.5f, half) - std::max(distance - 0.5f, -half);
-    return std::min(std::max(covered, 0.0f), 1.0f);
+    return std::min(std::max(static_cast<float>(reach()) - distance, 0.0f), most_);
   }
 
-  // The share of the pixel around that place along the line that dashes cover.
-  float dash_share(double along) const {
+  // The share of the pixel around the place so far along the line that dashes cover.
+  float dash_share(const Line& line, double distance) const {
     if (dashes_.empty()) return 1;
-    if (period_ < kLeastPeriod) return static_cast<float>(ink_ / period_);
-    return static_cast<float>(ink_up_to(along + 0.5) - ink_up_to(along - 0.5));
+    if (period_ < kLeastPeriod) return static_cast<float>(inked_ / period_);
+    const double along = line.along + distance * line.rate;
+    const double half_pixel = half_pixel_along(line);
+    return static_cast<float>((inked_up_to(along + half_pixel) - inked_up_to(along - half_pixel)) /
+                              (2 * half_pixel));
   }
 
  private:
@@ -175,19 +230,23 @@ class Stroker::Pen {
     double length;
   };
 
+  static double half_pixel_along(const Line& line) {
+    return std::max(std::abs(line.rate), kLeastRate) / 2;
+  }
+
   // The length of the dashes between the beginning of the outline and a place along it.
-  double ink_up_to(double along) const {
+  double inked_up_to(double along) const {
     const double periods = std::floor(along / period_);
     const double rest = along - periods * period_;
-    double ink = periods * ink_;
-    for (const Dash& dash : dashes_) ink += std::clamp(rest - dash.begin, 0.0, dash.length);
-    return ink;
+    double inked = periods * inked_;
+    for (const Dash& dash : dashes_)
+      inked += std::min(std::max(rest - dash.begin, 0.0), dash.length);
+    return inked;
   }
 
   // The distance from a vertex of a place near it, as the join has it.
   double distance(LineJoin join, const Line& in, const Line& out, double half_cosine, double x,
                   double y) const {
-    if (join == LineJoin::round) return std::sqrt(x * x + y * y);
     if (join == LineJoin::miter) {
       return std::max(std::abs(x * in.dy - y * in.dx), std::abs(x * out.dy - y * out.dx));
     }
@@ -196,6 +255,110 @@ class Stroker::Pen {
     const double length = std::sqrt(bisector_x * bisector_x + bisector_y * bisector_y);
     if (length == 0) return std::sqrt(x * x + y * y);
     return (x * bisector_x + y * bisector_y) / length + half_ * (1 - half_cosine);
+  }
+
+  // A line with round ends, and what is the same for all blocks of pixels.
+  struct RoundLine {
+    RoundLine(const Line& of, const Pen& pen)
+        : line(of),
+          steps_along(kSteps * static_cast<float>(of.dx)),
+          steps_off(kSteps * static_cast<float>(of.dy)),
+          reach(Floats{} + static_cast<float>(pen.reach())),
+          most(Floats{} + pen.most_),
+          ink_255(Floats{} + of.ink * 255) {}
+
+    const Line& line;
+    Floats steps_along;
+    Floats steps_off;
+    Floats reach;
+    Floats most;
+    Floats ink_255;
+  };
+
+  // What is not near the line gets nothing: so whole blocks of columns are drawn at once, wherever
+  // they begin.
+  void draw_round_row(const RoundLine& round, int row, Columns columns) {
+    values_ += static_cast<std::uint64_t>(columns.end - columns.begin);
+    const Line& line = round.line;
+    const double y = row + 0.5 - line.from.y;
+    const int last = std::max(mask_.width() - kBlock, 0);
+    std::uint8_t* const out = mask_.row_begin(row);
+    for (int block = columns.begin; block < columns.end; block += kBlock) {
+      const int begin = std::min(block, last);
+      // Of the first pixel: how far along the line it is.
+      const double x = begin + 0.5 - line.from.x;
+      const double along = x * line.dx + y * line.dy;
+      Floats values = values_of_block(round, along, y * line.dx - x * line.dy);
+      if (!dashes_.empty()) values *= dash_shares(line, along);
+      cover(values, out + begin);
+    }
+  }
+
+  // Of pixels side by side, the first of which is so far along the line, and beside it; up to 255.
+  static Floats values_of_block(const RoundLine& round, double along, double beside) {
+    constexpr Floats kNone{};
+    const Floats before = static_cast<float>(-along) - round.steps_along;
+    const Floats behind = static_cast<float>(along - round.line.length) + round.steps_along;
+    const Floats outside = before > behind ? before : behind;
+    const Floats beyond = outside > kNone ? outside : kNone;
+    const Floats off = static_cast<float>(beside) - round.steps_off;
+    const Floats covered = round.reach - root_of(off * off + beyond * beyond);
+    const Floats share = covered > kNone ? covered : kNone;
+    return round.ink_255 * (share < round.most ? share : round.most);
+  }
+
+  static Floats root_of(Floats squares) {
+    Floats roots;
+    for (int i = 0; i < kBlock; ++i) roots[i] = std::sqrt(squares[i]);
+    return roots;
+  }
+
+  // The same of dash_share(), for pixels side by side.
+  Floats dash_shares(const Line& line, double along) const {
+    constexpr Floats kNone{};
+    if (period_ < kLeastPeriod) return kNone + static_cast<float>(inked_ / period_);
+    // Numbers stay small if they are counted from the period in which the first pixel lies.
+    const double place = line.along + along * line.rate;
+    const double first = place - std::floor(place / period_) * period_;
+    const Floats steps = kSteps * static_cast<float>(line.dx);
+    const Floats before = static_cast<float>(-along) - steps;
+    const Floats behind = static_cast<float>(along - line.length) + steps;
+    const Floats on_line =
+        steps + (before > kNone ? before : kNone) - (behind > kNone ? behind : kNone);
+    const Floats places = static_cast<float>(first) + on_line * static_cast<float>(line.rate);
+    const auto half_pixel = static_cast<float>(half_pixel_along(line));
+    return (inked_up_to(places + half_pixel) - inked_up_to(places - half_pixel)) / (2 * half_pixel);
+  }
+
+  Floats inked_up_to(Floats along) const {
+    const Floats quotient = along * static_cast<float>(1 / period_);
+    const Floats towards_zero =
+        __builtin_convertvector(__builtin_convertvector(quotient, Ints), Floats);
+    const Floats periods = towards_zero > quotient ? towards_zero - 1.0f : towards_zero;
+    const Floats rest = along - periods * static_cast<float>(period_);
+    Floats inked = periods * static_cast<float>(inked_);
+    for (const Dash& dash : dashes_) {
+      const Floats length = Floats{} + static_cast<float>(dash.length);
+      const Floats begun = rest - static_cast<float>(dash.begin);
+      const Floats part = begun > Floats{} ? begun : Floats{};
+      inked += part < length ? part : length;
+    }
+    return inked;
+  }
+
+  void cover(Floats values, std::uint8_t* out) const {
+    const auto rounded = __builtin_convertvector(values + 0.5f, Ints);
+    const auto narrow = __builtin_convertvector(rounded, Shorts);
+    const auto bytes = __builtin_convertvector(narrow, Bytes);
+    if (mask_.width() < kBlock) return cover(bytes, out, static_cast<std::size_t>(mask_.width()));
+    cover(bytes, out, kBlock);
+  }
+
+  static void cover(Bytes values, std::uint8_t* out, std::size_t count) {
+    Bytes before{};
+    std::memcpy(&before, out, count);
+    const Bytes greater = values > before ? values : before;
+    std::memcpy(out, &greater, count);
   }
 
   void draw_row(const Line& line, int row, double y, double west, double east) {
@@ -207,10 +370,8 @@ class Stroker::Pen {
     const auto step = static_cast<float>(line.dy);
     for (int column = columns.begin; column < columns.end; ++column) {
       const int i = column - columns.begin;
-      float share = across(std::abs(offset + static_cast<float>(i) * step));
-      if (!dashes_.empty()) {
-        share *= dash_share(line.along + (x + i) * line.dx + y * line.dy);
-      }
+      float share = line.ink * across(std::abs(offset + static_cast<float>(i) * step));
+      if (!dashes_.empty()) share *= dash_share(line, (x + i) * line.dx + y * line.dy);
       out[column] = std::max(out[column], to_value(share));
     }
   }
@@ -231,10 +392,11 @@ class Stroker::Pen {
   }
 
   const double half_;
+  const float most_;  // that the line covers of a pixel
   const LineJoin join_;
   std::vector<Dash> dashes_;  // of one period; empty: no gaps
   double period_ = 0;
-  double ink_ = 0;  // length of the dashes of a period
+  double inked_ = 0;  // length of the dashes of a period
   Mask& mask_;
   std::uint64_t values_ = 0;  // computed so far
 };
@@ -248,7 +410,7 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   measure(vertices, edges, view);
   Pen pen(stroke, scale, mask);
   const double most = static_cast<double>(kCrowd) * view.width * view.height;
-  const bool is_crowded = values_of_lines(pen, view) > most;
+  const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen, view) > most;
   if (is_crowded) merge_lines();
   if (cancellation != nullptr) cancellation->check();
   if (is_crowded && pen.half() >= kLeastHalfOfNearest && values_of_lines(pen, view) > most) {
@@ -268,18 +430,20 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
   };
   lines_.clear();
   ends_.clear();
+  length_of_lines_ = 0;
   for (const OutlineEdge& edge : edges) {
-    lines_.push_back(
-        line_between(place_of(edge.from), place_of(edge.to), edge.along * pixels_per_cell));
+    const Line line{
+        {}, {}, 0, 0, 0, edge.along * pixels_per_cell, edge.rate, static_cast<float>(edge.ink)};
+    lines_.push_back(line.between(place_of(edge.from), place_of(edge.to)));
     ends_.push_back({edge.from, edge.to});
+    length_of_lines_ += lines_.back().length;
   }
 }
 
-Stroker::Line Stroker::line_between(PicturePlace from, PicturePlace to, double along) {
-  const double dx = to.x - from.x;
-  const double dy = to.y - from.y;
-  const double length = std::sqrt(dx * dx + dy * dy);
-  return {from, to, dx / length, dy / length, length, along};
+// At least as many as values_of_lines().
+double Stroker::most_values_of_lines(const Pen& pen) const {
+  const double across = 2 * pen.reach();
+  return across * (length_of_lines_ + across * static_cast<double>(lines_.size()));
 }
 
 // About as many as draw_each() would compute.
@@ -299,28 +463,33 @@ double Stroker::values_of_lines(const Pen& pen, const View& view) const {
 }
 
 // Moves the ends to a grid, which no eye can see; lines without length vanish, and of equal ones
-// the first one stays.
+// the first one of the most ink stays.
 void Stroker::merge_lines() {
   const auto moved = [](PicturePlace place) {
     // Sums with 0 have no negative zeros, whose bits are different.
     return PicturePlace{std::round(place.x * kMergedParts) / kMergedParts + 0.0,
                         std::round(place.y * kMergedParts) / kMergedParts + 0.0};
   };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // what tells lines apart, and line
+  // What tells lines apart, what comes first of equal ones, and the line.
+  std::vector<std::tuple<std::uint64_t, float, std::uint32_t>> order;
   for (std::uint32_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
-    lines_[i] = line_between(moved(line.from), moved(line.to), line.along);
+    lines_[i] = line.between(moved(line.from), moved(line.to));
     ends_[i] = {number_of(line.from), number_of(line.to)};
-    if (ends_[i].from != ends_[i].to) order.emplace_back(ends_[i].from + ends_[i].to, i);
+    if (ends_[i].from != ends_[i].to) {
+      order.emplace_back(ends_[i].from + ends_[i].to, -line.ink, i);
+    }
   }
   std::ranges::sort(order);
-  const auto is_same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  const auto is_same = [](const auto& a, const auto& b) {
+    return std::get<0>(a) == std::get<0>(b);
+  };
   order.erase(std::unique(order.begin(), order.end(), is_same), order.end());
-  const auto by_line = [](const auto& item) { return item.second; };
-  std::ranges::sort(order, {}, by_line);
+  const auto line_of = [](const auto& item) { return std::get<2>(item); };
+  std::ranges::sort(order, {}, line_of);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    lines_[i] = lines_[order[i].second];
-    ends_[i] = ends_[order[i].second];
+    lines_[i] = lines_[line_of(order[i])];
+    ends_[i] = ends_[line_of(order[i])];
   }
   lines_.resize(order.size());
   ends_.resize(order.size());
@@ -330,8 +499,17 @@ void Stroker::draw_each(Pen& pen, const Cancellation* cancellation) {
   CancellationCheck check(cancellation, 64);
   for (const Line& line : lines_) {
     check();
-    pen.draw_line(line);
+    if (pen.has_round_ends()) {
+      pen.draw_round_line(line);
+    } else {
+      pen.draw_line(line);
+    }
   }
+  if (!pen.has_round_ends()) join_lines(pen, check);
+  values_ = pen.values();
+}
+
+void Stroker::join_lines(Pen& pen, CancellationCheck& check) {
   meet_.assign(std::bit_ceil(3 * lines_.size() + 1), Meeting());
   for (std::uint32_t i = 0; i < lines_.size(); ++i) {
     check();
@@ -341,10 +519,8 @@ void Stroker::draw_each(Pen& pen, const Cancellation* cancellation) {
   for (const Meeting& meeting : meet_) {
     if (meeting.count != 1) continue;
     check();
-    const Line line = leaving(meeting.line, meeting.is_end);
-    pen.draw_dot(line.from, line.along);
+    pen.draw_dot(leaving(meeting.line, meeting.is_end));
   }
-  values_ = pen.values();
 }
 
 // Two lines that meet are joined; where more than two meet, rings touch.
@@ -361,7 +537,7 @@ void Stroker::meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pe
   if (meeting.count == 2) {
     pen.draw_join(leaving(meeting.line, meeting.is_end).turned(), second);
   } else {
-    pen.draw_dot(second.from, second.along);
+    pen.draw_dot(second);
   }
 }
 
@@ -382,7 +558,7 @@ void Stroker::draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cance
     for (const Line& line : lines_) {
       check();
       const auto share_at = [&](double part) {
-        return pen.dash_share(line.along + part * line.length);
+        return line.ink * pen.dash_share(line, part * line.length);
       };
       field_.add({line.from.x, line.from.y - first}, {line.to.x, line.to.y - first}, share_at);
     }

@@ -1,9 +1,12 @@
 // Outlines: lines along the edges of polygons, drawn by distance from the edge.
 //
 // The value of a pixel is that share of a segment one pixel long, across the line and centred on
-// the pixel, that lies within the width of the line; where several edges are near, the greatest
-// value counts. So a line is no darker where edges meet. Outlines are always drawn on the CPU, and
-// are the same whichever renderer draws the fill.
+// the pixel, that lies within the width of the line, times the share of ink that the edge is given;
+// where several edges are near, the greatest value counts. So a line is no darker where edges meet.
+// Outlines are always drawn on the CPU, and are the same whichever renderer draws the fill.
+//
+// The outline of a ring that is hardly larger than the line is wide would be a dot as wide as the
+// line, and thousands of such rings a black map: its ink is to be given by Stroke::ink_of_ring().
 //
 // What a picture costs is bounded by its pixels and the length of its outlines, and not by the
 // width of its lines: where lines are so crowded that kCrowd values would be computed for every
@@ -46,6 +49,12 @@ struct Stroke {
   /// The greatest distance from the edge at which the line covers anything, in pixels of a picture
   /// of that scale.
   double reach(int scale) const;
+  /// The share of ink for the outline of a ring that has the area of a circle of that diameter
+  /// (pixels of a picture of scale 1): 1 from kFullExtent times the width of the line on, and less
+  /// in proportion below. So the outline of a small circle has as much ink as the circle would have
+  /// if it were filled: its area.
+  double ink_of_ring(double extent) const;
+  static constexpr double kFullExtent = 4;
   /// About how many values of pixels are computed at most for lines along so many edges that are
   /// not longer than wide, in a picture of that view and scale. Never less for more edges, or for
   /// wider lines.
@@ -59,6 +68,8 @@ struct OutlineEdge {
   std::uint32_t from = 0;  // index of a vertex
   std::uint32_t to = 0;    // index of a vertex
   double along = 0;        // length of the outline up to `from`, in cells: where its dashes begin
+  double rate = 1;         // by how much `along` grows from cell to cell of the edge
+  double ink = 1;          // from 0 to 1: what its values are multiplied by
 };
 
 /// Draws outlines, with working memory that it keeps from one call to the next. One thread at a
@@ -87,8 +98,12 @@ class Stroker {
     double dy;
     double length;
     double along;  // at `from`
+    double rate;   // from pixel to pixel
+    float ink;
 
     Line turned() const;
+    /// The same between other ends.
+    Line between(PicturePlace new_from, PicturePlace new_to) const;
   };
   // What tells the ends of a line from other places.
   struct Ends {
@@ -106,16 +121,18 @@ class Stroker {
 
   void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
                const View& view);
-  static Line line_between(PicturePlace from, PicturePlace to, double along);
+  double most_values_of_lines(const Pen& pen) const;
   double values_of_lines(const Pen& pen, const View& view) const;
   void merge_lines();
   void draw_each(Pen& pen, const Cancellation* cancellation);
+  void join_lines(Pen& pen, CancellationCheck& check);
   void meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pen);
   Line leaving(std::uint32_t line, bool is_end) const;
   void draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cancellation);
 
   std::vector<Line> lines_;
-  std::vector<Ends> ends_;     // by line
+  std::vector<Ends> ends_;  // by line
+  double length_of_lines_ = 0;
   std::vector<Meeting> meet_;  // by place, open addressing
   OutlineField field_;
   std::uint64_t values_ = 0;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace trapeze {
@@ -14,41 +15,95 @@ namespace {
 
 constexpr std::size_t kValues = 256;
 
-// Premultiplied, 0..1.
+// What one or several layers show of a pixel. Colours are premultiplied; all from 0 to 1.
 struct Paint {
   float r = 0;
   float g = 0;
   float b = 0;
   float a = 0;
-  // Within a layer only: how much of the pixel its classes cover, and how many there are.
-  float covered = 0;
-  float classes = 0;
+  float covered = 0;  // how much of the pixel they cover, however transparent they are
+  float beneath = 0;  // how much of it shows what lies beneath them through what they cover
+  float classes = 0;  // within a layer only: how many there are
 };
 
-Paint to_paint(Rgba colour, float share) {
-  const float a = static_cast<float>(colour.a) / 255.0f * share;
+// Of something that covers that share of the pixel.
+Paint to_paint(Rgba colour, float share, float opacity = 1) {
+  const float a = static_cast<float>(colour.a) / 255.0f * share * opacity;
   const float scale = a / 255.0f;
   return {static_cast<float>(colour.r) * scale, static_cast<float>(colour.g) * scale,
-          static_cast<float>(colour.b) * scale, a};
+          static_cast<float>(colour.b) * scale, a, share};
 }
 
-// `above` times a factor, and `below` times a factor.
-Paint mixed(const Paint& above, float of_above, const Paint& below, float of_below) {
-  return {above.r * of_above + below.r * of_below,
-          above.g * of_above + below.g * of_below,
-          above.b * of_above + below.b * of_below,
-          above.a * of_above + below.a * of_below,
-          below.covered,
-          below.classes};
+// The colours of one times a factor, and those of the other times a factor; the rest is that of the
+// other.
+Paint mixed(const Paint& one, float of_one, const Paint& other, float of_other) {
+  Paint sum = other;
+  sum.r = one.r * of_one + other.r * of_other;
+  sum.g = one.g * of_one + other.g * of_other;
+  sum.b = one.b * of_one + other.b * of_other;
+  sum.a = one.a * of_one + other.a * of_other;
+  return sum;
 }
 
+Paint faded(const Paint& paint, float opacity) {
+  Paint fainter = mixed(paint, opacity, {}, 0);
+  fainter.covered = paint.covered;
+  return fainter;
+}
+
+// Lays a paint over another one that covers the same places as often as chance has it.
 Paint over(const Paint& above, const Paint& below) {
-  return mixed(above, 1, below, 1.0f - above.a);
+  Paint sum = mixed(above, 1, below, 1.0f - above.a);
+  sum.covered = above.covered + below.covered * (1.0f - above.covered);
+  sum.beneath =
+      below.beneath * (1.0f - above.a) + (1.0f - below.covered) * (above.covered - above.a);
+  return sum;
 }
 
-Paint beside(const Paint& one, float share, const Paint& other) {
-  Paint sum = mixed(one, 1, other, 1);
-  sum.covered += share;
+// How two layers that meet in a pixel share it.
+template <typename Number>
+struct Shares {
+  Number covered = 0;  // by the lower one, and what it goes on below the upper one
+  Number common = 0;   // by both
+};
+
+template <typename Number>
+Shares<Number> shares_of(Number below, Number above, const Meeting& meeting) {
+  const auto common_of = [&](Number covered) {
+    const Number chance = covered * above;
+    const Number relation = static_cast<Number>(meeting.relation) / Meeting::kNested;
+    if (relation < 0) {
+      const Number least = std::max(Number{0}, above + covered - 1);
+      return chance + relation * (chance - least);
+    }
+    return chance + relation * (std::min(above, covered) - chance);
+  };
+  const Number neither = std::max(Number{0}, 1 - above - below + common_of(below));
+  const Number covered = below + neither * static_cast<Number>(meeting.gap) / 255;
+  return {covered, common_of(covered)};
+}
+
+// Lays a paint over another one, of which it is known how they lie in the pixel.
+Paint over(const Paint& above, const Paint& below, const Meeting& meeting) {
+  if (above.covered == 0 || below.covered == 0) return over(above, below);
+  const auto [covered, common] = shares_of(below.covered, above.covered, meeting);
+  const float opacity = above.a / above.covered;
+  const float left = (1.0f - opacity * common / covered) * covered / below.covered;
+  Paint sum = mixed(above, 1, below, left);
+  sum.covered = above.covered + covered - common;
+  sum.beneath = below.beneath * left + (above.covered - common) * (1.0f - opacity);
+  return sum;
+}
+
+// Adds what shines of a class through others.
+Paint added(const Paint& one, const Paint& other) {
+  return mixed(one, 1, other, 1);
+}
+
+// Adds a class that lies beside others.
+Paint beside(const Paint& one, const Paint& other) {
+  Paint sum = added(one, other);
+  sum.covered += one.covered;
   sum.classes += 1;
   return sum;
 }
@@ -64,8 +119,7 @@ Paint settled(const Paint& sum) {
   constexpr float kHalfValue = 0.501f / 255;  // and what the sum lost in rounding
   const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfValue * sum.classes;
   if (!is_whole && sum.covered <= 1) return sum;
-  const float share = 1 / sum.covered;
-  Paint paint = mixed(sum, share, {}, 0);
+  Paint paint = mixed(sum, 1 / sum.covered, {}, 0);
   paint.covered = 1;
   return paint;
 }
@@ -85,13 +139,9 @@ Rgba to_rgba(const Paint& paint) {
 std::array<Paint, kValues> paints_of(Rgba colour, float opacity = 1) {
   std::array<Paint, kValues> paints;
   for (std::size_t value = 0; value < kValues; ++value) {
-    paints[value] = to_paint(colour, static_cast<float>(value) / 255.0f * opacity);
+    paints[value] = to_paint(colour, static_cast<float>(value) / 255.0f, opacity);
   }
   return paints;
-}
-
-float share_of(std::uint8_t value) {
-  return static_cast<float>(value) / 255.0f;
 }
 
 std::uint32_t to_bits(Rgba colour) {
@@ -173,7 +223,8 @@ class Composer::Canvas {
     width_ = width;
     height_ = height;
     size_ = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    mixtures_.assign(1, to_paint(background, 1));
+    background_ = to_paint(background, 1);
+    mixtures_.assign(1, Paint());
     blocks_.assign((size_ + kBlock - 1) / kBlock, 0);
     pixels_.resize(blocks_.size() * kBlock);
   }
@@ -238,7 +289,7 @@ class Composer::Canvas {
     const auto mix_pixel = [&](std::uint32_t below, std::uint32_t above) {
       // Counted from 1, so that no key is that of nothing.
       return number_of(std::uint64_t{below} << 32 | (above + 1), [&] {
-        return over(mixed(other.mixtures_[above], opacity, {}, 0), mixtures_[below]);
+        return over(faded(other.mixtures_[above], opacity), mixtures_[below]);
       });
     };
     const bool begins_empty = other.mixtures_[0].a == 0;
@@ -258,6 +309,42 @@ class Composer::Canvas {
       }
     }
     last_key_ = 0;
+  }
+
+  /// Notes what is there now in the pixels of meetings, for meet().
+  void note_below(std::span<const Meeting> meetings) {
+    below_.clear();
+    for (const Meeting& meeting : meetings) {
+      std::uint32_t& block = blocks_[meeting.pixel / kBlock];
+      std::uint32_t* const pixels = pixels_.data() + meeting.pixel / kBlock * kBlock;
+      if (block != kMixed) std::fill_n(pixels, kBlock, block);
+      block = kMixed;
+      below_.push_back(pixels[meeting.pixel % kBlock]);
+    }
+  }
+
+  /// Paints the pixels of these meetings anew, by mix(what was there, meeting); what
+  /// `number_above(meeting)` tells apart is less than 2^24.
+  template <typename NumberAbove, typename Mix>
+  void meet(std::span<const Meeting> meetings, const NumberAbove& number_above, const Mix& mix) {
+    if (meetings.empty()) return;
+    mixed_.clear();
+    last_key_ = 0;
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+      const Meeting& meeting = meetings[i];
+      // Counted from 1, so that no key is that of nothing.
+      const std::uint64_t key =
+          std::uint64_t{below_[i] + 1} << 40 | std::uint64_t{number_above(meeting)} << 16 |
+          std::uint64_t{static_cast<std::uint8_t>(meeting.relation)} << 8 | meeting.gap;
+      pixels_[meeting.pixel] = number_of(key, [&] { return mix(mixtures_[below_[i]], meeting); });
+    }
+    last_key_ = 0;
+  }
+
+  const Paint& mixture(std::uint32_t number) const { return mixtures_[number]; }
+  std::uint32_t mixture_at(std::uint32_t pixel) const {
+    const std::uint32_t block = blocks_[pixel / kBlock];
+    return block == kMixed ? pixels_[pixel] : block;
   }
 
   int width() const { return width_; }
@@ -327,6 +414,11 @@ class Composer::Canvas {
     return last_mixture_ = number;
   }
 
+  // Of the layers over the background.
+  Rgba colour_of(const Paint& mixture) const {
+    return to_rgba(mixed(mixture, 1, background_, 1.0f - mixture.covered + mixture.beneath));
+  }
+
   // False if there are too many colours.
   bool to_indices(Picture& picture) {
     index_of_.assign(mixtures_.size(), kNoIndex);
@@ -334,7 +426,7 @@ class Composer::Canvas {
     picture.indices.resize(pixels_.size());
     const bool is_done = translate(picture.indices.data(), [&](std::uint32_t mixture) {
       std::uint16_t& index = index_of_[mixture];
-      if (index == kNoIndex) index = index_of(to_rgba(mixtures_[mixture]), picture.palette);
+      if (index == kNoIndex) index = index_of(colour_of(mixtures_[mixture]), picture.palette);
       return index;
     });
     picture.indices.resize(is_done ? size_ : 0);
@@ -344,7 +436,8 @@ class Composer::Canvas {
 
   void to_colours(Picture& picture) {
     colours_.resize(mixtures_.size());
-    std::transform(mixtures_.begin(), mixtures_.end(), colours_.begin(), to_rgba);
+    std::transform(mixtures_.begin(), mixtures_.end(), colours_.begin(),
+                   [this](const Paint& mixture) { return colour_of(mixture); });
     picture.pixels.resize(pixels_.size());
     translate(picture.pixels.data(), [&](std::uint32_t mixture) { return colours_[mixture]; });
     picture.pixels.resize(size_);
@@ -381,7 +474,8 @@ class Composer::Canvas {
 
   int width_ = 0;
   int height_ = 0;
-  std::size_t size_ = 0;               // in pixels
+  std::size_t size_ = 0;  // in pixels
+  Paint background_;
   std::vector<Paint> mixtures_;        // of number 0: what it begins with
   std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
   std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
@@ -392,6 +486,7 @@ class Composer::Canvas {
   NumberTable mixed_;
   std::uint64_t last_key_ = 0;
   std::uint32_t last_mixture_ = 0;
+  std::vector<std::uint32_t> below_;     // the mixtures that note_below() found
   std::vector<std::uint16_t> index_of_;  // by mixture
   std::vector<Rgba> colours_;            // by mixture
   NumberTable indices_by_colour_;
@@ -418,14 +513,26 @@ auto laid_over(Rgba colour, double opacity = 1) {
              const Paint& below, std::uint8_t value) { return over(paints[value], below); };
 }
 
-/// The function that lays a colour, with the layer's pattern, over a mixture.
-auto patterned(Rgba colour, const PaintedLayer& layer) {
-  return [fills = paints_of(colour), patterns = paints_of(layer.pattern_colour),
-          opacity = static_cast<float>(layer.opacity)](const Paint& below, std::uint8_t value,
-                                                       std::uint8_t pattern_value) {
-    const Paint fill = beside(fills[value], share_of(value), {});
-    return over(mixed(within(patterns[pattern_value], fill), opacity, {}, 0), below);
-  };
+/// A colour with a layer's pattern on it, by the values of their masks.
+class PatternedPaints {
+ public:
+  PatternedPaints(Rgba colour, const PaintedLayer& layer)
+      : fills_(paints_of(colour)),
+        patterns_(paints_of(layer.pattern_colour)),
+        opacity_(static_cast<float>(layer.opacity)) {}
+
+  Paint at(std::uint8_t value, std::uint8_t pattern_value) const {
+    return faded(within(patterns_[pattern_value], fills_[value]), opacity_);
+  }
+
+ private:
+  std::array<Paint, kValues> fills_;
+  std::array<Paint, kValues> patterns_;
+  float opacity_;
+};
+
+std::uint8_t value_at(const Mask* mask, std::uint32_t pixel) {
+  return mask == nullptr ? std::uint8_t{255} : mask->pixels()[pixel];
 }
 
 }  // namespace
@@ -434,6 +541,11 @@ Rgba Picture::at(int column, int row) const {
   const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                         static_cast<std::size_t>(column);
   return is_indexed() ? palette[indices[i]] : pixels[i];
+}
+
+double covered_by(double below, double above, const Meeting& meeting) {
+  const auto [covered, common] = shares_of(below, above, meeting);
+  return above + covered - common;
 }
 
 std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes) {
@@ -458,13 +570,14 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
 }
 
 void Composer::paint(const PaintedLayer& layer) {
+  canvas_->note_below(layer.meetings);
   const bool is_separable = layer.lines.empty() || layer.opacity == 1;
   if (layer.classes.size() > 1 || !is_separable) return paint_together(layer);
   for (const PaintedClass& only : layer.classes) {
     if (layer.pattern != nullptr) {
-      canvas_->paint(only.mask, *layer.pattern, patterned(only.colour, layer));
+      paint_patterned(only, layer);
     } else if (only.colour.a > 0) {
-      canvas_->paint(only.mask, laid_over(only.colour, layer.opacity));
+      paint_only(only, layer);
     }
   }
   for (const PaintedClass& line : layer.lines) {
@@ -472,13 +585,43 @@ void Composer::paint(const PaintedLayer& layer) {
   }
 }
 
+void Composer::paint_only(const PaintedClass& only, const PaintedLayer& layer) {
+  const auto paints = paints_of(only.colour, static_cast<float>(layer.opacity));
+  canvas_->paint(only.mask, [&paints](const Paint& below, std::uint8_t value) {
+    return over(paints[value], below);
+  });
+  const auto value_of = [&](const Meeting& meeting) { return value_at(only.mask, meeting.pixel); };
+  canvas_->meet(layer.meetings, value_of, [&](const Paint& below, const Meeting& meeting) {
+    return over(paints[value_of(meeting)], below, meeting);
+  });
+}
+
+void Composer::paint_patterned(const PaintedClass& only, const PaintedLayer& layer) {
+  const PatternedPaints paints(only.colour, layer);
+  canvas_->paint(only.mask, *layer.pattern,
+                 [&paints](const Paint& below, std::uint8_t value, std::uint8_t pattern_value) {
+                   return over(paints.at(value, pattern_value), below);
+                 });
+  const auto values_of = [&](const Meeting& meeting) {
+    return std::pair(value_at(only.mask, meeting.pixel), value_at(layer.pattern, meeting.pixel));
+  };
+  const auto number_of = [&](const Meeting& meeting) {
+    const auto [value, pattern_value] = values_of(meeting);
+    return std::uint32_t{value} << 8 | pattern_value;
+  };
+  canvas_->meet(layer.meetings, number_of, [&](const Paint& below, const Meeting& meeting) {
+    const auto [value, pattern_value] = values_of(meeting);
+    return over(paints.at(value, pattern_value), below, meeting);
+  });
+}
+
 void Composer::paint_together(const PaintedLayer& layer) {
   layer_->begin(canvas_->width(), canvas_->height(), kTransparent);
   for (const PaintedClass& one : layer.classes) {
-    layer_->paint(one.mask,
-                  [paints = paints_of(one.colour)](const Paint& below, std::uint8_t value) {
-                    return beside(paints[value], share_of(value), below);
-                  });
+    layer_->paint(one.mask, [paints = paints_of(one.colour), is_beneath = one.is_beneath](
+                                const Paint& below, std::uint8_t value) {
+      return is_beneath ? added(paints[value], below) : beside(paints[value], below);
+    });
   }
   layer_->change_all(settled);
   if (layer.pattern != nullptr) {
@@ -490,7 +633,12 @@ void Composer::paint_together(const PaintedLayer& layer) {
   for (const PaintedClass& line : layer.lines) {
     layer_->paint(line.mask, laid_over(line.colour));
   }
-  canvas_->paint_over(*layer_, static_cast<float>(layer.opacity));
+  const auto opacity = static_cast<float>(layer.opacity);
+  canvas_->paint_over(*layer_, opacity);
+  const auto number_of = [&](const Meeting& meeting) { return layer_->mixture_at(meeting.pixel); };
+  canvas_->meet(layer.meetings, number_of, [&](const Paint& below, const Meeting& meeting) {
+    return over(faded(layer_->mixture(number_of(meeting)), opacity), below, meeting);
+  });
 }
 
 }  // namespace trapeze

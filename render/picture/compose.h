@@ -2,6 +2,11 @@
 //
 // Composition is "source over" in sRGB values, as browsers do it, in floating point, rounded once.
 // Classes of one layer are summed by area instead, so that neighbours leave no line between them.
+//
+// Of layers it is kept apart how much of a pixel they cover, and how opaque they are. Where nothing
+// is known of how two layers lie in a pixel, the upper one covers as much of the lower one as it
+// covers of the pixel, which is "source over"; where it is known, see Meeting, what lies side by
+// side is summed, and what lies beneath is hidden.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +36,28 @@ struct Picture {
 struct PaintedClass {
   const Mask* mask = nullptr;  // null: every pixel is wholly covered
   Rgba colour;                 // its opacity included
+  // What shines of it through another class of the layer, which counts as covering the pixel.
+  bool is_beneath = false;
 };
+
+/// How the classes of a layer lie in a pixel in relation to what the layers below it cover there,
+/// where both cover a part of it.
+struct Meeting {
+  static constexpr std::int8_t kSideBySide = -126;  // they share as little area as they can
+  static constexpr std::int8_t kNested = 126;       // they share as much area as they can
+
+  std::uint32_t pixel = 0;   // row * width + column
+  std::int8_t relation = 0;  // between these two; 0: as much as chance has it
+  // How much of what neither of them covers lies between the two, and is covered by none only
+  // because their borders were simplified, in 255ths: there the lower one goes on below the upper.
+  std::uint8_t gap = 0;
+
+  friend bool operator==(const Meeting&, const Meeting&) = default;
+};
+
+/// How much of a pixel two layers that meet in it cover together, each of which covers so much of
+/// it, from 0 to 1.
+double covered_by(double below, double above, const Meeting& meeting);
 
 /// A layer to be painted: classes of polygons, whose colours mix by the area that each covers; the
 /// pattern over them; lines over that, the first one lowest; the opacity applies to the result. A
@@ -42,6 +68,7 @@ struct PaintedLayer {
   Rgba pattern_colour = kTransparent;
   std::span<const PaintedClass> lines = {};
   double opacity = 1;
+  std::span<const Meeting> meetings = {};  // with the layers below, in order of pixels
 };
 
 /// Each class as a layer of its own, in this order; views of the classes.
@@ -66,6 +93,8 @@ class Composer {
  private:
   class Canvas;
   void paint(const PaintedLayer& layer);
+  void paint_only(const PaintedClass& only, const PaintedLayer& layer);
+  void paint_patterned(const PaintedClass& only, const PaintedLayer& layer);
   void paint_together(const PaintedLayer& layer);
 
   std::unique_ptr<Canvas> canvas_;

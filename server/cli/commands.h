@@ -18,6 +18,7 @@ struct ServeArguments {
   std::string config;                    // may be empty
   std::vector<ConfigOverride> settings;  // of the command line; they override all others
   std::vector<std::string> files;        // instead of the layers of the configuration
+  CoverageArguments coverage;            // of all layers; empty: as they are configured
   std::optional<SkipLimit> max_skipped;  // of all layers; unset: as they are configured
   bool is_verbose = false;               // whatever log.level says
 };
@@ -70,6 +71,7 @@ struct RenderArguments {
   std::string tile;                // Z/X/Y
   int scale = 1;
   std::string style;  // a query string
+  CoverageArguments coverage;
   std::string renderer = "auto";
   std::string device;
   std::string output;

@@ -30,7 +30,7 @@ void print_memory(const Layer& layer, const LoadReport& report) {
   fmt::print("  memory of attributes  {} bytes\n", layer.features().memory());
 }
 
-/// Polygons that share borders, if that was asked for.
+/// Polygons that share borders, if there are any.
 void print_coverage(const CoverageCounts& counts) {
   if (counts.groups == 0 && counts.apart == 0) return;
   fmt::print("  coverages             {} groups with {} features\n", counts.groups,
@@ -131,6 +131,8 @@ int run_check(const CheckArguments& arguments) {
   }
   if (is_all_good && !arguments.list.empty()) {
     is_all_good = list_faults_of(arguments.files.front(), arguments);
+  } else if (!arguments.list.empty()) {
+    fmt::print(stderr, "trapeze: {}: not written\n", arguments.list);
   }
   fmt::print("memory of the process   {} bytes at most\n", process_figures().peak_resident_bytes);
   return is_all_good ? 0 : 1;

@@ -94,6 +94,7 @@ int run_render(const RenderArguments& arguments) {
   for (LayerConfig& layer : layers) {
     const auto topology = request.style.value_for(layer.name, ParameterId::topology);
     layer.fast_topology = topology && *topology == ParameterValue("fast");
+    apply(arguments.coverage, layer);
   }
   const RendererKind kind = word_or_throw("--renderer", arguments.renderer, kRendererNames);
   auto renderers = start_renderers({kind, arguments.device}, 1);

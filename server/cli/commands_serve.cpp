@@ -68,6 +68,18 @@ void limit_skipped(SkipLimit limit, LoadedConfig& loaded) {
   }
 }
 
+/// Of all layers.
+void share_borders(const CoverageArguments& coverage, LoadedConfig& loaded) {
+  for (LayerConfig& layer : loaded.config.layers) {
+    apply(coverage, layer);
+    const auto note = [&](const char* key, const char* option, bool is_given) {
+      if (is_given) loaded.origins[fmt::format("layer.{}.{}", layer.name, key)] = option;
+    };
+    note("coverage", "--coverage", !coverage.mode.empty());
+    note("close_gaps", "--close-gaps", coverage.close_gaps.has_value());
+  }
+}
+
 /// Finds out before the socket is open what would only fail after the other files were loaded.
 void check_files_exist(const std::vector<LayerConfig>& layers) {
   for (const LayerConfig& layer : layers) {
@@ -118,6 +130,7 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
   LoadedConfig loaded = load_config(arguments.config, overrides);
   throw_if_any(loaded.problems);
   if (!arguments.files.empty()) take_files(arguments.files, loaded);
+  share_borders(arguments.coverage, loaded);
   if (arguments.max_skipped) limit_skipped(*arguments.max_skipped, loaded);
   return loaded;
 }

@@ -78,7 +78,7 @@ constexpr const char* kCheckFooter =
     "\nExamples:\n"
     "  trapeze check countries.fgb buildings.shp\n"
     "  trapeze check --strict delivery.gpkg\n"
-    "  trapeze check --coverage auto --list errors.geojson parcels.gpkg\n\n"
+    "  trapeze check --list errors.geojson parcels.gpkg\n\n"
     "The exit status is 1 if a file cannot be read, or if more features are skipped than\n"
     "--max-skipped allows; repaired and other skipped features are only listed. --list writes the\n"
     "places where polygons do not fit together, as they are in FILE: kind (gap or overlap), area "
@@ -189,6 +189,32 @@ void add_max_skipped(CLI::App& command, Limit& limit, const char* if_not_set) {
       "No feature may be skipped, whatever --max-skipped says");
 }
 
+void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage,
+                  const std::string& if_not_set) {
+  command
+      .add_option(
+          "--coverage", coverage.mode,
+          fmt::format("Whether polygons that share borders keep them in common: auto, on or "
+                      "off; as the setting of layers. If not set: {}",
+                      if_not_set))
+      ->type_name("NAME");
+  add_number(command, "--close-gaps", "METRES",
+             "Close gaps and overlaps between polygons of up to so many metres on the ground; not "
+             "with --coverage off",
+             [&coverage](const std::string& option, const std::string& text) {
+               coverage.close_gaps = trapeze::number_or_throw(option, text, 0, trapeze::kWidestGap);
+             });
+}
+
+std::string usual_coverage() {
+  return std::string(trapeze::kCoverageNames.name_of(trapeze::kUsualCoverage));
+}
+
+/// Where files are read that may have been prepared.
+std::string coverage_of_files() {
+  return "as a file was prepared, else " + usual_coverage();
+}
+
 void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
@@ -196,6 +222,8 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command
       .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
+  add_coverage(command, arguments.coverage,
+               "as configured; where nothing is, " + coverage_of_files());
   add_max_skipped(command, arguments.max_skipped, "as configured");
   add_setting(command, arguments, "--port", "server.port", "N");
   add_setting(command, arguments, "--address", "server.address", "IP");
@@ -241,26 +269,11 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   config->add_subcommand("schema", "Print the JSON Schema of configurations");
 }
 
-void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage) {
-  command
-      .add_option(
-          "--coverage", coverage.mode,
-          "Whether polygons that share borders keep them in common: auto, on or off; as the "
-          "setting of layers")
-      ->type_name("NAME");
-  add_number(command, "--close-gaps", "METRES",
-             "With --coverage: close gaps and overlaps between polygons of up to so many metres "
-             "on the ground",
-             [&coverage](const std::string& option, const std::string& text) {
-               coverage.close_gaps = trapeze::number_or_throw(option, text, 0, trapeze::kWidestGap);
-             });
-}
-
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
   CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
   check->footer(kCheckFooter);
   check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
-  add_coverage(*check, arguments.coverage);
+  add_coverage(*check, arguments.coverage, coverage_of_files());
   add_max_skipped(*check, arguments.max_skipped, "100%");
   check
       ->add_option("--list", arguments.list,
@@ -281,7 +294,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
                    fmt::format("What decides which vertices go: {}; {} if not set",
                                trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
-  add_coverage(*prepare, arguments.coverage);
+  add_coverage(*prepare, arguments.coverage, usual_coverage());
   prepare
       ->add_option("--source-layer", arguments.selection.layer,
                    "The layer or table of FILE; all that hold polygons if not set")
@@ -333,7 +346,7 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                    fmt::format("What decides which vertices go: {}; {} if not set",
                                trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
-  add_coverage(*command, arguments.coverage);
+  add_coverage(*command, arguments.coverage, usual_coverage());
   command
       ->add_option("--crs", arguments.crs,
                    "EPSG:4326 (degrees, if not set) or EPSG:3857 (metres, the map as it is drawn)")
@@ -360,6 +373,7 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
              });
   render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
       ->type_name("QUERY");
+  add_coverage(*render, arguments.coverage, coverage_of_files());
   render->add_option("--renderer", arguments.renderer, help_of("server.renderer"))
       ->type_name("NAME");
   render->add_option("--device", arguments.device, help_of("server.device"))->type_name("DEVICE");

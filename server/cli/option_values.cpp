@@ -96,6 +96,12 @@ void apply(const CoverageArguments& arguments, LayerOptions& options) {
   options.close_gaps = arguments.close_gaps.value_or(0);
 }
 
+void apply(const CoverageArguments& arguments, LayerConfig& layer) {
+  const std::optional<CoverageMode> coverage = coverage_or_throw(arguments);
+  if (coverage) layer.coverage = coverage;
+  if (arguments.close_gaps) layer.close_gaps = arguments.close_gaps;
+}
+
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files) {
   try {
     return layers_of_files(files);

@@ -57,6 +57,8 @@ struct CoverageArguments {
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments);
 /// Sets what is to become of a source.
 void apply(const CoverageArguments& arguments, LayerOptions& options);
+/// What is not said stays as the layer has it.
+void apply(const CoverageArguments& arguments, LayerConfig& layer);
 
 /// A layer of each file, named after it, each name once.
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files);

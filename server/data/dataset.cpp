@@ -59,6 +59,15 @@ void log_report(const LoadReport& report, const Layer& layer) {
     spdlog::info("{}: {} polygons are smaller than the grid, or outside of the world", report.path,
                  report.empty);
   }
+  const CoverageCounts& coverage = report.coverage;
+  if (coverage.groups > 0) {
+    spdlog::info(
+        "{}: {} features share borders, in {} groups: {} edges in common, {} junctions; {} "
+        "features "
+        "overlap others by too much and are simplified by themselves",
+        report.path, coverage.features, coverage.groups, coverage.shared_edges, coverage.junctions,
+        coverage.apart);
+  }
   if (report.repaired > 0 || report.skipped > 0 || report.coverage.overlaps > 0) {
     spdlog::warn("{}: {} features repaired, {} skipped, {} pairs overlap", report.path,
                  report.repaired, report.skipped, report.coverage.overlaps);

@@ -17,14 +17,23 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
+/// How often a trapezoid is cut at most by those that lie over it, on average.
+std::uint64_t cuts_of_trapezoid(const Layer& layer, const LayerStyle& style) {
+  const std::size_t pairs = layer.overlaps().pairs().size() / 2;
+  if (pairs == 0 || !is_order_seen(style)) return 0;
+  return 1 + pairs / layer.features().size();
+}
+
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Layer& layer = plan.layer_of(paint);
   const Layer::Selection selection = selection_of(plan, paint, view);
   const std::uint64_t trapezoids = layer.estimate_trapezoids(selection);
-  const bool has_classes = !paint.style.classing.is_plain();
-  const std::uint64_t shapes = trapezoids + (has_classes ? layer.count_grains(selection) : 0);
+  const std::uint64_t grains =
+      layer.grains().count_near(selection.box, births_of_dust(paint, selection));
+  const std::uint64_t shapes = trapezoids + grains;
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
+  cost += trapezoids * cuts_of_trapezoid(layer, paint.style);
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);

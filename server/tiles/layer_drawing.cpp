@@ -1,6 +1,7 @@
 #include "server/tiles/layer_drawing.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -36,6 +37,59 @@ Box with_margin(const Box& box, double margin) {
 
 constexpr unsigned kStepsBetweenChecks = 16'384;
 
+constexpr double kLeastInk = 0.5 / 255;  // what is less cannot be seen
+
+double length_between(Point a, Point b) {
+  const double x = static_cast<double>(b.x) - a.x;
+  const double y = static_cast<double>(b.y) - a.y;
+  return std::sqrt(x * x + y * y);
+}
+
+/// Where polygons were cut off, nothing ends: along the antimeridian, and the other edges of the
+/// square of Web Mercator. Files were cut there before, and their cuts rounded and simplified:
+/// no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
+bool is_on_frame(Point a, Point b) {
+  constexpr std::int32_t kStrip = 430'000;  // cells: from 85.0449 degrees on
+  const auto is_pole = [](Point p) { return p.y <= kGridMin + kStrip || p.y >= kGridMax - kStrip; };
+  const auto is_antimeridian = [](Point p) { return p.x == kGridMin || p.x == kGridMax; };
+  return (a.x == b.x && is_antimeridian(a)) || (is_pole(a) && is_pole(b));
+}
+
+InkOfLoops ink_of_loops(const Stroke& stroke, const View& view, int scale) {
+  const double cells = view.cells_per_pixel * scale;  // of a pixel of scale 1
+  InkOfLoops ink;
+  for (int size = 0; size < kLoopSizes; ++size) {
+    ink[static_cast<std::size_t>(size)] =
+        stroke.ink_of_ring(extent_of(static_cast<LoopSize>(size)) / cells);
+  }
+  return ink;
+}
+
+/// Sorts the items and leaves one of those that are equal. Where they are dense, in the time that
+/// it takes to look at them.
+void sort_and_part(std::vector<std::uint32_t>& items) {
+  constexpr std::size_t kBits = 64;
+  if (items.empty()) return;
+  const auto [least, greatest] = std::ranges::minmax(items);
+  const std::size_t words = (greatest - least) / kBits + 1;
+  if (words > 2 * items.size()) {
+    std::ranges::sort(items);
+    items.erase(std::unique(items.begin(), items.end()), items.end());
+    return;
+  }
+  std::vector<std::uint64_t> is_there(words, 0);
+  for (const std::uint32_t item : items) {
+    is_there[(item - least) / kBits] |= std::uint64_t{1} << (item - least) % kBits;
+  }
+  items.clear();
+  for (std::size_t word = 0; word < words; ++word) {
+    for (std::uint64_t bits = is_there[word]; bits != 0; bits &= bits - 1) {
+      items.push_back(static_cast<std::uint32_t>(least + word * kBits +
+                                                 static_cast<unsigned>(std::countr_zero(bits))));
+    }
+  }
+}
+
 /// To ranges in ascending order.
 void append(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
   if (!ranges.empty() && ranges.back().first + ranges.back().count == trapezoid) {
@@ -45,23 +99,52 @@ void append(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
   }
 }
 
+/// The number of a feature's class; 0 if all are drawn alike.
+std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
+  return classes == nullptr ? std::uint8_t{0} : (*classes)[row];
+}
+
 }  // namespace
 
 void LayerDrawing::ClassDrawing::clear(std::uint8_t class_number) {
   number = class_number;
+  alpha = 0;
+  is_beneath = false;
   is_full = false;
   is_drawn = false;
   ranges.clear();
-  place_vertices.clear();
-  place_edges.clear();
-  place_trapezoids.clear();
-  all_places = {};
+  made_vertices.clear();
+  made_edges.clear();
+  made_trapezoids.clear();
+  all_made = {};
   parts.clear();
 }
 
 void LayerDrawing::ClassDrawing::add_place(const Box& place, bool is_hole) {
-  append_box(place, place_vertices, place_edges, place_trapezoids);
-  if (is_hole) std::swap(place_trapezoids.back().left, place_trapezoids.back().right);
+  append_box(place, made_vertices, made_edges, made_trapezoids);
+  if (is_hole) std::swap(made_trapezoids.back().left, made_trapezoids.back().right);
+}
+
+void LayerDrawing::ClassDrawing::add_patch(const ClassPatch& patch) {
+  const std::size_t first = made_trapezoids.size();
+  append_rectangle(patch.corners, made_vertices, made_edges, made_trapezoids);
+  if (!patch.is_hole) return;
+  for (MeshTrapezoid& part : std::span(made_trapezoids).subspan(first)) {
+    std::swap(part.left, part.right);
+  }
+}
+
+void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidPart& part) {
+  const auto v = static_cast<std::uint32_t>(made_vertices.size());
+  const auto e = static_cast<std::uint32_t>(made_edges.size());
+  const MeshEdge& left = mesh.edges[part.left];
+  const MeshEdge& right = mesh.edges[part.right];
+  made_vertices.insert(made_vertices.end(), {mesh.vertices[left.upper], mesh.vertices[left.lower],
+                                             mesh.vertices[right.upper], mesh.vertices[right.lower],
+                                             Point{mesh.vertices[left.upper].x, part.top},
+                                             Point{mesh.vertices[left.upper].x, part.bottom}});
+  made_edges.insert(made_edges.end(), {{v, v + 1}, {v + 2, v + 3}});
+  made_trapezoids.push_back({v + 4, v + 5, e, e + 1});
 }
 
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
@@ -71,6 +154,10 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
   const bool has_classes = !paint.style.classing.is_plain();
   return {with_margin(view.box(), reach), paint.level, plan.pixel_level(),
           has_classes ? SmallPolygons::drop : paint.small};
+}
+
+bool is_order_seen(const LayerStyle& style) {
+  return !style.classing.is_plain() || style.paints[0].fill.a < 255 || style.stroke.width > 0;
 }
 
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
@@ -87,36 +174,148 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   check();
   layer_->select(selection, tools.ranges);
   check();
-  if (classes == nullptr) {
-    if (!tools.ranges.empty()) {
-      class_drawing(0).ranges.assign(tools.ranges.begin(), tools.ranges.end());
-    }
-  } else {
-    part_by_class(*classes, tools);
-  }
+  part_by_class(classes, selection, tools);
   add_places(selection, view, classes, tools);
   check();
   for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
-  if (has_lines()) collect_edges(selection, classes, tools);
+  if (has_lines()) {
+    collect_edges(selection, ink_of_loops(style().stroke, view, plan.scale), classes, tools);
+  }
   return class_count_ > 0 || line_count_ > 0;
+}
+
+LayerDrawing::ClassDrawing& LayerDrawing::new_drawing(std::uint8_t number) {
+  if (class_count_ == classes_.size()) classes_.emplace_back();
+  ClassDrawing& drawing = classes_[class_count_++];
+  drawing.clear(number);
+  return drawing;
 }
 
 LayerDrawing::ClassDrawing& LayerDrawing::class_drawing(std::uint8_t number) {
   ClassDrawing*& drawing = by_number_[number];
-  if (drawing != nullptr) return *drawing;
-  if (class_count_ == classes_.size()) classes_.emplace_back();
-  drawing = &classes_[class_count_++];
-  drawing->clear(number);
+  if (drawing == nullptr) {
+    drawing = &new_drawing(number);
+    drawing->alpha = style().paints[number].fill.a;
+  }
   return *drawing;
 }
 
-void LayerDrawing::part_by_class(const FeatureClasses& classes, const DrawingTools& tools) {
+LayerDrawing::ClassDrawing& LayerDrawing::drawing_beneath(std::uint8_t number, std::uint8_t alpha) {
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    ClassDrawing& drawing = classes_[i];
+    if (drawing.is_beneath && drawing.number == number && drawing.alpha == alpha) return drawing;
+  }
+  ClassDrawing& drawing = new_drawing(number);
+  drawing.is_beneath = true;
+  drawing.alpha = alpha;
+  return drawing;
+}
+
+void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
+                                 DrawingTools& tools) {
+  has_stack_ = find_stack(classes, selection, tools);
+  if (classes == nullptr && !has_stack_) {
+    if (!tools.ranges.empty()) {
+      class_drawing(0).ranges.assign(tools.ranges.begin(), tools.ranges.end());
+    }
+    return;
+  }
   CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
   for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
     check();
-    const std::uint8_t number = classes[layer_->feature_of(i)];
-    if (number != kNotDrawn) append(i, class_drawing(number).ranges);
+    const std::uint32_t row = layer_->feature_of(i);
+    const std::uint8_t number = number_of(classes, row);
+    if (number == kNotDrawn) return;
+    const FeatureStack::Role role =
+        has_stack_ && row != Layer::kNoFeature ? tools.stack.role_of(row) : FeatureStack::Role();
+    if (role.is_needed) tools.stack.add(row, i);
+    if (!role.is_cut) append(i, class_drawing(number).ranges);
   });
+  if (has_stack_) add_stack(classes, selection, tools);
+}
+
+// Whether features of the layer lie over each other here, and it matters.
+bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
+                              DrawingTools& tools) {
+  if (layer_->overlaps().empty() || !is_order_seen(style())) return false;
+  tools.stack.begin(layer_->overlaps(), epsilon_of_level(selection.pixel_level));
+  const auto paint_of = [&](std::uint32_t row) {
+    const std::uint8_t number = number_of(classes, row);
+    const Rgba fill = style().paints[number].fill;
+    return FeatureStack::Paint{has_lines() ? row : number, static_cast<float>(fill.a) / 255.0f,
+                               number == style().classing.class_of_highlighted()};
+  };
+  CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
+  for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+    check();
+    const std::uint32_t row = layer_->feature_of(i);
+    if (row == Layer::kNoFeature || number_of(classes, row) == kNotDrawn) return;
+    tools.stack.note(row, paint_of);
+  });
+  return tools.stack.settle(tools.cancellation);
+}
+
+// Where the layer's features lie over each other, each is drawn as far as it is seen.
+void LayerDrawing::add_stack(const FeatureClasses* classes, const Layer::Selection& selection,
+                             DrawingTools& tools) {
+  using RowAndEdge = std::pair<std::uint32_t, std::uint32_t>;
+  std::vector<RowAndEdge> level_edges;
+  if (has_lines()) {
+    layer_->select_horizontal_edges(selection.box, selection.level, tools.ranges);
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      const std::uint32_t row = layer_->feature_of(i);
+      if (!tools.stack.role_of(row).is_cut) return;
+      level_edges.emplace_back(row, layer_->mesh().trapezoids[i].left);
+    });
+    std::ranges::sort(level_edges);
+  }
+  const auto parts_of = [&](std::uint32_t row, std::span<const std::uint32_t> trapezoids,
+                            std::span<const TrapezoidPart> parts) {
+    const std::uint8_t number = number_of(classes, row);
+    add_parts(number, parts);
+    if (!has_lines()) return;
+    std::vector<std::uint32_t> edges;
+    auto edge = std::ranges::lower_bound(level_edges, RowAndEdge{row, 0});
+    for (; edge != level_edges.end() && edge->first == row; ++edge) edges.push_back(edge->second);
+    add_seen_edges(number, trapezoids, edges, parts);
+  };
+  tools.stack.resolve(layer_->mesh(), tools.cancellation, parts_of);
+}
+
+void LayerDrawing::add_parts(std::uint8_t number, std::span<const TrapezoidPart> parts) {
+  for (const TrapezoidPart& part : parts) {
+    ClassDrawing& drawing = class_drawing(number);
+    const auto alpha =
+        static_cast<std::uint8_t>(std::lround(static_cast<float>(drawing.alpha) * part.share));
+    if (part.share == 1) {
+      drawing.add_part(layer_->mesh(), part);
+    } else if (alpha > 0) {
+      drawing_beneath(number, alpha).add_part(layer_->mesh(), part);
+    }
+  }
+}
+
+void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint32_t> trapezoids,
+                                  std::span<const std::uint32_t> level_edges,
+                                  std::span<const TrapezoidPart> parts) {
+  const Rgba colour = style().paints[number].stroke;
+  if (colour.a == 0) return;
+  const MeshView& mesh = layer_->mesh();
+  std::vector<std::uint32_t> own;
+  for (const std::uint32_t i : trapezoids) {
+    own.push_back(mesh.trapezoids[i].left);
+    own.push_back(mesh.trapezoids[i].right);
+  }
+  sort_and_part(own);
+  std::vector<SeenEdge>& seen = lines_of(colour).seen;
+  append_seen_sides(mesh, own, parts, seen);
+  for (const std::uint32_t edge : level_edges) append_seen_level_edge(mesh, edge, parts, seen);
+}
+
+GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection) {
+  if (paint.small == SmallPolygons::drop) return {1, 0};
+  const bool has_classes = !paint.style.classing.is_plain();
+  return has_classes ? GrainIndex::Births{0, selection.level} : selection.later_births();
 }
 
 // There are no more of them, in one class, than pixels.
@@ -124,69 +323,101 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const View& vie
                               const FeatureClasses* classes, DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
   const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
-  if (classes == nullptr) {
-    if (!is_kept) return;
+  if (classes == nullptr && is_kept) {
     layer_->small_polygons(selection, tools.places);
     for (const Box& place : tools.places) class_drawing(0).add_place(widened(place, pixel), false);
-    return;
   }
-  if (paint_->small == SmallPolygons::drop) return;
+  const GrainIndex::Births births = births_of_dust(*paint_, selection);
+  if (births.is_empty()) return;
   const double margin = 2 * view.cells_per_pixel;  // a mote may reach into the next pixel
-  tools.dust.gather(layer_->grains(), with_margin(selection.box, margin), selection.level,
-                    view.cells_per_pixel, *classes, tools.motes);
-  for (const ClassMote& mote : tools.motes) {
+  tools.dust.gather(layer_->grains(),
+                    {with_margin(selection.box, margin), births, view.cells_per_pixel},
+                    classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
+  for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
     class_drawing(mote.feature_class)
         .add_place(is_kept ? widened(mote.box, pixel) : mote.box, mote.is_hole);
   }
+  for (const ClassPatch& patch : tools.shapes.patches) {
+    if (is_kept && patch.is_hole) continue;
+    class_drawing(patch.feature_class).add_patch(patch);
+  }
 }
 
 void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing& drawing) {
-  const bool has_places = !drawing.place_trapezoids.empty();
-  drawing.is_full = !has_places && layer_->fill_box(selection, drawing.ranges);
-  drawing.is_drawn =
-      !drawing.is_full && (style().paints[drawing.number].fill.a > 0 || has_pattern());
+  const bool has_made = !drawing.made_trapezoids.empty();
+  drawing.is_full = !has_made && layer_->fill_box(selection, drawing.ranges);
+  drawing.is_drawn = !drawing.is_full && (has_made || !drawing.ranges.empty()) &&
+                     (drawing.alpha > 0 || has_pattern());
   if (!drawing.is_drawn) return;
   if (!drawing.ranges.empty()) drawing.parts.push_back({layer_->mesh(), drawing.ranges});
-  if (!has_places) return;
-  const MeshView mesh{new_mesh_id(), drawing.place_vertices, drawing.place_edges,
-                      drawing.place_trapezoids};
-  drawing.all_places = {0, static_cast<std::uint32_t>(drawing.place_trapezoids.size())};
-  drawing.parts.push_back({mesh, {&drawing.all_places, 1}});
+  if (!has_made) return;
+  const MeshView mesh{new_mesh_id(), drawing.made_vertices, drawing.made_edges,
+                      drawing.made_trapezoids};
+  drawing.all_made = {0, static_cast<std::uint32_t>(drawing.made_trapezoids.size())};
+  drawing.parts.push_back({mesh, {&drawing.all_made, 1}});
 }
 
-void LayerDrawing::collect_edges(const Layer::Selection& selection, const FeatureClasses* classes,
-                                 DrawingTools& tools) {
+void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfLoops& ink,
+                                 const FeatureClasses* classes, DrawingTools& tools) {
   for (const ClassDrawing* drawing : by_number_) {
     if (drawing != nullptr) add_edges(drawing->ranges, drawing->number);
   }
   layer_->select_horizontal_edges(selection.box, selection.level, tools.ranges);
   std::vector<std::vector<TrapezoidRange>> by_class(style().paints.size());
   for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
-    const std::uint8_t number = classes == nullptr ? 0 : (*classes)[layer_->feature_of(i)];
-    if (number != kNotDrawn) append(i, by_class[number]);
+    const std::uint32_t row = layer_->feature_of(i);
+    const std::uint8_t number = number_of(classes, row);
+    const bool is_cut = has_stack_ && tools.stack.role_of(row).is_cut;
+    if (number != kNotDrawn && !is_cut) append(i, by_class[number]);
   });
   for (std::size_t number = 0; number < by_class.size(); ++number) {
     add_edges(by_class[number], static_cast<std::uint8_t>(number));
   }
   for (std::size_t i = 0; i < line_count_; ++i) {
-    take_sides(selection.box, lines_[i]);
-    take_dashed_sides(lines_[i], tools);
+    if (tools.cancellation != nullptr) tools.cancellation->check();
+    take_sides(selection.box, ink, lines_[i]);
   }
 }
 
 // Most edges are sides of several trapezoids, and some of these reach far out of the box.
-void LayerDrawing::take_sides(const Box& box, Lines& lines) const {
+void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const {
   const MeshView& mesh = layer_->mesh();
-  std::ranges::sort(lines.sides);
-  lines.sides.erase(std::unique(lines.sides.begin(), lines.sides.end()), lines.sides.end());
+  sort_and_part(lines.sides);
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
-    Box around;
-    around.include(mesh.vertices[edge.upper]);
-    around.include(mesh.vertices[edge.lower]);
-    if (around.intersects(box)) lines.edges.push_back({edge.upper, edge.lower, 0});
+    OutlineEdge line{edge.upper, edge.lower};
+    if (take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
+      lines.edges.push_back(line);
+    }
   }
+  for (const SeenEdge& seen : lines.seen) {
+    const auto first = static_cast<std::uint32_t>(lines.seen_points.size());
+    OutlineEdge line{first, first + 1};
+    if (!take_edge(seen.edge, seen.from, seen.to, box, ink, line)) continue;
+    line.ink *= seen.share;
+    lines.seen_points.insert(lines.seen_points.end(), {seen.from, seen.to});
+    lines.seen_edges.push_back(line);
+  }
+}
+
+// Of the piece of an edge between two points: its ink and its dashes. False if it is not seen here.
+bool LayerDrawing::take_edge(std::uint32_t edge, Point from, Point to, const Box& box,
+                             const InkOfLoops& ink, OutlineEdge& line) const {
+  const MeshView& mesh = layer_->mesh();
+  const OutlineView& outline = layer_->outline();
+  line.ink = ink[outline.loop_size(edge)];
+  Box around;
+  around.include(from);
+  around.include(to);
+  if (line.ink < kLeastInk || !around.intersects(box) || is_on_frame(from, to)) return false;
+  if (!style().stroke.is_dashed()) return true;
+  const Point upper = mesh.vertices[mesh.edges[edge].upper];
+  const Point lower = mesh.vertices[mesh.edges[edge].lower];
+  const AlongEdge along = along_edge(mesh, outline, edge, paint_->level);
+  line.rate = (along.lower - along.upper) / length_between(upper, lower);
+  line.along = along.upper + line.rate * length_between(upper, from);
+  return true;
 }
 
 LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
@@ -197,8 +428,10 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   Lines& lines = lines_[line_count_++];
   lines.colour = colour;
   lines.sides.clear();
-  lines.dashed_sides.clear();
   lines.edges.clear();
+  lines.seen.clear();
+  lines.seen_points.clear();
+  lines.seen_edges.clear();
   return lines;
 }
 
@@ -206,55 +439,33 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   const Rgba colour = style().paints[number].stroke;
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
-  const bool is_dashed = style().stroke.is_dashed();
   const MeshView& mesh = layer_->mesh();
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const std::uint32_t row = layer_->feature_of(i);
-    if (row == Layer::kNoFeature) return;  // dust has no outline
-    for (const std::uint32_t side : {mesh.trapezoids[i].left, mesh.trapezoids[i].right}) {
-      if (is_dashed) {
-        lines.dashed_sides.emplace_back(side, row);
-      } else {
-        lines.sides.push_back(side);
-      }
-    }
+    if (layer_->feature_of(i) == Layer::kNoFeature) return;  // dust has no outline
+    lines.sides.push_back(mesh.trapezoids[i].left);
+    lines.sides.push_back(mesh.trapezoids[i].right);
   });
 }
 
-// A border that two features share has the dashes of the first one: those of both would fill each
-// other's gaps.
-void LayerDrawing::take_dashed_sides(Lines& lines, DrawingTools& tools) const {
-  auto& sides = lines.dashed_sides;
-  const auto has_row_before = [](const auto& a, const auto& b) {
-    return std::pair(a.second, a.first) < std::pair(b.second, b.first);
-  };
-  std::ranges::sort(sides);
-  const auto is_same_edge = [](const auto& a, const auto& b) { return a.first == b.first; };
-  sides.erase(std::unique(sides.begin(), sides.end(), is_same_edge), sides.end());
-  std::ranges::sort(sides, has_row_before);
-  const MeshView& mesh = layer_->mesh();
-  const std::vector<LoopEdge>* loops = nullptr;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const auto [side, row] = sides[i];
-    if (i == 0 || sides[i - 1].second != row) {
-      if (tools.cancellation != nullptr) tools.cancellation->check();
-      loops = &tools.loop_lengths.find(*layer_, paint_->level, row);
-    }
-    const auto found = std::ranges::lower_bound(*loops, side, {}, &LoopEdge::edge);
-    if (found == loops->end() || found->edge != side) continue;  // cannot be
-    const MeshEdge& edge = mesh.edges[side];
-    lines.edges.push_back(found->leads_up ? OutlineEdge{edge.lower, edge.upper, found->along}
-                                          : OutlineEdge{edge.upper, edge.lower, found->along});
+const LayerDrawing::ClassDrawing* LayerDrawing::only_class() const {
+  const ClassDrawing* only = nullptr;
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    const ClassDrawing& drawing = classes_[i];
+    if (!drawing.is_full && !drawing.is_drawn) continue;
+    if (only != nullptr) return nullptr;
+    only = &drawing;
   }
+  return only;
 }
 
 bool LayerDrawing::hides_all() const {
-  return class_count_ == 1 && classes_[0].is_full &&
-         style().paints[classes_[0].number].fill.a == 255 && style().opacity == 1;
+  const ClassDrawing* only = only_class();
+  return only != nullptr && only->is_full && only->alpha == 255 && style().opacity == 1;
 }
 
 bool LayerDrawing::is_constant() const {
-  return class_count_ == 1 && classes_[0].is_full && line_count_ == 0 && !has_pattern();
+  const ClassDrawing* only = only_class();
+  return only != nullptr && only->is_full && line_count_ == 0 && !has_pattern();
 }
 
 void LayerDrawing::add_tasks(const View& view, const Cancellation* cancellation,
@@ -271,30 +482,46 @@ void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools
     Lines& lines = lines_[i];
     lines.mask.resize(view.width, view.height);
     lines.mask.fill(0);
-    tools.stroker.draw(layer_->mesh().vertices, lines.edges, style().stroke, view, scale,
-                       lines.mask, tools.cancellation);
+    const auto draw = [&](std::span<const Point> points, std::span<const OutlineEdge> edges) {
+      tools.stroker.draw(points, edges, style().stroke, view, scale, lines.mask,
+                         tools.cancellation);
+    };
+    draw(layer_->mesh().vertices, lines.edges);
+    if (!lines.seen_edges.empty()) draw(lines.seen_points, lines.seen_edges);
   }
 }
 
-void LayerDrawing::forget_places(MaskRenderer& renderer) {
+void LayerDrawing::forget_made(MaskRenderer& renderer) {
   for (std::size_t i = 0; i < class_count_; ++i) {
-    if (classes_[i].all_places.count > 0) renderer.forget(classes_[i].parts.back().mesh.id);
+    if (classes_[i].all_made.count > 0) renderer.forget(classes_[i].parts.back().mesh.id);
   }
 }
 
 PaintedLayer LayerDrawing::painted() {
   painted_classes_.clear();
   painted_lines_.clear();
-  for (const ClassDrawing* drawing : by_number_) {
-    if (drawing == nullptr || (!drawing->is_full && !drawing->is_drawn)) continue;
+  const auto add = [this](const ClassDrawing& drawing) {
+    if (!drawing.is_full && !drawing.is_drawn) return;
+    Rgba colour = style().paints[drawing.number].fill;
+    colour.a = drawing.alpha;
     painted_classes_.push_back(
-        {drawing->is_full ? nullptr : &drawing->mask, style().paints[drawing->number].fill});
+        {drawing.is_full ? nullptr : &drawing.mask, colour, drawing.is_beneath});
+  };
+  for (const ClassDrawing* drawing : by_number_) {
+    if (drawing != nullptr) add(*drawing);
+  }
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    if (classes_[i].is_beneath) add(classes_[i]);
   }
   for (std::size_t i = 0; i < line_count_; ++i) {
     painted_lines_.push_back({&lines_[i].mask, lines_[i].colour});
   }
   return {painted_classes_, has_pattern() ? &pattern_ : nullptr, style().pattern.colour,
           painted_lines_, style().opacity};
+}
+
+double LayerDrawing::tolerance(const View& view) const {
+  return epsilon_of_level(paint_->level) / view.cells_per_pixel;
 }
 
 bool LayerDrawing::is_empty() const {
@@ -309,8 +536,9 @@ bool LayerDrawing::is_empty() const {
 }
 
 bool LayerDrawing::is_full() const {
-  if (class_count_ != 1 || line_count_ > 0 || has_pattern()) return false;
-  return classes_[0].is_full || (classes_[0].is_drawn && classes_[0].mask.is_all(255));
+  if (line_count_ > 0 || has_pattern()) return false;
+  const ClassDrawing* only = only_class();
+  return only != nullptr && (only->is_full || only->mask.is_all(255));
 }
 
 }  // namespace trapeze

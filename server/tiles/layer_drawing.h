@@ -4,6 +4,7 @@
 // Thread-safety: one thread at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <span>
@@ -11,29 +12,39 @@
 
 #include "core/grid/cancellation.h"
 #include "core/layer/class_dust.h"
+#include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
+#include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
 #include "render/mask/stroke.h"
 #include "render/picture/compose.h"
 #include "server/styles/feature_classes.h"
-#include "server/tiles/loop_length_cache.h"
 #include "server/tiles/tile_plan.h"
 
 namespace trapeze {
+
+/// The share of ink for the outlines of loops, by their size.
+using InkOfLoops = std::array<double, kLoopSizes>;
 
 /// What the drawings of one tile have in common. The memory is kept from tile to tile.
 struct DrawingTools {
   const Cancellation* cancellation = nullptr;  // of the tile; null: wanted whatever happens
   ClassDust dust;
+  FeatureStack stack;
   Stroker stroker;
-  LoopLengthCache loop_lengths{std::size_t{64} << 20};
   std::vector<TrapezoidRange> ranges;
-  std::vector<ClassMote> motes;
+  ClassShapes shapes;
   std::vector<Box> places;
 };
 
 /// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
+
+/// The dust that is gathered from grains, feature by feature, by when they were born.
+GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection);
+
+/// Whether it matters which of two features that overlap is drawn over the other.
+bool is_order_seen(const LayerStyle& style);
 
 class LayerDrawing {
  public:
@@ -53,60 +64,83 @@ class LayerDrawing {
   /// Draws pattern and outlines, for a picture of that scale. Throws Cancelled.
   void draw_details(const View& view, int scale, DrawingTools& tools);
   /// Releases what was made for this picture only.
-  void forget_places(MaskRenderer& renderer);
+  void forget_made(MaskRenderer& renderer);
 
   /// As it goes into the picture, once all has been drawn; looks at memory of the drawing.
   PaintedLayer painted();
+  /// How far its boundary may be from the true one, in pixels of the view.
+  double tolerance(const View& view) const;
 
   /// Of what was drawn: whether nothing of it is to be seen, and whether it covers all alike.
   bool is_empty() const;
   bool is_full() const;
 
  private:
-  // The features of one class.
+  // The features of one class, or what shines of them through others that lie over them.
   struct ClassDrawing {
     std::uint8_t number = 0;
+    std::uint8_t alpha = 0;  // of the fill
+    bool is_beneath = false;
     bool is_full = false;   // covers the tile wholly and need not be drawn
     bool is_drawn = false;  // its mask
     std::vector<TrapezoidRange> ranges;
-    // Small polygons; their mesh is made for this picture.
-    std::vector<Point> place_vertices;
-    std::vector<MeshEdge> place_edges;
-    std::vector<MeshTrapezoid> place_trapezoids;
-    TrapezoidRange all_places;
+    // A mesh made for this picture: small polygons, and parts of trapezoids.
+    std::vector<Point> made_vertices;
+    std::vector<MeshEdge> made_edges;
+    std::vector<MeshTrapezoid> made_trapezoids;
+    TrapezoidRange all_made;
     std::vector<MeshPart> parts;
     Mask mask;
 
     void clear(std::uint8_t class_number);
     void add_place(const Box& place, bool is_hole);
+    void add_patch(const ClassPatch& patch);
+    void add_part(const MeshView& mesh, const TrapezoidPart& part);
   };
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
     std::vector<std::uint32_t> sides;  // edges of the mesh, before they are taken once each
-    // The same of dashed lines: edge, and row of the feature whose outline it is a part of.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> dashed_sides;
     std::vector<OutlineEdge> edges;
+    // Of features that others lie over: what is seen of them, between points of its own.
+    std::vector<SeenEdge> seen;
+    std::vector<Point> seen_points;
+    std::vector<OutlineEdge> seen_edges;
     Mask mask;
   };
 
+  /// The only one of which anything is painted; null if there are none or several.
+  const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
+  ClassDrawing& new_drawing(std::uint8_t number);
   ClassDrawing& class_drawing(std::uint8_t number);
-  void part_by_class(const FeatureClasses& classes, const DrawingTools& tools);
+  ClassDrawing& drawing_beneath(std::uint8_t number, std::uint8_t alpha);
+  void part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
+                     DrawingTools& tools);
+  bool find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
+                  DrawingTools& tools);
+  void add_stack(const FeatureClasses* classes, const Layer::Selection& selection,
+                 DrawingTools& tools);
+  void add_parts(std::uint8_t number, std::span<const TrapezoidPart> parts);
+  void add_seen_edges(std::uint8_t number, std::span<const std::uint32_t> trapezoids,
+                      std::span<const std::uint32_t> level_edges,
+                      std::span<const TrapezoidPart> parts);
+  bool take_edge(std::uint32_t edge, Point from, Point to, const Box& box, const InkOfLoops& ink,
+                 OutlineEdge& line) const;
   void add_places(const Layer::Selection& selection, const View& view,
                   const FeatureClasses* classes, DrawingTools& tools);
   void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);
-  void collect_edges(const Layer::Selection& selection, const FeatureClasses* classes,
-                     DrawingTools& tools);
+  void collect_edges(const Layer::Selection& selection, const InkOfLoops& ink,
+                     const FeatureClasses* classes, DrawingTools& tools);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
-  void take_sides(const Box& box, Lines& lines) const;
-  void take_dashed_sides(Lines& lines, DrawingTools& tools) const;
+  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;
+  bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them
   std::size_t class_count_ = 0;
   std::vector<ClassDrawing*> by_number_;  // null: not met yet

@@ -82,10 +82,10 @@ void TilePainter::release_memory() {
   drawing_count_ = 0;
   tasks_ = {};
   painted_ = {};
+  tolerances_ = {};
+  meetings_ = {};
   picture_ = {};
-  LoopLengthCache loop_lengths = std::move(tools_.loop_lengths);
   tools_ = {};
-  tools_.loop_lengths = std::move(loop_lengths);
   renderer_->release_memory();
 }
 
@@ -117,15 +117,15 @@ DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketche
   tasks_.clear();
   for (std::size_t i = 0; i < jobs.size(); ++i) draw_details(jobs[i], sketches[i]);
   if (tasks_.empty()) return {};
-  const auto forget_places = [this] {
-    for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_places(*renderer_);
+  const auto forget_made = [this] {
+    for (std::size_t k = 0; k < drawing_count_; ++k) drawings_[k].forget_made(*renderer_);
   };
   try {
     const DrawTimes times = renderer_->draw(tasks_);
-    forget_places();
+    forget_made();
     return times;
   } catch (...) {
-    forget_places();
+    forget_made();
     throw;
   }
 }
@@ -155,10 +155,13 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   {
     const Stopwatch stopwatch(tile.times.compose_ms);
     painted_.clear();
+    tolerances_.clear();
     for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
       is_constant = is_constant && drawings_[k].is_constant();
       painted_.push_back(drawings_[k].painted());
+      tolerances_.push_back(drawings_[k].tolerance(view));
     }
+    if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
     const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
     composer_.compose(painted_, side, side, plan.background, picture_);
     if (plan.debug.any()) mark(plan, view, picture_);

@@ -17,6 +17,7 @@
 #include "core/grid/cancellation.h"
 #include "render/mask/mask.h"
 #include "render/picture/compose.h"
+#include "render/picture/layer_meetings.h"
 #include "render/picture/png.h"
 #include "render/text/fonts.h"
 #include "server/styles/feature_classes.h"
@@ -108,6 +109,8 @@ class TilePainter {
   std::size_t drawing_count_ = 0;
   std::vector<MaskTask> tasks_;
   std::vector<PaintedLayer> painted_;
+  std::vector<double> tolerances_;  // by layer
+  LayerMeetings meetings_;
   DrawingTools tools_;
   Picture picture_;
 };

@@ -17,21 +17,6 @@ Rings with_short_cuts(const Rings& rings, const Box& view) {
   return shortened;
 }
 
-/// Even-odd; the point lies between cells, so that no vertex is level with it.
-bool is_inside(const Rings& rings, double x, double y) {
-  bool is_inside = false;
-  for (std::size_t r = 0; r < rings.size(); ++r) {
-    const auto ring = rings[r];
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point a = ring[i];
-      const Point b = ring[(i + 1) % ring.size()];
-      if ((a.y < y) == (b.y < y)) continue;
-      is_inside ^= x < a.x + (y - a.y) / (static_cast<double>(b.y) - a.y) * (b.x - a.x);
-    }
-  }
-  return is_inside;
-}
-
 TEST(BeyondView, VerticesInARowOnOneSideGo) {
   const Rings rings = rings_from_text("0 0, 20 1, 30 8, 40 2, 50 9, 20 11, 0 10");
   const Rings shortened = with_short_cuts(rings, {-5, -5, 15, 15});

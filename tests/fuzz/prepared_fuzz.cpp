@@ -8,6 +8,7 @@
 // left at the end: a byte, odd if nothing is to be mended; then two bytes, where the file is cut.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -146,6 +147,16 @@ View view_of(int zoom, bool is_whole) {
   return view;
 }
 
+/// The sum over all edges that there are in the mesh.
+double lengths_along(const Layer& layer, Level level) {
+  double sum = 0;
+  for (std::uint32_t edge = 0; edge < layer.mesh().edges.size(); ++edge) {
+    const auto [upper, lower] = along_edge(layer.mesh(), layer.outline(), edge, level);
+    sum += std::abs(upper - lower) + extent_of(layer.outline().loop_size(edge));
+  }
+  return sum;
+}
+
 /// Everything that a server asks of a layer; what takes longest only for some of the inputs.
 void use(const Layer& layer, std::uint32_t hash) {
   const bool whole_tiles = hash % 16 == 0;
@@ -154,6 +165,7 @@ void use(const Layer& layer, std::uint32_t hash) {
   static Mask mask;
   std::vector<TrapezoidRange> ranges;
   std::vector<Box> places;
+  double outline_lengths = 0;
   for (int zoom = 0; zoom <= 24; zoom += 3) {
     const View view = view_of(zoom, whole_tiles);
     const Layer::Selection selection{view.box(), static_cast<Level>(kLastLevel - 2 * zoom)};
@@ -161,9 +173,10 @@ void use(const Layer& layer, std::uint32_t hash) {
     renderer.draw(layer.mesh(), ranges, view, mask);
     layer.fill_box(selection, ranges);
     layer.small_polygons(selection, places);
+    outline_lengths += lengths_along(layer, selection.level);
   }
   Rings rings;
-  std::size_t bytes = 0;
+  std::size_t bytes = outline_lengths > 0;
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
     for (int field = 0; field < static_cast<int>(layer.features().fields().size()); ++field) {
       const Value value = layer.features().value(row, field);

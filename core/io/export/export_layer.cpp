@@ -60,12 +60,12 @@ class Exporter : public FeatureWorker {
     adapted.held = count_held(adaptable);
   }
 
-  void build_together(std::span<WaitingFeature* const> features) override {
+  void build_together(std::span<WaitingFeature* const> features, unsigned threads) override {
     std::vector<const Rings*> rings;
     for (const WaitingFeature* feature : features) rings.push_back(&feature->rings);
     const Assembly assembly =
         assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
-                 coverage_builder_, graph_);
+                 coverage_builder_, graph_, nullptr, threads);
     if (!assembly.together.empty()) adapt_together(features, assembly);
     for (const std::uint32_t i : assembly.apart)
       build_apart(features[i]->key, features[i]->rings_apart());

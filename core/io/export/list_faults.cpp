@@ -30,18 +30,11 @@ class FaultFinder : public FeatureWorker {
  public:
   void build_apart(const FeatureKey&, Rings&) override {}
 
-  void build_together(std::span<WaitingFeature* const> features) override {
+  void build_together(std::span<WaitingFeature* const> features, unsigned /*threads*/) override {
     std::vector<const Rings*> rings;
     for (const WaitingFeature* feature : features) rings.push_back(&feature->rings);
     CoverageFaults faults = find_faults(rings);
-    if (!faults.failure.empty()) {
-      unsearched_ += features.size();
-      const FeatureKey& first = features.front()->key;
-      notes_.push_back(
-          {first.order,
-           {first.id, "it and " + std::to_string(features.size() - 1) +
-                          " features near it are not in the list: " + faults.failure}});
-    }
+    if (!faults.failure.empty()) leave_out(features, faults.failure);
     for (CoverageFault& fault : faults.faults) take(features, std::move(fault));
   }
 
@@ -51,13 +44,21 @@ class FaultFinder : public FeatureWorker {
 
  private:
   void take(std::span<WaitingFeature* const> features, CoverageFault fault) {
-    if (fault.polygons.empty()) return;  // of less than a cell
+    if (fault.polygons.empty()) return leave_out(features, fault.polygons.failure);
     Found& found = found_.emplace_back();
     found.order = features[fault.features.front()]->key.order;
     for (const std::uint32_t i : fault.features) found.ids.push_back(features[i]->key.id);
     found.geometry = geometry_of(fault.polygons, ExportCrs::degrees).geometry;
     fault.polygons = {};
     found.fault = std::move(fault);
+  }
+
+  void leave_out(std::span<WaitingFeature* const> features, const std::string& reason) {
+    unsearched_ += features.size();
+    const FeatureKey& first = features.front()->key;
+    notes_.push_back({first.order,
+                      {first.id, "it and " + std::to_string(features.size() - 1) +
+                                     " features near it are not all in the list: " + reason}});
   }
 
   std::vector<Found> found_;

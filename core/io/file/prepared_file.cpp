@@ -77,29 +77,34 @@ class Cutter {
 }  // namespace
 
 std::string name_of(SectionKind kind) {
-  static constexpr std::array<const char*, 20> names = {"description",
-                                                        "vertices",
-                                                        "edges",
-                                                        "trapezoids",
-                                                        "lifespans",
-                                                        "features",
-                                                        "index",
-                                                        "index of level edges",
-                                                        "index of dust",
-                                                        "index of merged dust",
-                                                        "grains",
-                                                        "outlines",
-                                                        "ends of rings",
-                                                        "ends of outlines",
-                                                        "ids",
-                                                        "texts",
-                                                        "ends of texts",
-                                                        "numbers of a column",
-                                                        "nulls of a column",
-                                                        "texts of a column"};
-  static_assert(names.size() == static_cast<std::size_t>(SectionKind::texts));
+  static constexpr std::array<const char*, 25> kNames = {"description",
+                                                         "vertices",
+                                                         "edges",
+                                                         "trapezoids",
+                                                         "lifespans",
+                                                         "features",
+                                                         "index",
+                                                         "index of level edges",
+                                                         "index of dust",
+                                                         "index of merged dust",
+                                                         "grains",
+                                                         "overlaps",
+                                                         "outlines",
+                                                         "ends of rings",
+                                                         "ends of outlines",
+                                                         "sizes of loops",
+                                                         "ends of milestones",
+                                                         "milestones",
+                                                         "levels of milestones",
+                                                         "ids",
+                                                         "texts",
+                                                         "ends of texts",
+                                                         "numbers of a column",
+                                                         "nulls of a column",
+                                                         "texts of a column"};
+  static_assert(kNames.size() == static_cast<std::size_t>(SectionKind::texts));
   const auto number = static_cast<std::uint32_t>(kind);
-  return number >= 1 && number <= names.size() ? names[number - 1] : "unknown section";
+  return number >= 1 && number <= kNames.size() ? kNames[number - 1] : "unknown section";
 }
 
 bool is_prepared_file(const std::string& path) {

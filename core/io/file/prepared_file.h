@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be incremented when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 4;
+constexpr std::uint32_t kPreparedVersion = 5;
 
 /// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
@@ -53,9 +53,14 @@ enum class SectionKind : std::uint32_t {
   mote_index,
   merged_mote_index,
   grains,
+  overlaps,
   outline_points,
   ring_ends,
   outline_ends,
+  loop_sizes,
+  milestone_ends,
+  milestones,
+  milestone_levels,
   ids,
   string_bytes,
   string_ends,

@@ -51,14 +51,14 @@ void FeatureBuilder::remark_on_detail(const FeatureKey& feature) {
                              " it is not simplified, as thousands of its edges lie side by side");
 }
 
-void FeatureBuilder::build_together(std::span<WaitingFeature* const> features) {
+void FeatureBuilder::build_together(std::span<WaitingFeature* const> features, unsigned threads) {
   std::vector<std::uint32_t> rows;
   std::vector<const Rings*> rings;
   for (const WaitingFeature* feature : features) {
     rows.push_back(feature->key.row);
     rings.push_back(&feature->rings);
   }
-  const Assembly assembly = builder_.add_coverage(rows, rings);
+  const Assembly assembly = builder_.add_coverage(rows, rings, threads);
   tally_.coverage.apart += assembly.apart.size();
   if (!assembly.together.empty()) remark_on_detail(features[assembly.together.front()]->key);
   if (!assembly.outcome.failure.empty()) {

@@ -17,7 +17,7 @@ class FeatureBuilder : public FeatureWorker {
 
   void build_apart(const FeatureKey& feature, Rings& rings) override;
   /// Builds one graph of the features, but for those that have to be built apart (see assemble()).
-  void build_together(std::span<WaitingFeature* const> features) override;
+  void build_together(std::span<WaitingFeature* const> features, unsigned threads) override;
 
   const FeatureTally& tally() const { return tally_; }
   LayerBuilder take_builder() { return std::move(builder_); }

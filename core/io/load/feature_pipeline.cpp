@@ -31,9 +31,7 @@ constexpr double kCloseGapsCost = 15;
 constexpr double kGroupCost = 3;
 constexpr double kBuildCost = 10;
 
-using Task = std::vector<WaitingFeature*>;
-
-double work_of(const Task& task) {
+double work_of(std::span<WaitingFeature* const> task) {
   double vertices = 0;
   for (const WaitingFeature* feature : task) {
     vertices += static_cast<double>(feature->rings.points.size());
@@ -42,14 +40,15 @@ double work_of(const Task& task) {
 }
 
 /// The groups of features, and all others each by itself.
-std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode coverage) {
+std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& waiting,
+                                                   CoverageMode coverage, unsigned threads) {
   std::vector<const Rings*> rings;
   rings.reserve(waiting.size());
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
-  std::vector<Task> tasks;
+  std::vector<std::vector<WaitingFeature*>> tasks;
   std::vector<bool> is_grouped(waiting.size(), false);
-  for (const auto& group : group_features(rings, coverage)) {
-    Task& task = tasks.emplace_back();
+  for (const auto& group : group_features(rings, coverage, threads)) {
+    auto& task = tasks.emplace_back();
     for (const std::uint32_t i : group) {
       task.push_back(&waiting[i]);
       is_grouped[i] = true;
@@ -57,7 +56,7 @@ std::vector<Task> tasks_of(std::vector<WaitingFeature>& waiting, CoverageMode co
   }
   // Those that take long come first, so that no thread is left alone with one.
   std::stable_sort(tasks.begin(), tasks.end(),
-                   [](const Task& a, const Task& b) { return a.size() > b.size(); });
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
   for (std::size_t i = 0; i < waiting.size(); ++i) {
     if (!is_grouped[i]) tasks.push_back({&waiting[i]});
   }
@@ -102,12 +101,12 @@ class FeaturePipeline::Lane {
     }
   }
 
-  void take(const Task& task) {
+  void take(const Task& task, unsigned threads) {
     begin(work_of(task));
     if (task.size() == 1) {
       worker_.build_apart(task.front()->key, task.front()->rings_apart());
     } else {
-      worker_.build_together(task);
+      worker_.build_together(task, threads);
     }
     end();
     for (WaitingFeature* feature : task) feature->rings = feature->drawn = Rings();
@@ -291,17 +290,29 @@ void FeaturePipeline::build_waiting() {
     are_gaps_closed_ = true;
     show_progress();
   }
-  const std::vector<Task> tasks = tasks_of(waiting, options_.coverage);
+  const auto threads = static_cast<unsigned>(lanes_.size());
+  std::vector<Task> tasks = tasks_of(waiting, options_.coverage, threads);
   work_read_ = 0;
   for (const Task& task : tasks) work_read_ += work_of(task);
   is_grouped_ = true;
   show_progress();
+  // What would keep one thread busy when all others have nothing left to do is done by all of them.
+  const double much = work_read_ / (2 * threads);
+  const auto others = std::stable_partition(tasks.begin(), tasks.end(), [&](const Task& task) {
+    return threads > 1 && task.size() > 1 && work_of(task) > much;
+  });
+  build({tasks.begin(), others}, 1, threads);
+  build({others, tasks.end()}, lanes_.size(), 1);
+}
+
+/// Each task on one of the first lanes, which may use so many threads.
+void FeaturePipeline::build(std::span<const Task> tasks, std::size_t lanes, unsigned threads) {
   std::atomic<std::size_t> next = 0;
   std::vector<std::future<void>> running;
   try {
-    for (const auto& lane : lanes_) {
-      running.push_back(std::async(std::launch::async, [&next, &tasks, &lane] {
-        for (std::size_t i = next++; i < tasks.size(); i = next++) lane->take(tasks[i]);
+    for (std::size_t i = 0; i < std::min(lanes, tasks.size()); ++i) {
+      running.push_back(std::async(std::launch::async, [&next, tasks, threads, &lane = lanes_[i]] {
+        for (std::size_t t = next++; t < tasks.size(); t = next++) lane->take(tasks[t], threads);
       }));
     }
     wait_for(running);

@@ -40,8 +40,8 @@ class FeatureWorker {
 
   /// Takes a feature by itself. `rings` may be used as scratch memory.
   virtual void build_apart(const FeatureKey& feature, Rings& rings) = 0;
-  /// Takes two or more that share borders, in ascending order of rows.
-  virtual void build_together(std::span<WaitingFeature* const> features) = 0;
+  /// Takes two or more that share borders, in ascending order of rows; may use so many threads.
+  virtual void build_together(std::span<WaitingFeature* const> features, unsigned threads) = 0;
 
   /// How far it is with what it took last; begun anew by who gives it something.
   WorkShare& share() { return share_; }
@@ -65,9 +65,10 @@ class FeaturePipeline {
     std::size_t features = std::numeric_limits<std::size_t>::max();
   };
 
-  /// There is a thread for each worker. `source` and the workers must outlive the pipeline.
-  /// `progress` is as in LoadOptions, and may be empty: it is called now and then with the share of
-  /// the expected time that has gone, as far as it is spent here.
+  /// There is a thread for each worker; those that would wait for another help it. `source` and the
+  /// workers must outlive the pipeline. `progress` is as in LoadOptions, and may be empty: it is
+  /// called now and then with the share of the expected time that has gone, as far as it is spent
+  /// here.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                   const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress);
   ~FeaturePipeline();
@@ -97,12 +98,15 @@ class FeaturePipeline {
     std::size_t bytes = 0;  // of the geometry, as WKB
   };
   using Batch = std::vector<Job>;
+  /// Features that are built together, or one by itself.
+  using Task = std::vector<WaitingFeature*>;
 
   bool read(const Take& take, const RoundLimit& limit, Pool& pool);
   void accept(SourceFeature& next, const Take& take);
   std::vector<WaitingFeature> take_waiting();
   void close_gaps_between(std::vector<WaitingFeature>& waiting);
   void build_waiting();
+  void build(std::span<const Task> tasks, std::size_t lanes, unsigned threads);
   void wait_for(std::vector<std::future<void>>& running);
   void show_progress();
   double share() const;

@@ -90,6 +90,13 @@ void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilde
   report.notes = join_notes(tallies);
 }
 
+void warn_of_unknown_overlaps(const Layer& layer, LoadReport& report) {
+  if (layer.has_all_overlaps()) return;
+  report.warnings.push_back("so many features lie over each other that not all pairs are known (" +
+                            std::to_string(layer.overlaps().pairs().size() / 2) +
+                            " are): where others overlap, their colours mix");
+}
+
 std::unique_ptr<Layer> join_layer(std::deque<FeatureBuilder>& builders, FeatureTable table,
                                   const std::function<void(double)>& progress) {
   std::vector<LayerBuilder> parts;
@@ -123,6 +130,7 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
   fill_report(pipeline, builders, source, loaded.report);
   loaded.layer = join_layer(builders, table.take_table(), joining);
+  warn_of_unknown_overlaps(*loaded.layer, loaded.report);
   progress(1);
   loaded.report.read_seconds = seconds_between(start, pipeline.read_until());
   loaded.report.total_seconds = seconds_between(start, Clock::now());

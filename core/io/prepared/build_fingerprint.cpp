@@ -96,18 +96,22 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
   const std::unique_ptr<Layer> layer = build_probe(options);
   const LayerArrays a = arrays_of(*layer);
   const std::array<std::int64_t, 4> projected = probe_projection();
-  const std::array<std::uint64_t, 13> parts = {
+  const std::array<std::uint64_t, 17> parts = {
       kReadingVersion,
       checksum_of(a.vertices),
       checksum_of(a.edges),
       checksum_of(a.trapezoids),
       checksum_of(a.lifespans),
       checksum_of(a.feature_of),
+      checksum_of(a.outline.loop_sizes),
+      checksum_of(a.outline.milestones),
+      checksum_of(a.outline.milestone_levels),
       checksum_of(a.polygon_index),
       checksum_of(a.horizontal_edge_index),
       checksum_of(a.mote_index),
       checksum_of(a.merged_mote_index),
       checksum_of(a.grains),
+      checksum_of(a.overlaps),
       checksum_of(a.outline_points),
       checksum_of(std::span<const std::int64_t>(projected))};
   return checksum_of(std::span<const std::uint64_t>(parts));

@@ -207,7 +207,7 @@ TEST(Dust, AreaOfMotesIsThatOfTheGrainsAtEveryLevel) {
   for (int i = 0; i < 3000; ++i) {
     const Point p{at(random), at(random)};
     const Point q{p.x + at(random) / 100, p.y + at(random) / 100};
-    grains.push_back({p, q, area(random) * 1000, static_cast<Level>(born(random))});
+    grains.push_back({{p, q}, area(random) * 1000, static_cast<Level>(born(random))});
   }
   const std::vector<Mote> motes = settle(grains, 3 * grains.size());
   for (int level = 0; level <= kLastLevel; ++level) {
@@ -225,7 +225,7 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
   std::vector<Grain> grains;
   for (int i = 0; i < 20000; ++i) {
     const Point p{at(random), at(random)};
-    grains.push_back({p, p, 10, 1});
+    grains.push_back({{p, p}, 10, 1});
   }
   const std::vector<Mote> motes = settle(grains, 3 * grains.size());
   for (int level = 1; level <= kLastLevel; level += kLevelsPerOctave) {
@@ -239,20 +239,20 @@ TEST(Dust, MotesAliveTogetherAreBoundedByPixels) {
 }
 
 TEST(Dust, LongGrainsHaveManyMotesOnlyWhereTheyAreFew) {
-  const Grain sliver{{0, 0}, {1'000'000, 500'000}, 4e6, 1};
+  const Grain sliver{{{0, 0}, {1'000'000, 500'000}}, 4e6, 1};
   std::vector<Grain> grains(200, sliver);
   EXPECT_EQ(most_motes_of(grains, 600), kMostMotes);
   grains.resize(20'000, sliver);
   EXPECT_EQ(most_motes_of(grains, 60'000), 8);
   EXPECT_EQ(most_motes_of(grains, 2'000'000), kMostMotes) << "once they had many vertices";
   // Those of a pixel have one mote in any case.
-  grains.assign(1'000'000, {{0, 0}, {1, 1}, 4, 1});
+  grains.assign(1'000'000, {{{0, 0}, {1, 1}}, 4, 1});
   grains.resize(1'000'200, sliver);
   EXPECT_EQ(most_motes_of(grains, 3'000'600), kMostMotes);
 }
 
 TEST(Dust, FewerMotesHaveTheSameArea) {
-  const std::vector<Grain> grains(20'000, {{0, 0}, {1'000'000, 500'000}, 4e6, 1});
+  const std::vector<Grain> grains(20'000, {{{0, 0}, {1'000'000, 500'000}}, 4e6, 1});
   double area = 0;
   for (const Mote& mote : settle(grains, 60'000)) {
     if (mote.lifespan.contains(kLastLevel)) area += mote.area;
@@ -260,8 +260,9 @@ TEST(Dust, FewerMotesHaveTheSameArea) {
   EXPECT_NEAR(area / (20'000 * 4e6), 1, 1e-9);
 }
 
-TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {
-  // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells.
+TEST(Layer, DustOfAGreatToleranceIsMotesWithinPixelsAndLaterBirthsBeyond) {
+  // Two squares of ten cells, twenty apart: gone at a tolerance of 64, in one pixel of 64 cells,
+  // but not in pixels of 8.
   std::vector<LayerBuilder> builders(1);
   FeatureTable features(std::vector<Field>{});
   Rings first = rings_from_text("0 0, 10 0, 10 10, 0 10");
@@ -278,12 +279,22 @@ TEST(Layer, DustOfAGreatToleranceIsTakenTogetherWithinPixelsOnly) {
     return sum;
   };
   EXPECT_EQ(count(64, 64, SmallPolygons::dust), 1u);
-  EXPECT_EQ(count(64, 8, SmallPolygons::dust), 2u);
+  EXPECT_EQ(count(64, 8, SmallPolygons::dust), 0u);
+  const auto count_later = [&](double epsilon, double pixel) {
+    const Layer::Selection selection{layer->bounds(), nearest_level(epsilon),
+                                     nearest_level(pixel / 4), SmallPolygons::dust};
+    int later = 0;
+    layer->grains().visit(layer->bounds(), selection.later_births(),
+                          [&later](const FeatureGrain&) { ++later; });
+    return later;
+  };
+  EXPECT_EQ(count_later(64, 8), 2);
+  EXPECT_EQ(count_later(16, 64), 0);
   EXPECT_EQ(count(64, 64, SmallPolygons::drop), 0u);
   EXPECT_EQ(count(64, 64, SmallPolygons::keep), 0u);
   std::vector<Box> places;
-  layer->small_polygons({layer->bounds(), nearest_level(64), nearest_level(2)}, places);
-  EXPECT_EQ(places.size(), 2u);
+  layer->small_polygons({layer->bounds(), nearest_level(64), nearest_level(16)}, places);
+  EXPECT_EQ(places.size(), 1u);
 }
 
 TEST(LayerBuilder, LayerDoesNotDependOnWhichBuilderGotWhat) {

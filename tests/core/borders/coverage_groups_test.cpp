@@ -304,7 +304,7 @@ TEST(CoverageLayer, DustOfAllFeaturesTogetherMakesUpForWhatIsDrawn) {
     });
     // At the end nothing is drawn, and the dust of each feature is what it was.
     std::vector<double> dust(areas.size(), 0);
-    layer->grains().visit(kWorld, kLastLevel, [&](const FeatureGrain& grain) {
+    layer->grains().visit(kWorld, GrainIndex::Births{}, [&](const FeatureGrain& grain) {
       dust[grain.row] += static_cast<double>(grain.doubled_area) / 2;
     });
     const double grains = static_cast<double>(layer->grains().grains().size());

@@ -223,6 +223,20 @@ TEST(Coverage, RegionAtTheCoastGoesToALandHoweverLongTheCoast) {
       << "what is all around has not changed";
 }
 
+TEST(Coverage, ACornerThatASmallNeighbourHadStaysWhenThatIsTaken) {
+  // The corner of the large square is a small one, which becomes a part of it; all vertices there
+  // are near to each other, so that each could go if the others stayed.
+  const BuiltCoverage c(
+      Texts{"40 0, 1000 0, 1000 1000, 0 1000, 0 40, 40 40", "0 0, 40 0, 40 40, 0 40"});
+  ASSERT_TRUE(c.outcome.built);
+  AdaptableGraph adaptable(c.graph);
+  for (const double tolerance : {25.0, 35.0, 50.0, 100.0, 300.0}) {
+    adaptable.adapt_to(tolerance);
+    EXPECT_NEAR(static_cast<double>(adaptable.graph().doubled_areas()[1]) / 2, 1e6, tolerance * 100)
+        << tolerance;
+  }
+}
+
 TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

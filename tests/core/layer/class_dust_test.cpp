@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -55,31 +57,47 @@ TEST(ClassDustTest, EveryClassKeepsTheAreaOfItsFeatures) {
     classes[row] = row % 4 == 3 ? kNotDrawn : static_cast<std::uint8_t>(row % 4);
   }
   const Level level = nearest_level(40'000);  // all are gone
-  std::vector<ClassMote> motes;
-  ClassDust().gather(layer->grains(), kEverything, level, 160'000, classes, motes);
+  ClassShapes shapes;
+  ClassDust().gather(layer->grains(), {kEverything, {0, level}, 160'000}, classes, shapes);
   const double of_one = 9e6 - 1e6;  // without the courtyard
-  const std::map<int, double> sums = area_by_class(motes);
+  const std::map<int, double> sums = area_by_class(shapes.motes);
   ASSERT_EQ(sums.size(), 3U);
   for (const auto& [feature_class, area] : sums) EXPECT_NEAR(area, 100 * of_one, of_one);
-  EXPECT_LE(motes.size(), 3U * 8 * 8);  // as many pixels as the town has, for each class
-  EXPECT_TRUE(std::ranges::is_sorted(motes, {}, &ClassMote::feature_class));
+  EXPECT_LE(shapes.motes.size(), 3U * 8 * 8);  // as many pixels as the town has, for each class
+  EXPECT_TRUE(std::ranges::is_sorted(shapes.motes, {}, &ClassMote::feature_class));
 }
 
 TEST(ClassDustTest, OnlyWhatIsGoneByTheLevelAndLiesInTheBoxIsGathered) {
   const auto layer = town(3000);
   const std::vector<std::uint8_t> classes(400, 0);
-  std::vector<ClassMote> motes;
+  ClassShapes shapes;
   ClassDust dust;
-  dust.gather(layer->grains(), kEverything, 0, 4, classes, motes);
-  EXPECT_TRUE(motes.empty());
-  dust.gather(layer->grains(), {0, 0, 500'000, 500'000}, kLastLevel, 1000, classes, motes);
-  EXPECT_FALSE(motes.empty());
-  for (const ClassMote& mote : motes) {
-    EXPECT_TRUE(mote.box.intersects({-3000, -3000, 503'000, 503'000}));
+  dust.gather(layer->grains(), {kEverything, {0, 0}, 4}, classes, shapes);
+  EXPECT_TRUE(shapes.motes.empty());
+  // Buildings are 3000 cells wide, and no farther beyond the box than that.
+  const Box near{-6010, -6010, 506'010, 506'010};
+  dust.gather(layer->grains(), {{0, 0, 500'000, 500'000}, {0, kLastLevel}, 4000}, classes, shapes);
+  EXPECT_FALSE(shapes.motes.empty());
+  for (const ClassMote& mote : shapes.motes) EXPECT_TRUE(mote.box.intersects(near));
+  const std::size_t in_the_quarter = shapes.motes.size();
+  dust.gather(layer->grains(), {kEverything, {0, kLastLevel}, 4000}, classes, shapes);
+  EXPECT_LT(in_the_quarter, shapes.motes.size() / 3);
+}
+
+TEST(ClassDustTest, WhatIsLargerThanAPixelIsAPatchWhereItWas) {
+  const auto layer = town(3000);
+  const std::vector<std::uint8_t> classes(400, 0);
+  ClassShapes shapes;
+  ClassDust().gather(layer->grains(), {kEverything, {0, kLastLevel}, 900}, classes, shapes);
+  // 400 buildings, and 400 courtyards that take away from them.
+  EXPECT_TRUE(shapes.motes.empty());
+  EXPECT_EQ(shapes.patches.size(), 800U);
+  EXPECT_EQ(std::ranges::count_if(shapes.patches, &ClassPatch::is_hole), 400);
+  for (const ClassPatch& patch : shapes.patches) {
+    const double dx = static_cast<double>(patch.corners[1].x) - patch.corners[0].x;
+    const double dy = static_cast<double>(patch.corners[1].y) - patch.corners[0].y;
+    EXPECT_NEAR(std::hypot(dx, dy), patch.is_hole ? 1000 : 3000, 3);
   }
-  const std::size_t in_the_quarter = motes.size();
-  dust.gather(layer->grains(), kEverything, kLastLevel, 1000, classes, motes);
-  EXPECT_LT(in_the_quarter, motes.size() / 3);
 }
 
 TEST(ClassDustTest, TilesAgreeOnThePixelsAlongTheirBorder) {
@@ -96,14 +114,14 @@ TEST(ClassDustTest, TilesAgreeOnThePixelsAlongTheirBorder) {
   const double pixel = 8192;
   const Box west{-300'000, -300'000, 2 * 8192, 300'000};
   const Box east{-2 * 8192, -300'000, 300'000, 300'000};
-  std::vector<ClassMote> motes;
+  ClassShapes shapes;
   ClassDust dust;
-  dust.gather(layer->grains(), west, kLastLevel, pixel, classes, motes);
+  dust.gather(layer->grains(), {west, {0, kLastLevel}, pixel}, classes, shapes);
   const Box border{-1000, -250'000, 1000, 250'000};
-  const auto from_west = within(motes, border);
-  dust.gather(layer->grains(), east, kLastLevel, pixel, classes, motes);
+  const auto from_west = within(shapes.motes, border);
+  dust.gather(layer->grains(), {east, {0, kLastLevel}, pixel}, classes, shapes);
   EXPECT_FALSE(from_west.empty());
-  EXPECT_EQ(from_west, within(motes, border));
+  EXPECT_EQ(from_west, within(shapes.motes, border));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/layer/layer_builder.h"
+#include "tests/core/shapes/layers.h"
 #include "tests/core/shapes/shapes.h"
 
 namespace trapeze {
@@ -12,17 +12,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-/// A layer with a feature of each of the polygons, in this order.
-std::unique_ptr<Layer> layer_of(std::vector<Rings> polygons) {
-  FeatureTable features((std::vector<Field>()));
-  std::vector<LayerBuilder> builders(1);
-  for (Rings& rings : polygons) {
-    const std::uint32_t row = features.append(0, {});
-    builders.front().add(row, rings);
-  }
-  return LayerBuilder::join(builders, std::move(features));
-}
 
 Rings square(std::int32_t x, std::int32_t y, std::int32_t side) {
   Rings rings;

@@ -46,6 +46,9 @@ struct Copies {
         outline_points(a.outline_points.begin(), a.outline_points.end()),
         ring_ends(a.ring_ends.begin(), a.ring_ends.end()),
         outline_ends(a.outline_ends.begin(), a.outline_ends.end()),
+        loop_sizes(a.outline.loop_sizes.begin(), a.outline.loop_sizes.end()),
+        milestone_ends(a.outline.milestone_ends.begin(), a.outline.milestone_ends.end()),
+        milestone_levels(a.outline.milestone_levels.begin(), a.outline.milestone_levels.end()),
         rest(a) {}
 
   LayerArrays arrays() const {
@@ -62,6 +65,9 @@ struct Copies {
     a.outline_points = outline_points;
     a.ring_ends = ring_ends;
     a.outline_ends = outline_ends;
+    a.outline.loop_sizes = loop_sizes;
+    a.outline.milestone_ends = milestone_ends;
+    a.outline.milestone_levels = milestone_levels;
     return a;
   }
 
@@ -77,6 +83,9 @@ struct Copies {
   std::vector<Point> outline_points;
   std::vector<std::uint32_t> ring_ends;
   std::vector<std::uint32_t> outline_ends;
+  std::vector<LoopSize> loop_sizes;
+  std::vector<std::uint32_t> milestone_ends;
+  std::vector<Level> milestone_levels;
   LayerArrays rest;
 };
 
@@ -125,9 +134,14 @@ TEST(LayerArrays, OfABuiltLayerTakeNoMoreMemoryThanTheirItems) {
       a.lifespans.size_bytes() + a.feature_of.size_bytes() + a.polygon_index.size_bytes() +
       a.mote_index.size_bytes() + a.merged_mote_index.size_bytes() +
       a.horizontal_edge_index.size_bytes() + a.outline_points.size_bytes() +
-      a.ring_ends.size_bytes() + a.outline_ends.size_bytes() + layer->grains().memory();
+      a.ring_ends.size_bytes() + a.outline_ends.size_bytes() + a.outline.loop_sizes.size_bytes() +
+      a.outline.milestone_ends.size_bytes() + a.outline.milestones.size_bytes() +
+      a.outline.milestone_levels.size_bytes() + layer->grains().memory() +
+      layer->overlaps().memory();
   EXPECT_EQ(layer->memory(), items);
   EXPECT_LE(layer->grains().memory(), a.grains.size_bytes() * 11 / 10 + 64);
+  EXPECT_LE(layer->overlaps().memory(),
+            a.overlaps.size_bytes() + 4 * (layer->features().size() + 1));
   std::size_t cells = a.cells.ids.size_bytes() + a.cells.string_bytes.size_bytes() +
                       a.cells.string_ends.size_bytes();
   for (const auto& column : a.cells.columns) {
@@ -207,6 +221,12 @@ TEST(LayerArrays, AreRefusedInWordsWhereSomethingLeadsNowhere) {
       {[](Copies& c) { c.rest.bounds.min_x = kGridMin - 1; }, "bounds"},
       {[](Copies& c) { c.rest.bounds.max_y = c.rest.bounds.min_y - 1; }, "bounds"},
       {[](Copies& c) { c.rest.fields.pop_back(); }, "column"},
+      {[](Copies& c) { c.loop_sizes.resize(c.edges.size() + 1); }, "loops without edges"},
+      {[&](Copies& c) { c.milestone_ends.back() = far; }, "milestones are not in order"},
+      {[&](Copies& c) { c.milestone_ends[3] = far; }, "milestones are not in order"},
+      {[](Copies& c) { c.milestone_ends.resize(c.vertices.size() + 1, c.milestone_ends.back()); },
+       "milestones are not in order"},
+      {[](Copies& c) { c.milestone_levels.pop_back(); }, "milestones are not in order"},
   };
   for (const auto& [spoil, says] : spoilers) {
     Copies copies(arrays_of(*layer));

@@ -44,6 +44,22 @@ inline std::int64_t doubled_area_of(std::span<const Point> ring) {
   return sum < 0 ? -sum : sum;
 }
 
+/// Even-odd; the point lies between cells, so that no vertex is level with it. Independent of the
+/// code under test.
+inline bool is_inside(const Rings& rings, double x, double y) {
+  bool is_inside = false;
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const auto ring = rings[r];
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point a = ring[i];
+      const Point b = ring[(i + 1) % ring.size()];
+      if ((a.y < y) == (b.y < y)) continue;
+      is_inside ^= x < a.x + (y - a.y) / (static_cast<double>(b.y) - a.y) * (b.x - a.x);
+    }
+  }
+  return is_inside;
+}
+
 /// A star-shaped ring around a centre with random radii.
 inline std::vector<Point> random_star(std::mt19937& random, Point centre, int points,
                                       double min_radius, double max_radius) {

@@ -24,9 +24,15 @@ std::multiset<std::vector<std::int32_t>> as_set(const std::vector<Segment>& segm
   return found;
 }
 
+std::vector<Segment> noded(const std::vector<Segment>& segments, HotCells cells) {
+  Boundary boundary;
+  boundary.assign(segments);
+  return node_segments(segments, boundary, cells).value();
+}
+
 void expect_noded(const std::vector<Segment>& segments, const std::vector<Segment>& wanted) {
   for (const HotCells cells : {HotCells::crossings, HotCells::crossings_and_vertices}) {
-    EXPECT_EQ(as_set(node_segments(segments, cells).value()), as_set(wanted));
+    EXPECT_EQ(as_set(noded(segments, cells)), as_set(wanted));
   }
 }
 
@@ -117,7 +123,7 @@ TEST(Noding, NothingCrossesOrTouchesAfterwards) {
       const Segment s{{at(random), at(random)}, {at(random), at(random)}};
       if (s.first != s.second) segments.push_back(s);
     }
-    const auto pieces = node_segments(segments, HotCells::crossings_and_vertices).value();
+    const auto pieces = noded(segments, HotCells::crossings_and_vertices);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         ASSERT_FALSE(cross_or_touch(pieces[i], pieces[k]));
@@ -139,7 +145,7 @@ TEST(Noding, RingsStayClosed) {
     std::vector<Segment> segments = segments_of(rings);
     std::erase_if(segments, [](const Segment& s) { return s.first == s.second; });
     std::multiset<std::pair<std::int32_t, std::int32_t>> ends;
-    const auto pieces = node_segments(segments, HotCells::crossings).value();
+    const auto pieces = noded(segments, HotCells::crossings);
     for (const Segment& s : pieces) {
       for (const Point p : {s.first, s.second}) ends.insert({p.x, p.y});
     }

@@ -124,6 +124,85 @@ TEST(StrokeTest, DashesHaveTheirLengths) {
   }
 }
 
+TEST(StrokeTest, DashesAreAsDenseAsLengthsAreAlongTheEdge) {
+  const std::vector<PixelPoint> ends = {{10, 50}, {90, 50}};
+  const auto dashed = [&](OutlineEdge edge, LineJoin join) {
+    return draw_edges(ends, {edge}, {2, {6, 4}, join});
+  };
+  for (const LineJoin join : {LineJoin::bevel, LineJoin::round}) {
+    const Mask twice = dashed({0, 1, 0, 2}, join);
+    const Mask back = dashed({0, 1, 80 * kCells, -1}, join);
+    const Mask forth = dashed({1, 0, 0, 1}, join);
+    for (int i = 0; i < 8; ++i) {
+      EXPECT_EQ(twice.at(10 + 5 * i + 1, 50), 255) << "a dash takes three pixels";
+      EXPECT_EQ(twice.at(10 + 5 * i + 4, 50), 0);
+      EXPECT_EQ(forth.at(89 - 10 * i - 3, 50), 255);
+      EXPECT_EQ(forth.at(89 - 10 * i - 7, 50), 0);
+    }
+    EXPECT_EQ(back, forth);
+  }
+}
+
+TEST(StrokeTest, DashesFarAlongTheOutlineAreAsNearItsBeginning) {
+  const std::vector<PixelPoint> ends = {{10.2, 48.7}, {90.5, 53.1}};
+  const Stroke stroke{2, {6, 4, 1, 3}, LineJoin::round};
+  const Mask near = draw_edges(ends, {{0, 1, 0}}, stroke);
+  EXPECT_EQ(near, draw_edges(ends, {{0, 1, 14.0 * 1024 * 1024 * kCells}}, stroke));
+}
+
+TEST(StrokeTest, ValuesAreMultipliedByTheInk) {
+  for (const LineJoin join : {LineJoin::bevel, LineJoin::miter, LineJoin::round}) {
+    const std::vector<OutlineEdge> corner = {{0, 1, 0, 1, 0.4}, {1, 2, 0, 1, 0.4}};
+    const std::vector<PixelPoint> points = {{20, 20}, {70, 20}, {70, 70}};
+    const Mask faded = draw_edges(points, corner, {3, {}, join});
+    const Mask full = draw_edges(points, {{0, 1, 0}, {1, 2, 0}}, {3, {}, join});
+    EXPECT_NEAR(area(faded) / area(full), 0.4, 0.005);
+    EXPECT_EQ(*std::ranges::max_element(faded.pixels()), 102);
+  }
+  const Mask both = draw_edges({{20, 50}, {80, 50}, {50, 20}, {50, 80}},
+                               {{0, 1, 0, 1, 0.2}, {2, 3, 0, 1, 0.6}}, {3, {}, LineJoin::round});
+  EXPECT_EQ(both.at(50, 50), 153) << "the greatest value counts";
+}
+
+TEST(StrokeTest, InkOfARingGrowsWithItsExtent) {
+  for (const double width : {0.5, 1.0, 3.0}) {
+    const Stroke stroke{width, {}, LineJoin::round};
+    EXPECT_EQ(stroke.ink_of_ring(0), 0);
+    EXPECT_NEAR(stroke.ink_of_ring(width), 1 / Stroke::kFullExtent, 1e-12);
+    EXPECT_EQ(stroke.ink_of_ring(Stroke::kFullExtent * width), 1);
+    EXPECT_EQ(stroke.ink_of_ring(1e9), 1);
+    for (double extent = 0; extent < 5 * width; extent += width / 64) {
+      const double more = stroke.ink_of_ring(extent + width / 64) - stroke.ink_of_ring(extent);
+      EXPECT_GE(more, 0);
+      EXPECT_LT(more, 1.0 / 128) << "it does not jump";
+    }
+  }
+}
+
+TEST(StrokeTest, MasksNarrowerThanABlockAreDrawnToo) {
+  const std::vector<Point> vertices = {{-100 * kCells, 2 * kCells}, {100 * kCells, 3 * kCells}};
+  const auto drawn = [&](int width) {
+    View view;
+    view.cells_per_pixel = kCells;
+    view.width = width;
+    view.height = 5;
+    Mask mask(width, 5);
+    mask.fill(0);
+    const std::vector<OutlineEdge> edges = {{0, 1, 0}};
+    Stroker().draw(vertices, edges, {2, {}, LineJoin::round}, view, 1, mask);
+    return mask;
+  };
+  const Mask wide = drawn(9);
+  for (int width = 1; width < 9; ++width) {
+    const Mask narrow = drawn(width);
+    for (int row = 0; row < 5; ++row) {
+      for (int column = 0; column < width; ++column) {
+        EXPECT_EQ(narrow.at(column, row), wide.at(column, row)) << width;
+      }
+    }
+  }
+}
+
 TEST(StrokeTest, NothingIsLeftOpenBetweenManySmallEdges) {
   std::vector<PixelPoint> circle;
   for (int i = 0; i < 700; ++i) {  // edges of a third of a pixel
@@ -245,6 +324,13 @@ TEST_F(CrowdTest, OfEqualOutlinesOneIsDrawn) {
   for (int i = 0; i < 50; ++i) add_coast(1);
   draw({2, {6, 4}, LineJoin::round});
   EXPECT_LT(stroker_.values(), 2 * once) << "and not 50 times as much";
+}
+
+TEST_F(CrowdTest, OfEqualOutlinesThatOfTheMostInkIsDrawn) {
+  for (int i = 0; i < 50; ++i) add_coast(1);
+  for (std::size_t i = 0; i < edges_.size(); ++i) edges_[i].ink = i / 2000 == 30 ? 1 : 0.25;
+  const Mask mask = draw({2, {}, LineJoin::round});
+  EXPECT_EQ(*std::ranges::max_element(mask.pixels()), 255);
 }
 
 TEST_F(CrowdTest, DashesAreThoseOfTheNearestEdge) {

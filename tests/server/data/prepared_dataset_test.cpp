@@ -84,7 +84,8 @@ class Comparison {
 };
 
 constexpr const char* kQueries[] = {"", "small=keep&simplify=2", "topology=fast&simplify=4",
-                                    "small=drop&debug=mesh,vertices"};
+                                    "small=drop&debug=mesh,vertices",
+                                    "stroke=000&stroke-dasharray=4,2"};
 
 TEST(PreparedDatasetTest, DrawsTheBytesOfTheBuiltOneUnderTheSameTags) {
   const TemporaryFolder folder;

@@ -17,9 +17,11 @@
 #include "core/borders/polygons.h"
 #include "core/borders/regions.h"
 #include "core/graph/check_graph.h"
+#include "core/io/load/load_layer.h"
 #include "core/sweep/clean_rings.h"
 #include "tests/core/io/data/geos_validity.h"
 #include "tests/core/io/data/source_rings.h"
+#include "tests/core/shapes/same_layers.h"
 
 namespace trapeze {
 namespace {
@@ -198,6 +200,24 @@ INSTANTIATE_TEST_SUITE_P(Files, CoverageDataTest,
                          [](const auto& test) {
                            return std::filesystem::path(test.param.name).stem().string();
                          });
+
+TEST(RealCoverages, AreTheSameLayerWhateverTheNumberOfThreads) {
+  const char* folder = std::getenv("TRAPEZE_DATA");
+  if (folder == nullptr) GTEST_SKIP() << "TRAPEZE_DATA is not set";
+  for (const char* name : {"europe_countries.fgb", "us_counties.fgb"}) {
+    LoadOptions options;
+    options.generalization.coverage = CoverageMode::automatic;
+    options.threads = 1;
+    const std::string path = std::string(folder) + "/" + name;
+    const LoadedLayer one = load_layer(path, options);
+    EXPECT_GT(one.report.coverage.groups, 0u);
+    for (const unsigned threads : {2u, 3u, 8u}) {
+      SCOPED_TRACE(std::string(name) + " by " + std::to_string(threads));
+      options.threads = threads;
+      expect_same_layers(*one.layer, *load_layer(path, options).layer);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace trapeze

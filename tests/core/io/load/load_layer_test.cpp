@@ -606,8 +606,10 @@ TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {
   EXPECT_TRUE(std::ranges::equal(a.vertices, b.vertices));
   EXPECT_TRUE(std::ranges::equal(a.edges, b.edges));
   EXPECT_TRUE(std::ranges::equal(a.trapezoids, b.trapezoids));
-  // What is not looked for is not found.
-  EXPECT_EQ(load_layer(path).report.coverage.groups, 0u);
+  // They are looked for unless that is said not to be wanted; what is not looked for is not found.
+  EXPECT_EQ(load_layer(path).report.coverage.groups, 40u);
+  options.generalization.coverage = CoverageMode::off;
+  EXPECT_EQ(load_layer(path, options).report.coverage.groups, 0u);
 }
 
 TEST_F(LoadLayerTest, NeighboursAreBroughtTogetherUpToADistance) {

@@ -39,9 +39,14 @@ TEST(PreparedFormatTest, SectionsHaveTheNamesAndSizesOfTheDocument) {
                                    Item{Kind::mote_index, sizeof(MeshIndex::Entry)},
                                    Item{Kind::merged_mote_index, sizeof(MeshIndex::Entry)},
                                    Item{Kind::grains, sizeof(FeatureGrain)},
+                                   Item{Kind::overlaps, sizeof(FeatureOverlap)},
                                    Item{Kind::outline_points, sizeof(Point)},
                                    Item{Kind::ring_ends, 4},
                                    Item{Kind::outline_ends, 4},
+                                   Item{Kind::loop_sizes, sizeof(LoopSize)},
+                                   Item{Kind::milestone_ends, 4},
+                                   Item{Kind::milestones, sizeof(Milestone)},
+                                   Item{Kind::milestone_levels, sizeof(Level)},
                                    Item{Kind::ids, 8},
                                    Item{Kind::string_bytes, 1},
                                    Item{Kind::string_ends, 8},
@@ -83,6 +88,9 @@ TEST(PreparedFormatTest, ItemsLieAsInTheDocument) {
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", doubled_area);
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", row);
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", born);
+  EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", row);
+  EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", other);
+  EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", width);
 }
 
 TEST(PreparedFormatTest, TheDocumentIsOfThisVersion) {

@@ -138,9 +138,14 @@ void expect_equal_layers(const Layer& a_layer, const Layer& b_layer) {
   expect_equal(a.polygon_index, b.polygon_index);
   expect_equal(a.mote_index, b.mote_index);
   expect_equal(a.merged_mote_index, b.merged_mote_index);
+  expect_equal(a.overlaps, b.overlaps);
   expect_equal(a.outline_points, b.outline_points);
   expect_equal(a.ring_ends, b.ring_ends);
   expect_equal(a.outline_ends, b.outline_ends);
+  expect_equal(a.outline.loop_sizes, b.outline.loop_sizes);
+  expect_equal(a.outline.milestone_ends, b.outline.milestone_ends);
+  expect_equal(a.outline.milestones, b.outline.milestones);
+  expect_equal(a.outline.milestone_levels, b.outline.milestone_levels);
   expect_equal(a.cells.ids, b.cells.ids);
   expect_equal(a.cells.string_bytes, b.cells.string_bytes);
   ASSERT_EQ(a.fields.size(), b.fields.size());
@@ -329,7 +334,7 @@ TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
   prepare(kMixed, prepared_);
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(failure_of(prepared_),
-              AllOf(StartsWith(prepared_), HasSubstr("format 5"), HasSubstr("reads 4")));
+              AllOf(StartsWith(prepared_), HasSubstr("format 6"), HasSubstr("reads 5")));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));

@@ -1,0 +1,68 @@
+// Which features of a layer lie over each other: what has to be known to draw the later one on top
+// and neighbours, which only touch, side by side.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/stored_array.h"
+#include "core/grid/tolerance.h"
+#include "core/mesh/trapezoid_mesh.h"
+
+namespace trapeze {
+
+/// Two features cover the same place at full detail.
+struct FeatureOverlap {
+  std::uint32_t row = 0;
+  std::uint32_t other = 0;
+  /// About how wide that place is where it is widest, in cells: its area by its longest extent.
+  std::uint32_t width = 0;
+
+  friend bool operator==(const FeatureOverlap&, const FeatureOverlap&) = default;
+};
+
+/// Finds the overlaps of a feature. Immutable; any number of threads may read.
+class OverlapTable {
+ public:
+  OverlapTable() = default;
+  /// Over pairs in order of rows, which are less than `rows`, as those are that of() takes. Throws
+  /// std::invalid_argument if they are not.
+  OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows);
+
+  /// Whether no two features overlap.
+  bool empty() const { return pairs_.empty(); }
+  /// In order of the others.
+  std::span<const FeatureOverlap> of(std::uint32_t row) const {
+    if (begins_.empty()) return {};
+    return std::span(pairs()).subspan(begins_[row], begins_[row + 1] - begins_[row]);
+  }
+  std::span<const FeatureOverlap> pairs() const { return {pairs_.data(), pairs_.size()}; }
+  std::size_t memory() const {
+    return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  StoredArray<FeatureOverlap> pairs_;
+  std::vector<std::uint32_t> begins_;  // by row, and the end of the last; empty if there are none
+};
+
+/// Features whose trapezoids at full detail are looked at; views of the caller's memory.
+struct OverlapInput {
+  MeshView mesh;
+  std::span<const Lifespan> lifespans;        // by trapezoid, as many as feature_of
+  std::span<const std::uint32_t> feature_of;  // row, by trapezoid; others of the mesh do not count
+  std::span<const std::uint32_t> graph_of;    // by row: features of one graph do not overlap
+};
+
+struct FeatureOverlaps {
+  std::vector<FeatureOverlap> pairs;  // each once for either feature, in order of row and other
+  bool is_complete = true;  // false: there were too many, or finding them would take too long
+};
+
+/// Overlaps wider than two cells, which is more than what snapping borders to the grid makes of
+/// neighbours. Does not depend on the order of trapezoids.
+FeatureOverlaps find_overlaps(const OverlapInput& input);
+
+}  // namespace trapeze

@@ -1,0 +1,135 @@
+#include "core/layer/feature_stack.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <random>
+
+#include "core/grid/cancellation.h"
+#include "tests/core/shapes/layers.h"
+#include "tests/core/shapes/ring_text.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// What is seen of each feature of a layer: a sum of areas by row and share.
+class SeenAreas {
+ public:
+  explicit SeenAreas(const std::vector<std::string>& texts) {
+    std::vector<Rings> polygons;
+    for (const std::string& text : texts) polygons.push_back(rings_from_text(text));
+    layer_ = layer_of(std::move(polygons));
+    for (std::uint32_t row = 0; row < texts.size(); ++row) paints_.push_back({row, 1, false});
+  }
+
+  FeatureStack::Paint& paint(std::uint32_t row) { return paints_[row]; }
+  /// Whether anything had to be cut for the last areas().
+  bool is_cut() const { return is_cut_; }
+  void set_narrowest(double cells) { narrowest_ = cells; }
+
+  std::map<std::pair<std::uint32_t, float>, double> areas(
+      const Cancellation* cancellation = nullptr) {
+    std::vector<TrapezoidRange> ranges;
+    layer_->select({layer_->bounds(), 0, kLastLevel, SmallPolygons::drop}, ranges);
+    std::map<std::pair<std::uint32_t, float>, double> areas;
+    const MeshView& mesh = layer_->mesh();
+    const auto add = [&](std::uint32_t row, float share, double top, double bottom,
+                         std::uint32_t left, std::uint32_t right) {
+      const double y = (top + bottom) / 2;
+      areas[{row, share}] +=
+          (EdgeLine(mesh, right).x_at(y) - EdgeLine(mesh, left).x_at(y)) * (bottom - top);
+    };
+    const auto add_whole = [&](std::uint32_t row, std::uint32_t i) {
+      const MeshTrapezoid& t = mesh.trapezoids[i];
+      const double top = mesh.vertices[t.top].y;
+      const double bottom = mesh.vertices[t.bottom].y;
+      if (top < bottom) add(row, 1, top, bottom, t.left, t.right);
+    };
+    FeatureStack stack;
+    stack.begin(layer_->overlaps(), narrowest_);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      stack.note(layer_->feature_of(i), [this](std::uint32_t row) { return paints_[row]; });
+    });
+    is_cut_ = stack.settle(cancellation);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      const std::uint32_t row = layer_->feature_of(i);
+      const FeatureStack::Role role = stack.role_of(row);
+      if (role.is_needed) stack.add(row, i);
+      if (!role.is_cut) add_whole(row, i);
+    });
+    stack.resolve(mesh, cancellation,
+                  [&](std::uint32_t row, std::span<const std::uint32_t>,
+                      std::span<const TrapezoidPart> parts) {
+                    for (const TrapezoidPart& part : parts) {
+                      add(row, part.share, part.top, part.bottom, part.left, part.right);
+                    }
+                  });
+    return areas;
+  }
+
+ private:
+  std::unique_ptr<Layer> layer_;
+  std::vector<FeatureStack::Paint> paints_;
+  double narrowest_ = 0;
+  bool is_cut_ = false;
+};
+
+using Areas = std::map<std::pair<std::uint32_t, float>, double>;
+
+const std::vector<std::string> kNested = {
+    "0 0, 100 0, 100 100, 0 100", "20 20, 60 20, 60 60, 20 60", "50 50, 150 50, 150 150, 50 150"};
+
+TEST(FeatureStackTest, LaterFeaturesLieOverEarlierOnes) {
+  EXPECT_EQ(SeenAreas(kNested).areas(),
+            (Areas{{{0, 1}, 10'000 - 1600 - 2500 + 100}, {{1, 1}, 1500}, {{2, 1}, 10'000}}));
+}
+
+TEST(FeatureStackTest, ARaisedFeatureLiesOverAll) {
+  SeenAreas seen(kNested);
+  seen.paint(0).is_raised = true;
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 10'000}, {{2, 1}, 7500}}));
+  seen.paint(1).is_raised = true;
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 8400}, {{1, 1}, 1600}, {{2, 1}, 7500}}));
+}
+
+TEST(FeatureStackTest, ThroughAFeatureThatIsNotOpaqueOthersAreSeen) {
+  SeenAreas seen(kNested);
+  seen.paint(1).opacity = 0;
+  seen.paint(2).opacity = 0.75F;
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 0.25F}, 2500},
+                                 {{0, 1}, 7500},
+                                 {{1, 0.25F}, 100},
+                                 {{1, 1}, 1500},
+                                 {{2, 1}, 10'000}}));
+}
+
+TEST(FeatureStackTest, NarrowOverlapsAreLeftAsTheyAre) {
+  SeenAreas seen({"0 0, 100 0, 100 100, 0 100", "95 0, 200 0, 200 100, 95 100"});
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 9500}, {{1, 1}, 10'500}}));
+  seen.set_narrowest(6);
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 10'000}, {{1, 1}, 10'500}}));
+}
+
+TEST(FeatureStackTest, FeaturesOfOneColourAreLeftWholeWhereAllAreOpaque) {
+  SeenAreas seen(kNested);
+  for (const std::uint32_t row : {0u, 1u, 2u}) seen.paint(row).colour = 7;
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 10'000}, {{1, 1}, 1600}, {{2, 1}, 10'000}}));
+  EXPECT_FALSE(seen.is_cut());
+  seen.paint(1).opacity = 0.5F;
+  EXPECT_EQ(seen.areas(),
+            (Areas{{{0, 0.5F}, 1500}, {{0, 1}, 6000}, {{1, 1}, 1500}, {{2, 1}, 10'000}}));
+  EXPECT_TRUE(seen.is_cut());
+}
+
+TEST(FeatureStackTest, EndsWhenItIsNotWanted) {
+  std::vector<std::string> many(150, "0 0, 100 0, 100 100, 0 100");
+  Cancellation cancellation;
+  cancellation.cancel();
+  EXPECT_THROW(SeenAreas(many).areas(&cancellation), Cancelled);
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,181 @@
+// Features of one layer that lie over each other, pixel by pixel.
+#include <gmock/gmock.h>
+
+#include "core/layer/layer_builder.h"
+#include "render/picture/png.h"
+#include "server/service/site.h"
+#include "tests/server/service/sample_site.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::int32_t kPixel = 1 << 23;  // cells of a pixel of the tile of zoom 0
+
+std::int32_t cell(double pixels) {
+  return static_cast<std::int32_t>(kGridMin + pixels * kPixel);
+}
+
+Rings polygon(const std::vector<std::pair<double, double>>& pixels) {
+  Rings rings;
+  std::vector<Point> ring;
+  for (const auto& [x, y] : pixels) ring.push_back({cell(x), cell(y)});
+  rings.add(ring);
+  return rings;
+}
+
+Rings box(double west, double north, double east, double south) {
+  return polygon({{west, north}, {east, north}, {east, south}, {west, south}});
+}
+
+/// Pixels of the tile of zoom 0, by id:
+///   1  field: columns 32.5 to 128, rows 32.5 to 128
+///   2  wood, in the field: columns 64.5 to 96.5, rows 64.5 to 96.5
+///   3  lake, over the eastern border of the field: columns 112 to 160, rows 48 to 80
+///   4  wood: columns 32 to 96.4, rows 160 to 224
+///   5  field, a neighbour of 4: columns 96.4 to 160, rows 160 to 224
+///   6  lake, over both: columns 80 to 112, rows 176 to 208
+///   7  field: a triangle with a slanted western side
+///   8  wood: the southern part of 7, with the same sides
+std::shared_ptr<const Dataset> plots() {
+  FeatureTable features({{"kind", FieldType::text}});
+  std::vector<LayerBuilder> builders(1);
+  const auto add = [&](std::string_view kind, Rings rings) {
+    const auto id = static_cast<std::int64_t>(features.size()) + 1;
+    const std::vector<Value> values = {kind};
+    builders.front().add(features.append(id, values), rings);
+  };
+  add("field", box(32.5, 32.5, 128, 128));
+  add("wood", box(64.5, 64.5, 96.5, 96.5));
+  add("lake", box(112, 48, 160, 80));
+  add("wood", box(32, 160, 96.4, 224));
+  add("field", box(96.4, 160, 160, 224));
+  add("lake", box(80, 176, 112, 208));
+  add("field", polygon({{200.3, 20}, {240, 220.6}, {180.3, 220.6}}));
+  add("wood", polygon({{190.3, 120.3}, {220.150625, 120.3}, {240, 220.6}, {180.3, 220.6}}));
+  ServedLayer served;
+  served.config.name = "plots";
+  served.config.title = "Plots";
+  served.config.style = testing::style_of("fill=808080");
+  served.layer = LayerBuilder::join(builders, std::move(features));
+  served.revision = revision_of(*served.layer);
+  std::vector<ServedLayer> layers;
+  layers.push_back(std::move(served));
+  return std::make_shared<const Dataset>(std::move(layers));
+}
+
+constexpr Rgba kField{255, 0, 0, 255};
+constexpr Rgba kWood{0, 255, 0, 255};
+constexpr Rgba kLake{0, 0, 255, 255};
+constexpr Rgba kYellow{255, 255, 0, 255};
+const std::string kClasses = "color-by=kind&classes=field:red,wood:lime,lake:blue";
+
+class OverlapPicturesTest : public ::testing::Test {
+ protected:
+  Picture tile(const std::string& query) {
+    const std::string target = "/tiles/plots/0/0/0.png?" + query;
+    const HttpResponse response = site_.get(target);
+    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
+    return response.status == 200 ? decode_png(*response.body) : Picture();
+  }
+
+  testing::SampleSite site_{false};
+
+  void SetUp() override { site_.data().set(plots()); }
+};
+
+void expect_near(Rgba actual, Rgba expected, int tolerance) {
+  EXPECT_NEAR(actual.a, expected.a, tolerance);
+  EXPECT_NEAR(actual.r, expected.r, tolerance);
+  EXPECT_NEAR(actual.g, expected.g, tolerance);
+  EXPECT_NEAR(actual.b, expected.b, tolerance);
+}
+
+TEST_F(OverlapPicturesTest, TheLaterFeatureIsOnTop) {
+  const Picture picture = tile(kClasses);
+  EXPECT_EQ(picture.at(50, 50), kField);
+  EXPECT_EQ(picture.at(80, 80), kWood);
+  EXPECT_EQ(picture.at(120, 60), kLake);
+  EXPECT_EQ(picture.at(150, 60), kLake);
+  // Along the border of the wood each has its share of the pixel.
+  expect_near(picture.at(64, 80), {128, 128, 0, 255}, 1);
+  expect_near(picture.at(96, 96), {191, 64, 0, 255}, 1);
+}
+
+TEST_F(OverlapPicturesTest, NeighboursBelowAnotherFeatureLeaveNoLine) {
+  const Picture picture = tile(kClasses);
+  EXPECT_EQ(picture.at(96, 190), kLake);
+  expect_near(picture.at(96, 170), {153, 102, 0, 255}, 1);
+  for (int row = 160; row < 224; ++row) EXPECT_EQ(picture.at(96, row).a, 255) << row;
+}
+
+TEST_F(OverlapPicturesTest, WhereSidesCoincideNothingOfTheLowerOneIsSeen) {
+  const Picture picture = tile(kClasses);
+  for (int row = 122; row < 220; ++row) {
+    for (int column = 178; column < 242; ++column) {
+      EXPECT_EQ(picture.at(column, row).r, 0) << column << ' ' << row;
+    }
+  }
+  EXPECT_EQ(picture.at(200, 80), kField);
+}
+
+TEST_F(OverlapPicturesTest, WithoutTheUpperOneTheLowerOneIsSeen) {
+  EXPECT_EQ(tile(kClasses + "&filter=kind<>'wood'").at(80, 80), kField);
+  EXPECT_EQ(tile(kClasses + "&ids=1,3").at(80, 80), kField);
+  EXPECT_EQ(tile("color-by=kind&classes=field:red,wood:rgba(0,255,0,0),*:blue").at(80, 80), kField);
+}
+
+TEST_F(OverlapPicturesTest, AHighlightedFeatureIsTopmost) {
+  const std::string highlight = "&highlight-fill=yellow&highlight=";
+  const Picture picture = tile(kClasses + highlight + "1");
+  for (const auto& [column, row] : {std::pair(50, 50), {80, 80}, {120, 60}}) {
+    EXPECT_EQ(picture.at(column, row), kYellow);
+  }
+  EXPECT_EQ(picture.at(150, 60), kLake);
+  EXPECT_EQ(tile("fill=red" + highlight + "2").at(80, 80), kYellow);
+  EXPECT_EQ(tile("fill=red" + highlight + "1,3").at(120, 60), kYellow);
+}
+
+TEST_F(OverlapPicturesTest, HalfOpaqueFeaturesAreLaidOverEachOther) {
+  // As QGIS and Mapnik do: of two of one colour more is seen than of one.
+  const Picture plain = tile("fill=red&fill-opacity=0.5");
+  expect_near(plain.at(50, 50), {255, 0, 0, 128}, 1);
+  expect_near(plain.at(80, 80), {255, 0, 0, 191}, 1);
+  const Picture classes = tile(kClasses + "&fill-opacity=0.5");
+  expect_near(classes.at(50, 50), {255, 0, 0, 128}, 1);
+  expect_near(classes.at(80, 80), {85, 170, 0, 191}, 1);
+  // The opacity of the layer is that of the finished layer.
+  expect_near(tile(kClasses + "&opacity=0.5").at(80, 80), {0, 255, 0, 128}, 1);
+}
+
+TEST_F(OverlapPicturesTest, OutlinesAreHiddenByWhatLiesOverThem) {
+  for (const std::string& style : {kClasses, std::string("fill=red")}) {
+    const Picture picture = tile(style + "&stroke=black&stroke-width=2");
+    const Picture fill = tile(style);
+    const auto is_line = [&](int column, int row) {
+      return picture.at(column, row) == Rgba{0, 0, 0, 255};
+    };
+    // The eastern side of the field, above the lake, below it, and where it lies under it.
+    EXPECT_TRUE(is_line(128, 40));
+    EXPECT_TRUE(is_line(128, 90));
+    EXPECT_EQ(picture.at(128, 60), fill.at(128, 60));
+    // The border of two neighbours; the outline of the lake over it.
+    EXPECT_TRUE(is_line(96, 168));
+    EXPECT_EQ(picture.at(96, 190), fill.at(96, 190));
+    EXPECT_TRUE(is_line(96, 176));
+    // Of a horizontal side, too.
+    EXPECT_TRUE(is_line(112, 60));
+  }
+  const Picture seen = tile("fill=red&fill-opacity=0&stroke=black&stroke-width=2");
+  EXPECT_EQ(seen.at(128, 60), (Rgba{0, 0, 0, 255})) << "nothing hides it";
+}
+
+TEST_F(OverlapPicturesTest, CostsMoreWhereTheOrderIsSeen) {
+  const auto cost_of = [this](const std::string& query) {
+    const HttpResponse response = site_.get("/tiles/plots/0/0/0.png?" + query);
+    return std::stoi(std::string(response.header("X-Tile-Cost")));
+  };
+  EXPECT_GT(cost_of("fill=red&fill-opacity=0.5"), cost_of("fill=red"));
+}
+
+}  // namespace
+}  // namespace trapeze
