@@ -1,0 +1,31 @@
+#include "tests/oracle/program.h"
+
+#include <gtest/gtest.h>
+
+#include "render/picture/png.h"
+#include "server/config/load_config.h"
+#include "server/data/dataset.h"
+
+namespace trapeze::oracle {
+
+Program::Program(const std::vector<std::string>& files, CoverageMode coverage) {
+  std::vector<LayerConfig> layers = layers_of_files(files);
+  for (LayerConfig& layer : layers) layer.coverage = coverage;
+  site_.data().set(Dataset::load(layers));
+}
+
+Picture Program::tile(const std::vector<std::string>& layers, TileName name,
+                      const std::string& query) {
+  std::string list;
+  for (const std::string& layer : layers) list += (list.empty() ? "" : ",") + layer;
+  const std::string target = "/tiles/" + list + "/" + text_of(name) + ".png?" + query;
+  const HttpResponse response = site_.get(target);
+  EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
+  return response.status == 200 ? decode_png(*response.body) : Picture();
+}
+
+std::string text_of(TileName name) {
+  return std::to_string(name.zoom) + "/" + std::to_string(name.x) + "/" + std::to_string(name.y);
+}
+
+}  // namespace trapeze::oracle

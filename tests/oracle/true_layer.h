@@ -1,0 +1,67 @@
+// A layer as its source has it, read by GDAL alone: nothing is cleaned, snapped or simplified.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trapeze::oracle {
+
+/// On the square of Web Mercator: 0 is its western or northern edge, 1 its eastern or southern one.
+struct Place {
+  double x = 0;
+  double y = 0;
+};
+
+struct Bounds {
+  double min_x = std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+
+  void include(Place p);
+  void include(const Bounds& other);
+  bool meets(const Bounds& other) const;
+};
+
+/// Closed by an edge from the last place to the first.
+struct TrueRing {
+  std::vector<Place> places;
+  double extent = 0;  // the diameter of the circle that has its area
+};
+
+/// A polygon with its holes: inside is even-odd over its rings.
+struct TruePart {
+  std::vector<TrueRing> rings;
+  Bounds bounds;
+};
+
+/// Inside is the union of its parts.
+struct TrueFeature {
+  std::int64_t id = 0;
+  std::map<std::string, std::string> attributes;  // those that are null are not there
+  std::vector<TruePart> parts;
+  Bounds bounds;
+
+  std::optional<std::string> attribute(const std::string& name) const;
+};
+
+/// In the order of the source, which is that of painting.
+struct TrueLayer {
+  std::vector<TrueFeature> features;
+
+  /// Every vertex of the layer, one feature after the other.
+  std::vector<Place> vertices() const;
+};
+
+/// The first layer of a source in longitude and latitude; of its attributes those of that name.
+/// Throws std::runtime_error if it cannot be read.
+TrueLayer read_layer(const std::string& source, const std::string& attribute);
+
+Place place_of_lonlat(double lon, double lat);
+
+}  // namespace trapeze::oracle

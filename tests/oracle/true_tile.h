@@ -1,0 +1,103 @@
+// The truth that tiles are held to: what source polygons look like, by looking at 16 x 16 points of
+// every pixel. Of the features at a point those later in the source lie over those before, raised
+// ones over all others; upper layers lie over lower ones. The colour of a pixel is the mean of its
+// points, premultiplied.
+//
+// It shares no code with the program.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tests/oracle/true_layer.h"
+
+namespace trapeze::oracle {
+
+constexpr int kPixels = 256;     // of a side of a tile
+constexpr int kPerPixel = 16;    // points, along each side
+constexpr double kMaxWidth = 4;  // of an outline, in pixels
+
+struct TileName {
+  int zoom = 0;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+
+  friend bool operator==(const TileName&, const TileName&) = default;
+};
+
+/// From 0 to 1; not premultiplied.
+struct Colour {
+  double r = 0;
+  double g = 0;
+  double b = 0;
+  double a = 1;
+};
+
+/// How a feature is painted.
+struct TrueFill {
+  Colour colour;
+  bool is_drawn = true;
+  bool is_raised = false;  // over all that are not
+};
+
+/// How a layer is painted: its fills, its outlines over them, both opaque by as much.
+///
+/// A point is inked if an edge is no farther away than half the width of the line that is seen, and
+/// by as much as the most inked of these. An edge is seen as far as the inside of its feature
+/// beside it is: where an opaque feature lies over that, it is hidden. Rings smaller than four
+/// times the width have less ink, in proportion to their extent; edges along the edges of the world
+/// have none.
+struct TruePaint {
+  std::function<TrueFill(const TrueFeature&)> fill_of;
+  double opacity = 1;
+  double line_width = 0;  // pixels, at most kMaxWidth
+  Colour line = {};
+};
+
+/// Red, green, blue, opacity, premultiplied, from 0 to 1.
+using PixelSum = std::array<double, 4>;
+
+struct TruePicture {
+  std::vector<PixelSum> pixels;  // row by row
+
+  const PixelSum& at(int column, int row) const {
+    return pixels[static_cast<std::size_t>(row) * kPixels + static_cast<std::size_t>(column)];
+  }
+};
+
+/// Memory for painting, to be used again from tile to tile. For one thread.
+struct Workspace {
+  std::vector<std::uint32_t> top;
+  std::vector<std::vector<std::uint8_t>> ink;
+  std::vector<std::vector<PixelSum>> sums;
+};
+
+/// The part of some layers, the lowest one first, that a tile shows. Refers to the layers.
+class TrueTile {
+ public:
+  TrueTile(std::span<const TrueLayer* const> layers, TileName name);
+  ~TrueTile();
+  TrueTile(TrueTile&&) noexcept;
+
+  /// A picture for each style; a style has a paint for every layer.
+  std::vector<TruePicture> paint(std::span<const std::vector<TruePaint>> styles,
+                                 Workspace& workspace) const;
+
+  /// Row by row, whether an edge of any feature is within `distance` of the middle of a pixel.
+  std::vector<bool> near_edges(double distance) const;
+
+  /// Features of a layer with an inside in the tile or near it, as the source has them.
+  std::vector<const TrueFeature*> features(std::size_t layer) const;
+
+ private:
+  struct Scene;
+  class Painting;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace trapeze::oracle
