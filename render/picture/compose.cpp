@@ -282,6 +282,17 @@ class Composer::Canvas {
     for (Paint& mixture : mixtures_) mixture = change(mixture);
   }
 
+  /// Whether nothing has been painted yet.
+  bool is_blank() const {
+    return mixtures_.size() == 1 && mixtures_[0].a == 0 && mixtures_[0].covered == 0;
+  }
+
+  /// Becomes what paint_over() of this canvas would make of another one, which is blank.
+  void lie_over_blank(const Canvas& blank, float opacity) {
+    background_ = blank.background_;
+    change_all([opacity](const Paint& paint) { return over(faded(paint, opacity), {}); });
+  }
+
   /// Paints another canvas of the same size over this one, with that opacity.
   void paint_over(const Canvas& other, float opacity) {
     mixed_.clear();
@@ -634,6 +645,11 @@ void Composer::paint_together(const PaintedLayer& layer) {
     layer_->paint(line.mask, laid_over(line.colour));
   }
   const auto opacity = static_cast<float>(layer.opacity);
+  if (canvas_->is_blank()) {
+    layer_->lie_over_blank(*canvas_, opacity);
+    canvas_.swap(layer_);
+    return;
+  }
   canvas_->paint_over(*layer_, opacity);
   const auto number_of = [&](const Meeting& meeting) { return layer_->mixture_at(meeting.pixel); };
   canvas_->meet(layer.meetings, number_of, [&](const Paint& below, const Meeting& meeting) {

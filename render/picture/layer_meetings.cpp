@@ -111,10 +111,10 @@ LayerMeetings::Values LayerMeetings::cover_of(const PaintedLayer& layer) {
   const auto classes = std::ranges::count_if(layer.classes, counts);
   if (classes == 0) return {};
   if (classes == 1) return std::ranges::find_if(layer.classes, counts)->mask->pixels();
-  sum_.assign(pixels_, 0);
-  for (const PaintedClass& one : layer.classes) {
-    if (!counts(one)) continue;
-    add(one.mask->pixels(), sum_);
+  const auto first = std::ranges::find_if(layer.classes, counts);
+  sum_.assign(first->mask->pixels().begin(), first->mask->pixels().end());
+  for (auto one = first + 1; one != layer.classes.end(); ++one) {
+    if (counts(*one)) add(one->mask->pixels(), sum_);
   }
   return sum_;
 }

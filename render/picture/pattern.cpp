@@ -1,7 +1,9 @@
 #include "render/picture/pattern.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -20,52 +22,38 @@ double band_value(double place, double period, double width) {
   return std::min(1.0, overlap(distance) + overlap(period - distance));
 }
 
-/// The same for all places of a period, looked up.
+/// A place within a period, as a share of it in 2^-32: at the end of a period the next one begins
+/// by itself.
+using Phase = std::uint32_t;
+constexpr double kPhases = 4294967296.0;
+
+/// The phase of any number of periods.
+Phase to_phase(double periods) {
+  return static_cast<Phase>(static_cast<std::int64_t>((periods - std::floor(periods)) * kPhases));
+}
+
+/// The values of bands at all places of a period, looked up.
 class Bands {
  public:
   Bands(double period, double width) {
-    const int count = std::max(1, static_cast<int>(std::ceil(period * kStepsPerPixel)));
-    per_pixel_ = count / period;
-    for (int i = 0; i < count; ++i) {
-      values_.push_back(static_cast<float>(band_value((i + 0.5) / per_pixel_, period, width)));
+    const auto least =
+        static_cast<std::uint32_t>(std::ceil(std::max(period, 1.0) * kStepsPerPixel));
+    const int bits = std::bit_width(least - 1);
+    shift_ = 32 - bits;
+    values_.resize(std::size_t{1} << bits);
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(values_.size());
+      values_[i] = static_cast<float>(band_value(share * period, period, width));
     }
   }
 
-  /// 0 <= place < period.
-  float at(double place) const {
-    return values_[std::min(static_cast<std::size_t>(place * per_pixel_), values_.size() - 1)];
-  }
+  float at(Phase phase) const { return values_[phase >> shift_]; }
 
  private:
   static constexpr double kStepsPerPixel = 64;
 
-  double per_pixel_ = 1;
+  int shift_ = 0;
   std::vector<float> values_;
-};
-
-/// A coordinate that grows from pixel to pixel by less than the period, within 0 and the period.
-class Cycle {
- public:
-  Cycle(double start, double step, double period)
-      : place_(start - period * std::floor(start / period)), step_(step), period_(period) {
-    wrap();
-  }
-
-  double place() const { return place_; }
-  void advance() {
-    place_ += step_;
-    wrap();
-  }
-
- private:
-  void wrap() {
-    if (place_ >= period_) place_ -= period_;
-    if (place_ < 0) place_ += period_;
-  }
-
-  double place_;
-  double step_;
-  double period_;
 };
 
 /// Where a pattern lies in one picture: u runs along its direction, v across, in pixels.
@@ -77,19 +65,21 @@ struct Frame {
   double west;  // of the picture, from the corner of the world
   double north;
 
-  /// Calls value_at(u, v), both within the period, for every pixel.
+  /// Calls value_at(u, v) for every pixel.
   template <typename ValueAt>
   void draw(Mask& mask, const ValueAt& value_at) const {
     const double x = west + 0.5;
+    const Phase u_step = to_phase(along_x / period);
+    const Phase v_step = to_phase(-along_y / period);
     for (int row = 0; row < view.height; ++row) {
       const double y = north + row + 0.5;
-      Cycle u(x * along_x + y * along_y, along_x, period);
-      Cycle v(y * along_x - x * along_y, -along_y, period);
+      Phase u = to_phase((x * along_x + y * along_y) / period);
+      Phase v = to_phase((y * along_x - x * along_y) / period);
       std::uint8_t* out = mask.row_begin(row);
       for (int column = 0; column < view.width; ++column) {
-        out[column] = static_cast<std::uint8_t>(value_at(u.place(), v.place()) * 255 + 0.5f);
-        u.advance();
-        v.advance();
+        out[column] = static_cast<std::uint8_t>(value_at(u, v) * 255 + 0.5f);
+        u += u_step;
+        v += v_step;
       }
     }
   }
@@ -99,13 +89,18 @@ void draw_dots(const Frame& frame, double width, Mask& mask) {
   // Dots smaller than a pixel are paler instead.
   const double radius = std::max(width / 2, 0.5);
   const auto share = static_cast<float>(std::min(1.0, width * width));
-  const double reach = radius + 0.5;
-  frame.draw(mask, [&](double u, double v) {
-    const double du = std::min(u, frame.period - u);
-    const double dv = std::min(v, frame.period - v);
-    if (du >= reach || dv >= reach) return 0.0f;
-    const double off = reach - std::sqrt(du * du + dv * dv);
-    return share * static_cast<float>(std::clamp(off, 0.0, 1.0));
+  const auto reach = static_cast<float>(radius + 0.5);
+  const auto pixels_of = static_cast<float>(frame.period / kPhases);
+  // A dot is around phase 0: as a signed number a phase is the way from there.
+  const auto from_middle = [pixels_of](Phase phase) {
+    return static_cast<float>(static_cast<std::int32_t>(phase)) * pixels_of;
+  };
+  frame.draw(mask, [&](Phase u, Phase v) {
+    const float du = from_middle(u);
+    const float dv = from_middle(v);
+    const float squared = du * du + dv * dv;
+    if (squared >= reach * reach) return 0.0f;
+    return share * std::min(reach - std::sqrt(squared), 1.0f);
   });
 }
 
@@ -127,19 +122,18 @@ void draw_pattern(const Pattern& pattern, const View& view, int scale, Mask& mas
     case PatternKind::none:
       return mask.fill(0);
     case PatternKind::checker:
-      return frame.draw(mask, [&](double u, double v) {
+      return frame.draw(mask, [&](Phase u, Phase v) {
         const float a = bands.at(u);
         const float b = bands.at(v);
         return a * b + (1 - a) * (1 - b);
       });
     case PatternKind::crosshatch:
-      return frame.draw(mask,
-                        [&](double u, double v) { return std::max(bands.at(u), bands.at(v)); });
+      return frame.draw(mask, [&](Phase u, Phase v) { return std::max(bands.at(u), bands.at(v)); });
     case PatternKind::dots:
       return draw_dots(frame, width, mask);
     case PatternKind::hatch:
     case PatternKind::stripes:
-      return frame.draw(mask, [&](double, double v) { return bands.at(v); });
+      return frame.draw(mask, [&](Phase, Phase v) { return bands.at(v); });
   }
 }
 
