@@ -1,14 +1,17 @@
 #include "core/layer/feature_stack.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace trapeze {
 
 void FeatureStack::Feature::begin(std::uint32_t feature_row) {
   row = feature_row;
-  role = {};
-  trapezoids.clear();
+  box = {};
+  is_over_others = false;
   covers.clear();
+  trapezoids.clear();
+  below.clear();
   has_sheet = false;
 }
 
@@ -16,12 +19,25 @@ bool FeatureStack::Feature::is_below(const Feature& other) const {
   return paint.is_raised == other.paint.is_raised ? row < other.row : other.paint.is_raised;
 }
 
-void FeatureStack::begin(const OverlapTable& overlaps, double narrowest) {
+void FeatureStack::begin(const OverlapTable& overlaps, const MeshView& mesh,
+                         const Options& options) {
   overlaps_ = &overlaps;
-  narrowest_ = narrowest;
+  mesh_ = mesh;
+  options_ = options;
   count_ = 0;
   std::ranges::fill(slots_, kNone);
   last_row_ = last_ = kNone;
+}
+
+/// Holds the trapezoid: as high as that is, and as wide as its sides are from end to end.
+Box FeatureStack::box_around(std::uint32_t trapezoid) const {
+  const MeshTrapezoid& t = mesh_.trapezoids[trapezoid];
+  const MeshEdge left = mesh_.edges[t.left];
+  const MeshEdge right = mesh_.edges[t.right];
+  return {std::min(mesh_.vertices[left.upper].x, mesh_.vertices[left.lower].x),
+          mesh_.vertices[t.top].y,
+          std::max(mesh_.vertices[right.upper].x, mesh_.vertices[right.lower].x),
+          mesh_.vertices[t.bottom].y};
 }
 
 /// The slot of the feature, or an empty one where it would be.
@@ -71,17 +87,22 @@ bool FeatureStack::settle(const Cancellation* cancellation) {
     Feature& feature = features_[number];
     for (const FeatureOverlap& overlap : overlaps_->of(feature.row)) {
       check();
-      if (overlap.width < narrowest_) continue;
+      if (overlap.width < options_.narrowest) continue;
       const std::uint32_t other_number = find(overlap.other);
       if (other_number == kNone) continue;
       Feature& other = features_[other_number];
       const bool are_alike = are_all_opaque && other.paint.colour == feature.paint.colour;
-      if (are_alike || other.paint.opacity <= 0 || !feature.is_below(other)) continue;
+      if (are_alike && overlap.along == 0) continue;
+      const bool is_over = other.paint.opacity > 0 && feature.is_below(other) &&
+                           (options_.cuts_whole_features || feature.box.intersects(other.box));
+      if (!is_over) continue;
       feature.covers.push_back(other_number);
-      feature.role = {true, true};
-      other.role.is_needed = true;
+      other.is_over_others = true;
       is_any_cut = true;
     }
+    std::ranges::sort(feature.covers, {}, [this](std::uint32_t cover) {
+      return std::pair(features_[cover].box.min_y, features_[cover].row);
+    });
   }
   by_row_.clear();
   for (std::uint32_t number = 0; number < count_; ++number) by_row_.push_back(number);
@@ -89,26 +110,60 @@ bool FeatureStack::settle(const Cancellation* cancellation) {
   return is_any_cut;
 }
 
-FeatureStack::Role FeatureStack::role_of(std::uint32_t row) const {
+bool FeatureStack::is_cut(std::uint32_t row) const {
   const std::uint32_t number = find(row);
-  return number == kNone ? Role() : features_[number].role;
+  return number != kNone && !features_[number].covers.empty();
 }
 
-void FeatureStack::add(std::uint32_t row, std::uint32_t trapezoid) {
-  features_[find(row)].trapezoids.push_back(trapezoid);
+bool FeatureStack::add(std::uint32_t row, std::uint32_t trapezoid) {
+  const std::uint32_t number = find(row);
+  if (number == kNone) return false;
+  Feature& feature = features_[number];
+  if (feature.is_over_others) feature.trapezoids.push_back(trapezoid);
+  if (feature.covers.empty()) return false;
+  if (!options_.cuts_whole_features && !is_covered(feature, trapezoid)) return false;
+  feature.below.push_back(trapezoid);
+  return true;
 }
 
-const Sheet& FeatureStack::sheet_of(const MeshView& mesh, Feature& feature) {
-  if (!feature.has_sheet) feature.sheet.assign(mesh, feature.trapezoids);
+/// Visits the features over a feature whose boxes meet a box, until visit(number) is false.
+template <typename Visit>
+void FeatureStack::for_each_cover(const Feature& feature, const Box& box,
+                                  const Visit& visit) const {
+  for (const std::uint32_t number : feature.covers) {
+    const Box& cover = features_[number].box;
+    if (cover.min_y > box.max_y) return;
+    if (cover.intersects(box) && !visit(number)) return;
+  }
+}
+
+bool FeatureStack::is_covered(const Feature& feature, std::uint32_t trapezoid) const {
+  bool is_any = false;
+  for_each_cover(feature, box_around(trapezoid),
+                 [&is_any](std::uint32_t) { return !(is_any = true); });
+  return is_any;
+}
+
+const Sheet& FeatureStack::sheet_of(Feature& feature) const {
+  if (!feature.has_sheet) feature.sheet.assign(mesh_, feature.trapezoids);
   feature.has_sheet = true;
   return feature.sheet;
 }
 
-void FeatureStack::cut(const MeshView& mesh, Feature& feature, CancellationCheck& check) {
-  visible_.begin(mesh, sheet_of(mesh, feature));
-  for (const std::uint32_t number : feature.covers) {
-    Feature& other = features_[number];
-    visible_.cover(sheet_of(mesh, other), 1 - other.paint.opacity, check);
+void FeatureStack::cut(Feature& feature, CancellationCheck& check) {
+  visible_.begin(mesh_);
+  for (const std::uint32_t trapezoid : feature.below) {
+    over_.clear();
+    for_each_cover(feature, box_around(trapezoid), [this](std::uint32_t cover) {
+      over_.push_back(cover);
+      return true;
+    });
+    // In an order that does not depend on what else is seen, as shares are rounded.
+    std::ranges::sort(over_, {}, [this](std::uint32_t cover) { return features_[cover].row; });
+    visible_.add(trapezoid);
+    for (const std::uint32_t cover : over_) {
+      visible_.cover(sheet_of(features_[cover]), 1 - features_[cover].paint.opacity, check);
+    }
   }
 }
 

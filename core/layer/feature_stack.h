@@ -15,8 +15,8 @@
 
 namespace trapeze {
 
-/// Use for one picture: note() every feature that is seen, settle(), add() the trapezoids of those
-/// that are needed, resolve(). Holds working memory for reuse; one thread at a time.
+/// Use for one picture: note() every trapezoid that is seen, settle(), add() them again, resolve().
+/// Holds working memory for reuse; one thread at a time.
 class FeatureStack {
  public:
   /// How a feature is painted.
@@ -28,39 +28,51 @@ class FeatureStack {
     bool is_opaque() const { return opacity >= 1; }
   };
 
-  /// Begins anew. Overlaps narrower than `narrowest` cells are left as they are: at a tolerance,
-  /// the borders of neighbours deviate by as much. So are those of features of one colour where all
-  /// are opaque.
-  void begin(const OverlapTable& overlaps, double narrowest);
+  struct Options {
+    /// Overlaps narrower than so many cells are left as they are: at a tolerance, the borders of
+    /// neighbours deviate by as much.
+    double narrowest = 0;
+    /// Whether all of a feature is cut up that something lies over, and not only its trapezoids
+    /// there.
+    bool cuts_whole_features = false;
+    /// Whether all features are opaque and of one colour.
+    bool is_plain = false;
+  };
 
-  /// Takes notice of a feature, any number of times; paint_of(row) is called once.
+  /// Begins anew, with trapezoids of a mesh; what is given must outlive the use of the stack. Where
+  /// all are opaque, features of one colour are cut only where their boundaries run along each
+  /// other, as there their areas together are more than what they cover.
+  void begin(const OverlapTable& overlaps, const MeshView& mesh, const Options& options);
+
+  /// Takes notice of a trapezoid of a feature; paint_of(row) is called once for each feature.
   template <typename PaintOf>
-  void note(std::uint32_t row, const PaintOf& paint_of);
+  void note(std::uint32_t row, std::uint32_t trapezoid, const PaintOf& paint_of);
 
   /// Finds out which features lie over which: whether there are any. A feature lies over those of
   /// lower rows, unless only the other is raised. Throws Cancelled.
   bool settle(const Cancellation* cancellation);
 
-  /// After settle(), of a feature that has been noted.
-  struct Role {
-    bool is_cut = false;     // something lies over it
-    bool is_needed = false;  // its trapezoids are to be added
-  };
-  Role role_of(std::uint32_t row) const;
-  void add(std::uint32_t row, std::uint32_t trapezoid);
+  /// After settle(): whether something lies over a feature.
+  bool is_cut(std::uint32_t row) const;
 
-  /// Calls parts(row, trapezoids, parts) for every feature that is cut, in order of rows. Throws
-  /// Cancelled.
+  /// After settle(), every trapezoid that has been noted. True if it is cut up, and not to be drawn
+  /// but by its parts.
+  bool add(std::uint32_t row, std::uint32_t trapezoid);
+
+  /// Calls parts(row, trapezoids, parts) for every feature that is cut, in order of rows, with
+  /// those of its trapezoids that are cut up. Throws Cancelled.
   template <typename Parts>
-  void resolve(const MeshView& mesh, const Cancellation* cancellation, const Parts& parts);
+  void resolve(const Cancellation* cancellation, const Parts& parts);
 
  private:
   struct Feature {
     std::uint32_t row = 0;
     Paint paint;
-    Role role;
-    std::vector<std::uint32_t> trapezoids;
-    std::vector<std::uint32_t> covers;  // numbers of features
+    Box box;  // of what is seen of it
+    bool is_over_others = false;
+    std::vector<std::uint32_t> covers;      // numbers of the features over it, by the tops of boxes
+    std::vector<std::uint32_t> trapezoids;  // all of them, if it lies over others
+    std::vector<std::uint32_t> below;       // those that are cut up
     Sheet sheet;
     bool has_sheet = false;
 
@@ -70,40 +82,53 @@ class FeatureStack {
 
   static constexpr std::uint32_t kNone = 0xffffffff;
 
+  bool can_matter(std::uint32_t row) const {
+    return options_.is_plain ? overlaps_->runs_along_another(row) : !overlaps_->of(row).empty();
+  }
+  Box box_around(std::uint32_t trapezoid) const;
   std::size_t slot_of(std::uint32_t row) const;
   std::uint32_t find(std::uint32_t row) const;
   std::uint32_t insert(std::uint32_t row);
   void grow();
-  static const Sheet& sheet_of(const MeshView& mesh, Feature& feature);
-  void cut(const MeshView& mesh, Feature& feature, CancellationCheck& check);
+  template <typename Visit>
+  void for_each_cover(const Feature& feature, const Box& box, const Visit& visit) const;
+  bool is_covered(const Feature& feature, std::uint32_t trapezoid) const;
+  const Sheet& sheet_of(Feature& feature) const;
+  void cut(Feature& feature, CancellationCheck& check);
 
   const OverlapTable* overlaps_ = nullptr;
-  double narrowest_ = 0;
+  MeshView mesh_;
+  Options options_;
   std::deque<Feature> features_;  // the first count_
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> slots_;  // numbers of features by row, open addressing
   mutable std::uint32_t last_row_ = kNone;
   mutable std::uint32_t last_ = kNone;
   std::vector<std::uint32_t> by_row_;  // numbers of features in order of rows
+  std::vector<std::uint32_t> over_;    // numbers of the features over a trapezoid
   VisibleParts visible_;
 };
 
 template <typename PaintOf>
-void FeatureStack::note(std::uint32_t row, const PaintOf& paint_of) {
-  if (row == last_row_ || overlaps_->of(row).empty()) return;
-  if (find(row) == kNone) features_[insert(row)].paint = paint_of(row);
+void FeatureStack::note(std::uint32_t row, std::uint32_t trapezoid, const PaintOf& paint_of) {
+  if (row != last_row_ && !can_matter(row)) return;
+  std::uint32_t number = find(row);
+  if (number == kNone) {
+    number = insert(row);
+    features_[number].paint = paint_of(row);
+  }
+  features_[number].box.include(box_around(trapezoid));
 }
 
 template <typename Parts>
-void FeatureStack::resolve(const MeshView& mesh, const Cancellation* cancellation,
-                           const Parts& parts) {
+void FeatureStack::resolve(const Cancellation* cancellation, const Parts& parts) {
   constexpr unsigned kStepsBetweenChecks = 4096;
   CancellationCheck check(cancellation, kStepsBetweenChecks);
   for (const std::uint32_t number : by_row_) {
     Feature& feature = features_[number];
-    if (!feature.role.is_cut) continue;
-    cut(mesh, feature, check);
-    parts(feature.row, std::span<const std::uint32_t>(feature.trapezoids), visible_.parts());
+    if (feature.below.empty()) continue;
+    cut(feature, check);
+    parts(feature.row, std::span<const std::uint32_t>(feature.below), visible_.parts());
   }
 }
 

@@ -15,6 +15,7 @@ namespace trapeze {
 namespace {
 
 constexpr double kNarrowest = 2;                           // cells
+constexpr double kAlong = 32;                              // cells apart, at most: half a metre
 constexpr std::size_t kMostPairsOf = 16;                   // for each trapezoid
 constexpr std::size_t kLeastPairs = std::size_t{1} << 20;  // 12 MB
 constexpr std::uint64_t kMostStepsOf = 1024;               // for each trapezoid
@@ -42,9 +43,11 @@ struct Common {
   double max_x = -min_x;
   double min_y = min_x;
   double max_y = -min_x;
+  double along = 0;  // how far their boundaries run along each other
 
   void add(const Common& more) {
     area += more.area;
+    along += more.along;
     min_x = std::min(min_x, more.min_x);
     max_x = std::max(max_x, more.max_x);
     min_y = std::min(min_y, more.min_y);
@@ -227,8 +230,9 @@ void OverlapSearch::compare(std::uint32_t a, std::uint32_t b, const Box& place) 
   width = std::max(width, all.width());
   if (width <= kNarrowest) return;
   const auto cells = static_cast<std::uint32_t>(width);
-  found_.pairs.push_back({a, b, cells});
-  found_.pairs.push_back({b, a, cells});
+  const auto along = static_cast<std::uint32_t>(std::min(all.along, 4e9));
+  found_.pairs.push_back({a, b, cells, along});
+  found_.pairs.push_back({b, a, cells, along});
 }
 
 /// Visits those of the others, from there on, that the item's box meets; returns how many were
@@ -263,6 +267,19 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
     to[i] = std::min(s_right.x_at(y), t_right.x_at(y));
   }
   Common common;
+  const auto add_sides = [&](const EdgeLine& side, const EdgeLine& other) {
+    const bool are_near = std::abs(side.x_at(top) - other.x_at(top)) <= kAlong &&
+                          std::abs(side.x_at(bottom) - other.x_at(bottom)) <= kAlong;
+    if (are_near) common.along += std::hypot(bottom - top, side.x_at(bottom) - side.x_at(top));
+  };
+  add_sides(s_left, t_left);
+  add_sides(s_right, t_right);
+  // Level sides; or both have a vertex of that height beside them.
+  const auto add_level = [&](int y, int other_y, int at) {
+    if (std::abs(y - other_y) <= kAlong) common.along += std::max(0.0, to[at] - from[at]);
+  };
+  add_level(a.box.min_y, b.box.min_y, 0);
+  add_level(a.box.max_y, b.box.max_y, kHeights - 1);
   for (int i = 0; i < kHeights; ++i) {
     if (from[i] >= to[i]) continue;
     const bool is_end = i == 0 || i == kHeights - 1;
@@ -289,6 +306,11 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
   begins_.assign(rows + 1, 0);
   for (const FeatureOverlap& pair : pairs_) ++begins_[pair.row + 1];
   for (std::size_t row = 0; row < rows; ++row) begins_[row + 1] += begins_[row];
+  for (const FeatureOverlap& pair : pairs_) {
+    if (pair.along == 0) continue;
+    runs_along_.resize(rows);
+    runs_along_[pair.row] = 1;
+  }
 }
 
 FeatureOverlaps find_overlaps(const OverlapInput& input) {

@@ -19,6 +19,9 @@ struct FeatureOverlap {
   std::uint32_t other = 0;
   /// About how wide that place is where it is widest, in cells: its area by its longest extent.
   std::uint32_t width = 0;
+  /// How far the boundaries of both run along each other there, with the insides on the same side,
+  /// in cells.
+  std::uint32_t along = 0;
 
   friend bool operator==(const FeatureOverlap&, const FeatureOverlap&) = default;
 };
@@ -38,14 +41,19 @@ class OverlapTable {
     if (begins_.empty()) return {};
     return std::span(pairs()).subspan(begins_[row], begins_[row + 1] - begins_[row]);
   }
+  /// Whether the feature overlaps one along whose boundary its own runs.
+  bool runs_along_another(std::uint32_t row) const {
+    return !runs_along_.empty() && runs_along_[row] != 0;
+  }
   std::span<const FeatureOverlap> pairs() const { return {pairs_.data(), pairs_.size()}; }
   std::size_t memory() const {
-    return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t);
+    return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t) + runs_along_.capacity();
   }
 
  private:
   StoredArray<FeatureOverlap> pairs_;
   std::vector<std::uint32_t> begins_;  // by row, and the end of the last; empty if there are none
+  std::vector<std::uint8_t> runs_along_;  // by row; empty if none does
 };
 
 /// Features whose trapezoids at full detail are looked at; views of the caller's memory.

@@ -68,17 +68,23 @@ void Sheet::assign(const MeshView& mesh, std::span<const std::uint32_t> trapezoi
   for (Item& item : items_) item.reach = reach = std::max(reach, item.bottom);
 }
 
-void VisibleParts::begin(const MeshView& mesh, const Sheet& sheet) {
+void VisibleParts::begin(const MeshView& mesh) {
   mesh_ = mesh;
   parts_.clear();
-  for (const Sheet::Item& item : sheet.items()) {
-    parts_.push_back({item.top, item.bottom, item.left, item.right, 1});
-  }
+  last_ = 0;
+}
+
+void VisibleParts::add(std::uint32_t trapezoid) {
+  last_ = parts_.size();
+  const MeshTrapezoid& t = mesh_.trapezoids[trapezoid];
+  const std::int32_t top = mesh_.vertices[t.top].y;
+  const std::int32_t bottom = mesh_.vertices[t.bottom].y;
+  if (top < bottom) parts_.push_back({top, bottom, t.left, t.right, 1});
 }
 
 void VisibleParts::cover(const Sheet& sheet, float share, CancellationCheck& check) {
-  covered_.swap(parts_);
-  parts_.clear();
+  covered_.assign(parts_.begin() + static_cast<std::ptrdiff_t>(last_), parts_.end());
+  parts_.resize(last_);
   for (const TrapezoidPart& part : covered_) {
     const auto first = std::ranges::upper_bound(sheet.items(), part.top, {}, &Sheet::Item::reach);
     pending_.push_back({part, static_cast<std::size_t>(first - sheet.items().begin())});

@@ -47,15 +47,18 @@ class Sheet {
   std::vector<Item> items_;
 };
 
-/// The parts of one feature that are to be seen. One thread at a time.
+/// The parts of trapezoids that are to be seen. One thread at a time.
 class VisibleParts {
  public:
-  /// Begins with all of a sheet of the mesh, which must outlive the use of the parts.
-  void begin(const MeshView& mesh, const Sheet& sheet);
+  /// Begins without any, of a mesh which must outlive the use of the parts.
+  void begin(const MeshView& mesh);
 
-  /// Lays another sheet over it, through which `share` of what lies below is seen, 0 to 1: of the
-  /// parts below it there remains that share, and nothing if that is 0. `check` is called for each
-  /// trapezoid that is looked at.
+  /// Adds a trapezoid, whole. Those without height have no parts.
+  void add(std::uint32_t trapezoid);
+
+  /// Lays a sheet of the same mesh over the trapezoid that was added last: through it `share` of
+  /// what lies below is seen, 0 to 1. Of the parts below it there remains that share, and nothing
+  /// if that is 0. `check` is called for each trapezoid that is looked at.
   void cover(const Sheet& sheet, float share, CancellationCheck& check);
 
   std::span<const TrapezoidPart> parts() const { return parts_; }
@@ -74,6 +77,7 @@ class VisibleParts {
 
   MeshView mesh_;
   std::vector<TrapezoidPart> parts_;
+  std::size_t last_ = 0;  // where the parts of the trapezoid begin that was added last
   std::vector<TrapezoidPart> covered_;
   std::vector<Pending> pending_;
 };

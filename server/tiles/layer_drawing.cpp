@@ -156,9 +156,14 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
           has_classes ? SmallPolygons::drop : paint.small};
 }
 
-bool is_order_seen(const LayerStyle& style) {
-  return !style.classing.is_plain() || style.paints[0].fill.a < 255 || style.stroke.width > 0;
+namespace {
+
+// Whether all features are opaque and of one colour.
+bool is_plain(const LayerStyle& style) {
+  return style.classing.is_plain() && style.paints[0].fill.a == 255 && style.stroke.width <= 0;
 }
+
+}  // namespace
 
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
                           const FeatureClasses* classes, DrawingTools& tools) {
@@ -226,19 +231,19 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
     const std::uint32_t row = layer_->feature_of(i);
     const std::uint8_t number = number_of(classes, row);
     if (number == kNotDrawn) return;
-    const FeatureStack::Role role =
-        has_stack_ && row != Layer::kNoFeature ? tools.stack.role_of(row) : FeatureStack::Role();
-    if (role.is_needed) tools.stack.add(row, i);
-    if (!role.is_cut) append(i, class_drawing(number).ranges);
+    const bool is_cut_up = has_stack_ && row != Layer::kNoFeature && tools.stack.add(row, i);
+    if (!is_cut_up) append(i, class_drawing(number).ranges);
   });
   if (has_stack_) add_stack(classes, selection, tools);
 }
 
-// Whether features of the layer lie over each other here, and it matters.
+// Whether features of the layer lie over each other here. Of one colour they are cut up as well:
+// where their edges run along each other, their areas together would be more than they cover.
 bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                               DrawingTools& tools) {
-  if (layer_->overlaps().empty() || !is_order_seen(style())) return false;
-  tools.stack.begin(layer_->overlaps(), epsilon_of_level(selection.pixel_level));
+  if (layer_->overlaps().empty()) return false;
+  tools.stack.begin(layer_->overlaps(), layer_->mesh(),
+                    {epsilon_of_level(selection.pixel_level), has_lines(), is_plain(style())});
   const auto paint_of = [&](std::uint32_t row) {
     const std::uint8_t number = number_of(classes, row);
     const Rgba fill = style().paints[number].fill;
@@ -250,7 +255,7 @@ bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Select
     check();
     const std::uint32_t row = layer_->feature_of(i);
     if (row == Layer::kNoFeature || number_of(classes, row) == kNotDrawn) return;
-    tools.stack.note(row, paint_of);
+    tools.stack.note(row, i, paint_of);
   });
   return tools.stack.settle(tools.cancellation);
 }
@@ -264,7 +269,7 @@ void LayerDrawing::add_stack(const FeatureClasses* classes, const Layer::Selecti
     layer_->select_horizontal_edges(selection.box, selection.level, tools.ranges);
     for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
       const std::uint32_t row = layer_->feature_of(i);
-      if (!tools.stack.role_of(row).is_cut) return;
+      if (!tools.stack.is_cut(row)) return;
       level_edges.emplace_back(row, layer_->mesh().trapezoids[i].left);
     });
     std::ranges::sort(level_edges);
@@ -279,7 +284,7 @@ void LayerDrawing::add_stack(const FeatureClasses* classes, const Layer::Selecti
     for (; edge != level_edges.end() && edge->first == row; ++edge) edges.push_back(edge->second);
     add_seen_edges(number, trapezoids, edges, parts);
   };
-  tools.stack.resolve(layer_->mesh(), tools.cancellation, parts_of);
+  tools.stack.resolve(tools.cancellation, parts_of);
 }
 
 void LayerDrawing::add_parts(std::uint8_t number, std::span<const TrapezoidPart> parts) {
@@ -368,7 +373,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfL
   for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
     const std::uint32_t row = layer_->feature_of(i);
     const std::uint8_t number = number_of(classes, row);
-    const bool is_cut = has_stack_ && tools.stack.role_of(row).is_cut;
+    const bool is_cut = has_stack_ && tools.stack.is_cut(row);
     if (number != kNotDrawn && !is_cut) append(i, by_class[number]);
   });
   for (std::size_t number = 0; number < by_class.size(); ++number) {

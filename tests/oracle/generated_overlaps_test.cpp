@@ -226,17 +226,13 @@ class ShapeFile {
 const std::array<TileName, 3> kTiles = {kTile, TileName{kTile.zoom - 1, kTile.x / 2, kTile.y / 2},
                                         TileName{kTile.zoom + 1, 2 * kTile.x + 1, 2 * kTile.y}};
 
-// Where polygons of one colour lie over each other, their areas are added up, to a whole pixel at
-// most: along edges that coincide, more is covered than should be.
-constexpr Limits kAddedUp{1, 0.0055};
 // Where lines are nearer to each other than they are wide, the greatest value of a pixel counts,
 // not what they cover together (see render/mask/stroke.h).
 constexpr Limits kLines{1.3, 0.0022};
 
 const std::vector<Exception> kExceptions = {
-    {"Coincident", "plain", kAddedUp},         {"Coincident", "off, classes", kAddedUp},
-    {"Coincident", "auto, classes", kAddedUp}, {"Coincident", "highlight", kAddedUp},
-    {"Coincident", "two layers", kAddedUp},    {"Nested", "outline", kLines},
+    {"Nested", "outline", kLines},
+    {"Coincident", "outline of 3 px", kLines},
 };
 
 void look_at_all(HeldToTruth& held, const TrueClasses& classes) {

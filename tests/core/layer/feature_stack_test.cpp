@@ -26,9 +26,11 @@ class SeenAreas {
   }
 
   FeatureStack::Paint& paint(std::uint32_t row) { return paints_[row]; }
-  /// Whether anything had to be cut for the last areas().
-  bool is_cut() const { return is_cut_; }
+  /// How many trapezoids had to be cut up for the last areas().
+  std::size_t cut_up() const { return cut_up_; }
   void set_narrowest(double cells) { narrowest_ = cells; }
+  void cut_whole_features() { cuts_whole_features_ = true; }
+  void set_plain() { is_plain_ = true; }
 
   std::map<std::pair<std::uint32_t, float>, double> areas(
       const Cancellation* cancellation = nullptr) {
@@ -49,24 +51,24 @@ class SeenAreas {
       if (top < bottom) add(row, 1, top, bottom, t.left, t.right);
     };
     FeatureStack stack;
-    stack.begin(layer_->overlaps(), narrowest_);
+    stack.begin(layer_->overlaps(), mesh, {narrowest_, cuts_whole_features_, is_plain_});
     for_each_trapezoid(ranges, [&](std::uint32_t i) {
-      stack.note(layer_->feature_of(i), [this](std::uint32_t row) { return paints_[row]; });
+      stack.note(layer_->feature_of(i), i, [this](std::uint32_t row) { return paints_[row]; });
     });
-    is_cut_ = stack.settle(cancellation);
+    stack.settle(cancellation);
+    cut_up_ = 0;
     for_each_trapezoid(ranges, [&](std::uint32_t i) {
       const std::uint32_t row = layer_->feature_of(i);
-      const FeatureStack::Role role = stack.role_of(row);
-      if (role.is_needed) stack.add(row, i);
-      if (!role.is_cut) add_whole(row, i);
+      const bool is_cut_up = stack.add(row, i);
+      cut_up_ += is_cut_up ? 1 : 0;
+      if (!is_cut_up) add_whole(row, i);
     });
-    stack.resolve(mesh, cancellation,
-                  [&](std::uint32_t row, std::span<const std::uint32_t>,
-                      std::span<const TrapezoidPart> parts) {
-                    for (const TrapezoidPart& part : parts) {
-                      add(row, part.share, part.top, part.bottom, part.left, part.right);
-                    }
-                  });
+    stack.resolve(cancellation, [&](std::uint32_t row, std::span<const std::uint32_t>,
+                                    std::span<const TrapezoidPart> parts) {
+      for (const TrapezoidPart& part : parts) {
+        add(row, part.share, part.top, part.bottom, part.left, part.right);
+      }
+    });
     return areas;
   }
 
@@ -74,7 +76,9 @@ class SeenAreas {
   std::unique_ptr<Layer> layer_;
   std::vector<FeatureStack::Paint> paints_;
   double narrowest_ = 0;
-  bool is_cut_ = false;
+  bool cuts_whole_features_ = false;
+  bool is_plain_ = false;
+  std::size_t cut_up_ = 0;
 };
 
 using Areas = std::map<std::pair<std::uint32_t, float>, double>;
@@ -114,14 +118,42 @@ TEST(FeatureStackTest, NarrowOverlapsAreLeftAsTheyAre) {
 }
 
 TEST(FeatureStackTest, FeaturesOfOneColourAreLeftWholeWhereAllAreOpaque) {
-  SeenAreas seen(kNested);
+  SeenAreas seen({"0 0, 1000 0, 1000 1000, 0 1000", "200 200, 600 200, 600 600, 200 600",
+                  "500 500, 1500 500, 1500 1500, 500 1500"});
   for (const std::uint32_t row : {0u, 1u, 2u}) seen.paint(row).colour = 7;
-  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 10'000}, {{1, 1}, 1600}, {{2, 1}, 10'000}}));
-  EXPECT_FALSE(seen.is_cut());
+  EXPECT_EQ(seen.areas(), (Areas{{{0, 1}, 1e6}, {{1, 1}, 1.6e5}, {{2, 1}, 1e6}}));
+  EXPECT_EQ(seen.cut_up(), 0u);
   seen.paint(1).opacity = 0.5F;
   EXPECT_EQ(seen.areas(),
-            (Areas{{{0, 0.5F}, 1500}, {{0, 1}, 6000}, {{1, 1}, 1500}, {{2, 1}, 10'000}}));
-  EXPECT_TRUE(seen.is_cut());
+            (Areas{{{0, 0.5F}, 1.5e5}, {{0, 1}, 6e5}, {{1, 1}, 1.5e5}, {{2, 1}, 1e6}}));
+  EXPECT_GT(seen.cut_up(), 0u);
+}
+
+TEST(FeatureStackTest, FeaturesOfOneColourAreCutWhereTheirBoundariesRunAlongEachOther) {
+  // The halves of a square, the square again, and one within it.
+  const std::vector<std::string> texts = {
+      "0 0, 1000 0, 1000 1000, 0 1000", "0 0, 500 0, 500 1000, 0 1000",
+      "0 0, 1000 0, 1000 1000, 0 1000", "200 200, 300 200, 300 300, 200 300"};
+  SeenAreas seen(texts);
+  for (const std::uint32_t row : {0u, 1u, 2u, 3u}) seen.paint(row).colour = 7;
+  const Areas expected{{{2, 1}, 1e6}, {{3, 1}, 1e4}};
+  EXPECT_EQ(seen.areas(), expected);
+  seen.set_plain();
+  EXPECT_EQ(seen.areas(), expected);
+}
+
+TEST(FeatureStackTest, OnlyTrapezoidsNearOtherFeaturesAreCutUp) {
+  // A comb whose teeth are far from what lies over it.
+  const std::vector<std::string> texts = {
+      "0 0, 1000 0, 1000 50, 900 500, 800 50, 700 500, 600 50, 500 500, 400 50, 0 50",
+      "10 10, 30 10, 30 40, 10 40"};
+  SeenAreas seen(texts);
+  const Areas areas = seen.areas();
+  const std::size_t few = seen.cut_up();
+  EXPECT_GT(few, 0u);
+  seen.cut_whole_features();
+  EXPECT_EQ(seen.areas(), areas);
+  EXPECT_GT(seen.cut_up(), few);
 }
 
 TEST(FeatureStackTest, EndsWhenItIsNotWanted) {

@@ -70,6 +70,24 @@ TEST(OverlapsTest, EitherFeatureKnowsTheOther) {
   EXPECT_THAT(overlaps.of(2), ElementsAre(overlap(2, 0, 9u)));
 }
 
+TEST(OverlapsTest, KnowWhereBoundariesRunAlongEachOther) {
+  constexpr std::uint32_t kSide = 10'000;
+  const auto along = [](const std::string& other) {
+    const auto layer = layer_of_texts({"0 0, 10000 0, 10000 10000, 0 10000", other});
+    const auto overlaps = layer->overlaps().of(0);
+    EXPECT_EQ(overlaps.size(), 1u) << other;
+    EXPECT_EQ(layer->overlaps().runs_along_another(1), overlaps[0].along > 0) << other;
+    return overlaps[0].along;
+  };
+  EXPECT_EQ(along("2000 2000, 6000 2000, 6000 6000, 2000 6000"), 0u);
+  EXPECT_EQ(along("5000 -50, 15000 5000, 5000 9000"), 0u);
+  EXPECT_EQ(along("0 0, 10000 0, 10000 10000, 0 10000"), 4 * kSide);
+  EXPECT_EQ(along("0 -500, 5000 -500, 5000 20000, 0 20000"), kSide);
+  EXPECT_EQ(along("2000 0, 6000 0, 6000 500, 2000 500"), 4000u);
+  // On the other side of its boundary.
+  EXPECT_EQ(along("-500 2000, 10000 1000, 10000 500"), 500u);
+}
+
 TEST(OverlapsTest, APolygonInTheHoleOfAnotherHasNone) {
   const auto layer = layer_of_texts(
       {"0 0, 100 0, 100 100, 0 100; 20 20, 80 20, 80 80, 20 80", "20 20, 80 20, 80 80, 20 80"});

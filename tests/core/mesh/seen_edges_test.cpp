@@ -20,13 +20,12 @@ const MeshView kMesh{1, kVertices, kEdges, kTrapezoids};
 const std::vector<std::uint32_t> kOwn = {0, 1};
 
 std::vector<TrapezoidPart> parts_below(float share) {
-  Sheet square;
   Sheet triangle;
-  square.assign(kMesh, std::vector<std::uint32_t>{0});
   triangle.assign(kMesh, std::vector<std::uint32_t>{1});
   VisibleParts visible;
   CancellationCheck check(nullptr, 100);
-  visible.begin(kMesh, square);
+  visible.begin(kMesh);
+  visible.add(0);
   visible.cover(triangle, share, check);
   return {visible.parts().begin(), visible.parts().end()};
 }

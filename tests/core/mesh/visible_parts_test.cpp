@@ -55,13 +55,15 @@ Cut cut_first(std::vector<Rings> polygons, float share) {
   Cut cut{layer_of(std::move(polygons)), {}};
   const MeshView& mesh = cut.layer->mesh();
   const auto by_row = trapezoids_by_row(*cut.layer);
-  Sheet sheet;
-  sheet.assign(mesh, by_row[0]);
-  cut.parts.begin(mesh, sheet);
+  std::vector<Sheet> sheets(by_row.size());
+  for (std::size_t row = 1; row < by_row.size(); ++row) sheets[row].assign(mesh, by_row[row]);
+  cut.parts.begin(mesh);
   CancellationCheck check(nullptr, 100);
-  for (std::size_t row = 1; row < by_row.size(); ++row) {
-    sheet.assign(mesh, by_row[row]);
-    cut.parts.cover(sheet, share, check);
+  for (const std::uint32_t trapezoid : by_row[0]) {
+    cut.parts.add(trapezoid);
+    for (std::size_t row = 1; row < by_row.size(); ++row) {
+      cut.parts.cover(sheets[row], share, check);
+    }
   }
   return cut;
 }

@@ -91,6 +91,7 @@ TEST(PreparedFormatTest, ItemsLieAsInTheDocument) {
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", row);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", other);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", width);
+  EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", along);
 }
 
 TEST(PreparedFormatTest, TheDocumentIsOfThisVersion) {
