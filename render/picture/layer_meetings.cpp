@@ -22,10 +22,19 @@ Bytes bytes_at(const std::uint8_t* values) {
   return bytes;
 }
 
-bool is_any(Bytes bytes) {
+/// Calls visit(i) for every byte that is set, in order, of bytes all or none of whose bits are.
+template <typename Visit>
+void for_each_set(Bytes bytes, const Visit& visit) {
+  static_assert(std::endian::native == std::endian::little);
   std::uint64_t halves[2];
   std::memcpy(halves, &bytes, kBlock);
-  return (halves[0] | halves[1]) != 0;
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (std::uint64_t left = halves[half]; left != 0;) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+      visit(8 * half + bit / 8);
+      left &= ~(std::uint64_t{kAll} << bit);
+    }
+  }
 }
 
 /// Adds values to sums, as far as there is room in them.
@@ -121,21 +130,20 @@ LayerMeetings::Values LayerMeetings::cover_of(const PaintedLayer& layer) {
 
 void LayerMeetings::find_contested(Values below, Values above) {
   contested_.clear();
-  const auto look = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (is_partial(below[i]) && is_partial(above[i])) {
-        contested_.push_back(static_cast<std::uint32_t>(i));
-      }
-    }
-  };
   std::size_t i = 0;
   for (; i + kBlock <= pixels_; i += kBlock) {
     // Values from 1 to 254 become 0 to 253.
     const Bytes a = bytes_at(below.data() + i) - 1;
     const Bytes b = bytes_at(above.data() + i) - 1;
-    if (is_any(reinterpret_cast<Bytes>((a < kAll - 1) & (b < kAll - 1)))) look(i, i + kBlock);
+    const auto are_partial = reinterpret_cast<Bytes>((a < kAll - 1) & (b < kAll - 1));
+    for_each_set(are_partial,
+                 [&](std::size_t k) { contested_.push_back(static_cast<std::uint32_t>(i + k)); });
   }
-  look(i, pixels_);
+  for (; i < pixels_; ++i) {
+    if (is_partial(below[i]) && is_partial(above[i])) {
+      contested_.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
 }
 
 void LayerMeetings::meet(Values below, Values above, double tolerance,

@@ -34,6 +34,14 @@ struct SoftwareRenderer::Piece {
   double y_bottom;
 };
 
+// What of a piece lies in one row.
+struct SoftwareRenderer::RowPiece {
+  double x_from;
+  double x_to;
+  double height;             // of it, in pixels
+  double height_per_column;  // that it rises or falls for each column; 0 if it is vertical
+};
+
 namespace {
 
 // For 0 <= value, where it is cheaper than std::floor.
@@ -168,34 +176,12 @@ void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
   add_piece(inside, sign);
 }
 
-// Adds a piece that lies in the picture, row by row; one without height adds nothing.
-void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
-  if (!(piece.y_top < piece.y_bottom)) return;
-  const int first = truncate(piece.y_top);
-  if (piece.y_bottom <= first + 1) {
-    add_row(first, piece.x_top, piece.x_bottom, piece.y_bottom - piece.y_top, sign);
-    return;
-  }
-  const double slope = (piece.x_bottom - piece.x_top) / (piece.y_bottom - piece.y_top);
-  // Rounding must not carry a position out of the picture.
-  const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
-  double y = piece.y_top;
-  double x = piece.x_top;
-  for (int row = first; y < piece.y_bottom; ++row) {
-    const double next_y = std::min(row + 1.0, piece.y_bottom);
-    const double next_x = std::clamp(piece.x_top + (next_y - piece.y_top) * slope, low, high);
-    add_row(row, x, next_x, next_y - y, sign);
-    x = next_x;
-    y = next_y;
-  }
-}
-
-// Adds a piece that stays within one row: `height` of it is spread evenly from x_from to x_to. In
-// the column that holds it, what lies right of the piece is covered; in all columns further east
-// the full height is, which the running sum carries on.
-void SoftwareRenderer::add_row(int row, double x_from, double x_to, double height, float sign) {
-  const double low = std::min(x_from, x_to);
-  const double high = std::max(x_from, x_to);
+// Adds a piece that stays within one row: its height is spread evenly. In the column that holds it,
+// what lies right of the piece is covered; in all columns further east the full height is, which
+// the running sum carries on.
+inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign) {
+  const double low = std::min(piece.x_from, piece.x_to);
+  const double high = std::max(piece.x_from, piece.x_to);
   const int first = truncate(low);
   const int last = truncate(high);
   Touched& touched = touched_[static_cast<std::size_t>(row)];
@@ -209,15 +195,44 @@ void SoftwareRenderer::add_row(int row, double x_from, double x_to, double heigh
     cells[column + 1] += sign * static_cast<float>(part * west);
   };
   if (first == last) {
-    add_to(first, height, 0.5 * (low + high));
+    add_to(first, piece.height, 0.5 * (low + high));
     return;
   }
-  const double height_per_column = height / (high - low);
+  // The last column takes what is left, so that the sum is the height whatever is rounded.
+  double left = piece.height;
   double x = low;
-  for (int column = first; column <= last; ++column) {
-    const double next_x = std::min(column + 1.0, high);
-    add_to(column, (next_x - x) * height_per_column, 0.5 * (x + next_x));
+  for (int column = first; column < last; ++column) {
+    const double next_x = column + 1.0;
+    const double part = std::min((next_x - x) * piece.height_per_column, left);
+    add_to(column, part, 0.5 * (x + next_x));
+    left -= part;
     x = next_x;
+  }
+  add_to(last, left, 0.5 * (x + high));
+}
+
+// Adds a piece that lies in the picture, row by row; one without height adds nothing.
+void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
+  if (!(piece.y_top < piece.y_bottom)) return;
+  const int first = truncate(piece.y_top);
+  const double width = piece.x_bottom - piece.x_top;
+  const double height = piece.y_bottom - piece.y_top;
+  const double height_per_column = width != 0 ? height / std::abs(width) : 0;
+  if (piece.y_bottom <= first + 1) {
+    add_row(first, {piece.x_top, piece.x_bottom, height, height_per_column}, sign);
+    return;
+  }
+  const double slope = width / height;
+  // Rounding must not carry a position out of the picture.
+  const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
+  double y = piece.y_top;
+  double x = piece.x_top;
+  for (int row = first; y < piece.y_bottom; ++row) {
+    const double next_y = std::min(row + 1.0, piece.y_bottom);
+    const double next_x = std::clamp(piece.x_top + (next_y - piece.y_top) * slope, low, high);
+    add_row(row, {x, next_x, next_y - y, height_per_column}, sign);
+    x = next_x;
+    y = next_y;
   }
 }
 

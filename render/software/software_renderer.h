@@ -29,6 +29,7 @@ class SoftwareRenderer final : public MaskRenderer {
  private:
   struct Frame;
   struct Piece;
+  struct RowPiece;
 
   // The range of columns written in a row; first > last if none.
   struct Touched {
@@ -45,7 +46,7 @@ class SoftwareRenderer final : public MaskRenderer {
                 const Frame& frame);
   void add_clipped(const Piece& piece, float sign);
   void add_piece(const Piece& piece, float sign);
-  void add_row(int row, double x_from, double x_to, double height, float sign);
+  void add_row(int row, const RowPiece& piece, float sign);
   void resolve(Mask& out);
 
   int width_ = 0;
