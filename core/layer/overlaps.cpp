@@ -310,6 +310,7 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
     if (pair.along == 0) continue;
     runs_along_.resize(rows);
     runs_along_[pair.row] = 1;
+    ++pairs_along_;
   }
 }
 

@@ -46,6 +46,8 @@ class OverlapTable {
     return !runs_along_.empty() && runs_along_[row] != 0;
   }
   std::span<const FeatureOverlap> pairs() const { return {pairs_.data(), pairs_.size()}; }
+  /// How many of them are of features whose boundaries run along each other.
+  std::size_t pairs_along() const { return pairs_along_; }
   std::size_t memory() const {
     return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t) + runs_along_.capacity();
   }
@@ -54,6 +56,7 @@ class OverlapTable {
   StoredArray<FeatureOverlap> pairs_;
   std::vector<std::uint32_t> begins_;  // by row, and the end of the last; empty if there are none
   std::vector<std::uint8_t> runs_along_;  // by row; empty if none does
+  std::size_t pairs_along_ = 0;
 };
 
 /// Features whose trapezoids at full detail are looked at; views of the caller's memory.

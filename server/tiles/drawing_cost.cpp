@@ -18,8 +18,10 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
 }
 
 /// How often a trapezoid is cut at most by those that lie over it, on average.
-std::uint64_t cuts_of_trapezoid(const Layer& layer) {
-  const std::size_t pairs = layer.overlaps().pairs().size() / 2;
+std::uint64_t cuts_of_trapezoid(const Layer& layer, const LayerStyle& style) {
+  const OverlapTable& overlaps = layer.overlaps();
+  const std::size_t pairs =
+      (is_plain(style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
   return pairs == 0 ? 0 : 1 + pairs / layer.features().size();
 }
 
@@ -32,7 +34,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t shapes = trapezoids + grains;
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
-  cost += trapezoids * cuts_of_trapezoid(layer);
+  cost += trapezoids * cuts_of_trapezoid(layer, paint.style);
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);

@@ -156,14 +156,9 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
           has_classes ? SmallPolygons::drop : paint.small};
 }
 
-namespace {
-
-// Whether all features are opaque and of one colour.
 bool is_plain(const LayerStyle& style) {
   return style.classing.is_plain() && style.paints[0].fill.a == 255 && style.stroke.width <= 0;
 }
-
-}  // namespace
 
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
                           const FeatureClasses* classes, DrawingTools& tools) {

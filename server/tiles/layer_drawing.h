@@ -43,6 +43,10 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
 /// The dust that is gathered from grains, feature by feature, by when they were born.
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection);
 
+/// Whether all features are opaque and of one colour, without outlines: it does not matter which of
+/// two that overlap is drawn over the other.
+bool is_plain(const LayerStyle& style);
+
 class LayerDrawing {
  public:
   /// Selects what is to be drawn. `classes` has the class of every feature; null if the style is

@@ -141,7 +141,7 @@ TEST(LayerArrays, OfABuiltLayerTakeNoMoreMemoryThanTheirItems) {
   EXPECT_EQ(layer->memory(), items);
   EXPECT_LE(layer->grains().memory(), a.grains.size_bytes() * 11 / 10 + 64);
   EXPECT_LE(layer->overlaps().memory(),
-            a.overlaps.size_bytes() + 4 * (layer->features().size() + 1));
+            a.overlaps.size_bytes() + 5 * (layer->features().size() + 1));
   std::size_t cells = a.cells.ids.size_bytes() + a.cells.string_bytes.size_bytes() +
                       a.cells.string_ends.size_bytes();
   for (const auto& column : a.cells.columns) {
