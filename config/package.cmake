@@ -5,10 +5,9 @@ set(TRAPEZE_PACKAGE_CONTACT "Trapeze developers <trapeze@packages.invalid>" CACH
 # The licence of the viewer's map library comes with it.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
 set(copyright "Trapeze\n\n${licence}")
-set(leaflet_licence ${PROJECT_SOURCE_DIR}/web/dist/leaflet/LICENSE.txt)
-if(EXISTS ${leaflet_licence})
-  file(READ ${leaflet_licence} licence)
-  string(APPEND copyright "\n\nLeaflet, in ${CMAKE_INSTALL_FULL_DATADIR}/trapeze/web/leaflet\n\n${licence}")
+if(TRAPEZE_HAS_VIEWER)
+  file(READ ${PROJECT_SOURCE_DIR}/web/node_modules/leaflet/LICENSE licence)
+  string(APPEND copyright "\n\nLeaflet, within the program\n\n${licence}")
 endif()
 file(CONFIGURE OUTPUT copyright CONTENT "${copyright}" @ONLY)
 

@@ -1,4 +1,6 @@
-// Puts the folder together that the server hands out: our page and Leaflet, nothing from outside.
+// Puts the page together that the server hands out: our files and Leaflet, nothing from outside. The build
+// takes them into the program (embed.mjs); to try a change without building, make a folder of them and name
+// it as web_root:
 //
 //   node assemble.mjs TARGET
 //
@@ -19,22 +21,43 @@ const PAGE = [
   "class_editor.js",
   "class_list.js",
   "colours.js",
+  "combined_tiles.js",
   "comparison.js",
+  "connection.js",
   "detail_panel.js",
   "elements.js",
   "feature_panel.js",
   "feature_samples.js",
   "layer_panel.js",
   "legend.js",
-  "map_layer.js",
   "named_styles.js",
+  "notices.js",
   "place_hash.js",
+  "progress_line.js",
+  "share.css",
+  "share_panel.js",
+  "share_snippets.js",
+  "share_style.js",
   "style_controls.js",
   "style_form.js",
   "tile_query.js",
+  "tile_requests.js",
   "tile_timing.js",
   "icon.svg",
 ];
+
+/** Every file of the viewer: its name within the page, and where it is. */
+export function viewerFiles() {
+  const files = PAGE.map((name) => ({ name, from: join(WEB, name) }));
+  for (const name of ["leaflet.js", "leaflet.css"]) {
+    files.push({ name: `leaflet/${name}`, from: join(LEAFLET, "dist", name) });
+  }
+  for (const name of readdirSync(join(LEAFLET, "dist", "images")).sort()) {
+    files.push({ name: `leaflet/images/${name}`, from: join(LEAFLET, "dist", "images", name) });
+  }
+  files.push({ name: "leaflet/LICENSE.txt", from: join(LEAFLET, "LICENSE") });
+  return files;
+}
 
 function copy(from, to) {
   mkdirSync(dirname(to), { recursive: true });
@@ -42,16 +65,11 @@ function copy(from, to) {
   renameSync(`${to}.tmp`, to);
 }
 
-const target = process.argv[2];
-if (!target) {
-  console.error("usage: node assemble.mjs TARGET");
-  process.exit(2);
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const target = process.argv[2];
+  if (!target) {
+    console.error("usage: node assemble.mjs TARGET");
+    process.exit(2);
+  }
+  for (const { name, from } of viewerFiles()) copy(from, join(target, name));
 }
-for (const name of PAGE) copy(join(WEB, name), join(target, name));
-for (const name of ["leaflet.js", "leaflet.css"]) {
-  copy(join(LEAFLET, "dist", name), join(target, "leaflet", name));
-}
-for (const name of readdirSync(join(LEAFLET, "dist", "images"))) {
-  copy(join(LEAFLET, "dist", "images", name), join(target, "leaflet", "images", name));
-}
-copy(join(LEAFLET, "LICENSE"), join(target, "leaflet", "LICENSE.txt"));

@@ -15,7 +15,8 @@ constexpr unsigned kThreads = 2;  // for sockets
 constexpr std::size_t kConnections = 1024;
 constexpr std::size_t kConnectionsPerAddress = 256;
 constexpr std::uint32_t kHeaderBytes = 8192;
-constexpr std::uint32_t kBodyBytes = 16 * 1024;
+// As large as a style may be: every parameter of 30 layers in full, and as much again.
+constexpr std::uint32_t kBodyBytes = 1024 * 1024;
 constexpr std::chrono::milliseconds kIdleTimeout{30'000};
 constexpr std::chrono::milliseconds kReadTimeout{10'000};
 constexpr std::chrono::milliseconds kWriteTimeout{30'000};
@@ -32,6 +33,6 @@ constexpr std::chrono::milliseconds kDeadline{10'000};
 constexpr unsigned kBatch = 8;  // tiles
 
 constexpr std::string_view kCacheControl = "public, max-age=3600";  // of tiles
-constexpr unsigned kPostedStylesMegabytes = 16;
+constexpr unsigned kPostedStylesMegabytes = 64;
 
 }  // namespace trapeze::defaults

@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t kMaxEchoedBytes = 64;
 
-std::string cut(const std::string& text) {
+}  // namespace
+
+std::string echoed(const std::string& text) {
   if (text.size() <= kMaxEchoedBytes) return text;
   return text.substr(0, kMaxEchoedBytes) + "...";
 }
-
-}  // namespace
 
 std::string problem_json(const Problem& problem) {
   Json body;
@@ -26,8 +26,8 @@ std::string problem_json(const Problem& problem) {
   body["status"] = problem.status;
   body["detail"] = problem.detail;
   if (!problem.parameter.empty()) {
-    body["parameter"] = cut(problem.parameter);
-    body["value"] = cut(problem.value);
+    body["parameter"] = echoed(problem.parameter);
+    body["value"] = echoed(problem.value);
     body["takes"] = problem.takes;
   }
   return to_text(body);

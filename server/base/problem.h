@@ -24,7 +24,11 @@ struct Problem {
   std::string parameter;  // the query parameter at fault, or empty
   std::string value;      // what it was set to, as received
   std::string takes;      // what it takes
+  std::string code = {};  // what services of the OGC call it, or empty
 };
+
+/// Bytes of a request as they are echoed: cut to 64.
+std::string echoed(const std::string& text);
 
 /// The JSON text. Bytes of the request are echoed escaped, cut to 64 bytes, and with invalid UTF-8
 /// replaced.

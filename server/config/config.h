@@ -40,6 +40,9 @@ struct LayerConfig {
   bool may_shrink = false;               // read again, it may have fewer than half of its features
   int min_zoom = 0;                      // the layer is drawn at zooms min_zoom to max_zoom
   int max_zoom = kMaxZoom;
+  std::optional<int> detail_zoom;  // up to which its data is true; unset: unknown
+  std::string group;               // of layers that belong together; empty: none
+  std::string title_attribute;     // what its features are called by; empty: found by its name
 
   const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }
   /// Whether it is built without the topological consistency test as well: also if its own style
@@ -64,7 +67,7 @@ struct ServerConfig {
   // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
   // written without a port holds for every port. Not looked at if there is a public_url.
   std::vector<std::string> allowed_hosts;
-  std::string web_root;  // folder of the viewer, empty for none
+  std::string web_root;  // folder in the place of the viewer of the program; empty: none
   bool metrics = true;   // whether /metrics is there; it always is at the admin address
   std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
   unsigned watch_ms = 2000;                   // between looks at the files, for changes; 0: none
@@ -110,8 +113,14 @@ struct AdminConfig {
   std::uint16_t port = 0;  // 0: there is none
 };
 
+struct ViewerConfig {
+  std::string title = "Trapeze";
+  std::string start;  // what stands after # in its address, where the address has nothing
+};
+
 struct Config {
   ServerConfig server;
+  ViewerConfig viewer;
   LimitsConfig limits;
   TextConfig text;
   LogConfig log;

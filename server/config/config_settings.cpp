@@ -198,6 +198,12 @@ std::optional<std::string> listen_address(const std::string& text) {
   return text;
 }
 
+/// With or without its '#'.
+std::optional<std::string> start_of_viewer(const std::string& text) {
+  if (std::ranges::any_of(text, [](char c) { return c >= 0 && c < ' '; })) return std::nullopt;
+  return text.starts_with('#') ? text.substr(1) : text;
+}
+
 std::string range_text(const AddressRange& range) {
   const bool is_ipv4 = range.first.is_ipv4() && range.bits >= 96;
   return fmt::format("{}/{}", address_text(range.first), is_ipv4 ? range.bits - 96 : range.bits);
@@ -312,6 +318,25 @@ Setting<LayerConfig> max_skipped_setting() {
   return setting;
 }
 
+/// Not set is no number.
+Setting<LayerConfig> detail_zoom_setting() {
+  auto setting = begin<LayerConfig>(
+      "detail_zoom", SettingType::integer, fmt::format("an integer from 0 to {}", kMaxZoom),
+      "the zoom up to which its data is true: beyond it there is no more detail, only larger "
+      "pictures; not set: unknown");
+  setting.min = 0;
+  setting.max = kMaxZoom;
+  setting.get = [](const LayerConfig& layer) -> SettingValue {
+    if (!layer.detail_zoom) return std::string();
+    return std::int64_t{*layer.detail_zoom};
+  };
+  setting.set = [](LayerConfig& layer, const SettingValue& value) {
+    layer.detail_zoom = static_cast<int>(std::get<std::int64_t>(value));
+    return true;
+  };
+  return setting;
+}
+
 std::optional<ParameterId> layer_parameter(const std::string& name) {
   const StyleParameter* parameter = find_style_parameter(name);
   if (parameter == nullptr || !parameter->is_per_layer) return std::nullopt;
@@ -383,7 +408,7 @@ void append_server(std::vector<Setting<Config>>& all) {
       "without public_url: the Host headers that are answered; an empty list answers all"));
   all.push_back(path<Config>(
       "server.web_root", [](auto& c) -> auto& { return c.server.web_root; },
-      "the folder of the viewer; empty: there is no page at /"));
+      "a folder whose files are served in the place of the viewer of the program; empty: none"));
   all.push_back(boolean<Config>(
       "server.metrics", [](auto& c) -> auto& { return c.server.metrics; },
       "whether /metrics is served here too, and not at the admin address only"));
@@ -459,6 +484,17 @@ void append_limits(std::vector<Setting<Config>>& all) {
       "how much of that it may ask for at once after a rest"));
 }
 
+void append_viewer(std::vector<Setting<Config>>& all) {
+  all.push_back(text<Config>(
+      "viewer.title", [](auto& c) -> auto& { return c.viewer.title; },
+      "the heading of the viewer"));
+  all.push_back(parsed<Config>(
+      "viewer.start", [](auto& c) -> auto& { return c.viewer.start; },
+      "what stands after # in an address of the viewer", start_of_viewer, same,
+      "what the viewer shows where its address says nothing: copy it from the address of a map as "
+      "it should be; empty: all that is served, fitted to the window"));
+}
+
 void append_text(std::vector<Setting<Config>>& all) {
   auto fonts = list<Config>(
       "text.fonts", [](auto& c) -> auto& { return c.text.fonts; },
@@ -500,6 +536,7 @@ const std::vector<Setting<Config>>& config_settings() {
   static const auto settings = [] {
     std::vector<Setting<Config>> all;
     append_server(all);
+    append_viewer(all);
     append_limits(all);
     append_text(all);
     append_log_and_admin(all);
@@ -544,6 +581,14 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
       integer<LayerConfig>(
           "max_zoom", [](auto& layer) -> auto& { return layer.max_zoom; }, 0, kMaxZoom,
           "the last zoom at which it is drawn"),
+      detail_zoom_setting(),
+      text<LayerConfig>(
+          "group", [](auto& layer) -> auto& { return layer.group; },
+          "a heading for layers that belong together; not set: none"),
+      text<LayerConfig>(
+          "title_attribute", [](auto& layer) -> auto& { return layer.title_attribute; },
+          "the attribute that features are called by; not set: one named name, name:en, name_en, "
+          "title or label, in any case of letters"),
       weights_setting(),
       coverage_setting(),
       close_gaps_setting(),

@@ -36,7 +36,7 @@ struct Setting {
   std::string name() const { return table.empty() ? "layer." + key : table + "." + key; }
 };
 
-/// All of [server], [limits], [text], [log] and [admin].
+/// All of [server], [viewer], [limits], [text], [log] and [admin].
 const std::vector<Setting<Config>>& config_settings();
 /// All of [[layer]] that is one value: all but its style.
 const std::vector<Setting<LayerConfig>>& layer_settings();

@@ -66,11 +66,11 @@ class ConfigReader {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
-             fmt::format("unknown key {}; allowed here are server, limits, text, log, admin, "
-                         "styles, layer{}",
+             fmt::format("unknown key {}; allowed here are server, viewer, limits, text, log, "
+                         "admin, styles, layer{}",
                          key.str(),
-                         did_you_mean(key.str(), {"server", "limits", "text", "log", "admin",
-                                                  "styles", "layer"})));
+                         did_you_mean(key.str(), {"server", "viewer", "limits", "text", "log",
+                                                  "admin", "styles", "layer"})));
       }
     }
   }

@@ -16,6 +16,7 @@
 #include "server/data/load_progress.h"
 #include "server/data/note_summary.h"
 #include "server/data/source_files.h"
+#include "server/data/title_attribute.h"
 
 namespace trapeze {
 namespace {
@@ -41,6 +42,13 @@ void log_notes(const LoadReport& report) {
   if (lines.size() < report.notes.size()) {
     spdlog::warn("{}: `trapeze check` lists all notes", report.path);
   }
+}
+
+void log_missing_title(const ServedLayer& served) {
+  const std::string& wanted = served.config.title_attribute;
+  if (wanted.empty() || title_field(served.layer->features(), wanted)) return;
+  spdlog::warn("layer \"{}\" has no attribute \"{}\": its features have no title",
+               served.config.name, wanted);
 }
 
 void log_report(const LoadReport& report, const Layer& layer) {
@@ -80,15 +88,22 @@ void log_report(const LoadReport& report, const Layer& layer) {
 /// One progress for several layers that load at once: the mean of their shares.
 class SharedProgress {
  public:
-  explicit SharedProgress(const std::vector<LayerConfig>& layers)
-      : shares_(layers.size(), 0),
+  SharedProgress(const std::vector<LayerConfig>& layers, LayersToRead* told)
+      : told_(told),
+        shares_(layers.size(), 0),
         progress_(std::in_place, layers.size() == 1 ? layers.front().file_to_open()
                                                     : fmt::format("{} layers", layers.size())),
-        stalls_(sources_of(layers)) {}
+        stalls_(sources_of(layers)) {
+    if (told_ == nullptr) return;
+    std::vector<LayerProgress> nothing_read;
+    for (const LayerConfig& layer : layers) nothing_read.push_back({layer.name, layer.title, 0});
+    told_->begin(std::move(nothing_read));
+  }
 
   void show(std::size_t layer, double share) {
     const std::lock_guard lock(mutex_);
     shares_[layer] = share;
+    if (told_ != nullptr) told_->show(layer, share);
     stalls_.got_on(layer);
     const bool is_known = std::ranges::none_of(shares_, [](double s) { return s < 0; });
     const double sum = std::accumulate(shares_.begin(), shares_.end(), 0.0);
@@ -106,6 +121,11 @@ class SharedProgress {
     stalls_.finish(layer);
   }
 
+  /// The layer can be served.
+  void finish(std::size_t layer) {
+    if (told_ != nullptr) told_->finish(layer);
+  }
+
   void finish() { progress_.reset(); }
 
  private:
@@ -116,6 +136,7 @@ class SharedProgress {
     return sources;
   }
 
+  LayersToRead* const told_;
   std::mutex mutex_;
   std::vector<double> shares_;
   std::optional<LoadProgress> progress_;
@@ -248,9 +269,9 @@ std::uint64_t revision_of(const Layer& layer) {
 }
 
 std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers,
-                                             const Dataset* previous) {
+                                             const Dataset* previous, LayersToRead* told) {
   // All at once: while one layer is at a step for one core, another one uses the others.
-  SharedProgress progress(layers);
+  SharedProgress progress(layers, told);
   std::vector<ServedLayer> served(layers.size());
   std::vector<std::pair<std::size_t, std::future<ServedLayer>>> reading;
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -259,9 +280,12 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       served[i] = *std::move(kept);
       spdlog::info("{}: unchanged, so it is not read again", served[i].report.path);
       show(1);
+      progress.finish(i);
     } else {
-      reading.emplace_back(i, std::async(std::launch::async, [&layers, i, show] {
-                             return read_layer(layers[i], show);
+      reading.emplace_back(i, std::async(std::launch::async, [&layers, &progress, i, show] {
+                             ServedLayer layer = read_layer(layers[i], show);
+                             progress.finish(i);
+                             return layer;
                            }));
     }
   }
@@ -271,6 +295,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
   }
   progress.finish();
   for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
+  for (const ServedLayer& layer : served) log_missing_title(layer);
   check_layers(served, previous);
   return std::make_shared<const Dataset>(std::move(served));
 }

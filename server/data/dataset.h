@@ -15,6 +15,7 @@
 #include "core/layer/layer.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
+#include "server/data/load_progress.h"
 
 namespace trapeze {
 
@@ -57,8 +58,10 @@ class Dataset {
   /// if one cannot be read, was prepared otherwise than configured, has more skipped features than
   /// its configuration allows, or, unless that allows it, fewer than half of the features that
   /// `previous` draws of the layer of that name, of whose source the same was selected.
+  /// `told`, if it is not null, is told how far each layer is.
   static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
-                                             const Dataset* previous = nullptr);
+                                             const Dataset* previous = nullptr,
+                                             LayersToRead* told = nullptr);
 
   explicit Dataset(std::vector<ServedLayer> layers);
 

@@ -52,6 +52,9 @@ Result<LayerSummary> summarize_layers(std::span<const std::string> names, const 
     summary.box.include(served.layer->bounds());
     summary.min_zoom = std::min(summary.min_zoom, served.config.min_zoom);
     summary.max_zoom = std::max(summary.max_zoom, served.config.max_zoom);
+    if (const auto& detail = served.config.detail_zoom) {
+      summary.detail_zoom = std::min(summary.detail_zoom.value_or(kMaxZoom), *detail);
+    }
   }
   summary.title = joined(titles);
   summary.description = joined(descriptions);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct LayerSummary {
   Box box;  // empty if no layer has polygons
   int min_zoom = kMaxZoom;
   int max_zoom = 0;
+  std::optional<int> detail_zoom;  // up to which all are true of which that is known
 
   /// Those of the world if there is nothing.
   GeographicBounds bounds() const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "core/io/source/source_name.h"
 
@@ -55,6 +56,32 @@ void LoadProgress::log_line(double share) const {
   } else {
     spdlog::info("loading {}: {:.0f} % after {:.0f} s", name_, share * 100, seconds);
   }
+}
+
+void LayersToRead::begin(std::vector<LayerProgress> layers) {
+  const std::lock_guard lock(mutex_);
+  layers_ = std::move(layers);
+}
+
+// What is left when all is read and built takes time, too.
+void LayersToRead::show(std::size_t layer, double share) {
+  constexpr double kLastPercent = 99;
+  const std::lock_guard lock(mutex_);
+  if (share < 0) {
+    layers_[layer].percent.reset();
+  } else {
+    layers_[layer].percent = static_cast<int>(std::clamp(share * 100, 0.0, kLastPercent));
+  }
+}
+
+void LayersToRead::finish(std::size_t layer) {
+  const std::lock_guard lock(mutex_);
+  layers_[layer].percent = 100;
+}
+
+std::vector<LayerProgress> LayersToRead::get() const {
+  const std::lock_guard lock(mutex_);
+  return layers_;
 }
 
 StallWatch::StallWatch(const std::vector<std::string>& sources, Clock::duration patience)

@@ -1,10 +1,12 @@
 // How far the loading of files is, for those who wait for it.
 //
-// Thread-safety: one thread at a time may use an object.
+// Thread-safety: one thread at a time may use an object, but for LayersToRead.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,30 @@ class LoadProgress {
   const Clock::time_point begin_;
   Clock::time_point next_;
   bool is_bar_shown_ = false;
+};
+
+struct LayerProgress {
+  std::string name;
+  std::string title;
+  std::optional<int> percent;  // 100 when it is read; unknown of some sources
+};
+
+/// How far each of the layers is that are read together, for whoever asks meanwhile. Any number of
+/// threads may use it.
+class LayersToRead {
+ public:
+  /// Begins anew, with layers of which nothing is read yet.
+  void begin(std::vector<LayerProgress> layers);
+  /// `share` is in [0, 1], or negative if unknown.
+  void show(std::size_t layer, double share);
+  /// That layer is read.
+  void finish(std::size_t layer);
+  /// Empty before the first begin().
+  std::vector<LayerProgress> get() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<LayerProgress> layers_;
 };
 
 /// Warns of sources that do not get on: a database that does not answer, a disk that hangs. They

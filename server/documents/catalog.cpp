@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "core/grid/web_mercator.h"
+#include "render/mask/mask.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
+#include "server/data/title_attribute.h"
 #include "server/tiles/layer_style.h"
 
 namespace trapeze {
@@ -67,6 +69,12 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["bounds"] = box.is_empty() ? Json(nullptr) : Json(bounds_in_degrees(box));
   json["minzoom"] = config.min_zoom;
   json["maxzoom"] = config.max_zoom;
+  if (config.detail_zoom) json["detail_zoom"] = *config.detail_zoom;
+  if (!config.group.empty()) json["group"] = config.group;
+  const FeatureTable& features = served.layer->features();
+  if (const auto title = title_field(features, config.title_attribute)) {
+    json["title_attribute"] = features.fields()[*title].name;
+  }
   json["features"] = served.report.loaded;
   json["polygons"] = served.report.polygons;
   json["rings"] = served.report.rings;
@@ -104,25 +112,27 @@ Json center_json(const LayerSummary& summary) {
           std::clamp(zoom, summary.min_zoom, summary.max_zoom)};
 }
 
-std::string style_part(const StyleQuery& style) {
-  const std::string text = style.canonical_text();
-  return text.empty() ? text : "?" + text;
+std::string after_path(const std::string& query) {
+  return query.empty() ? query : "?" + query;
 }
 
+/// With the name of the style in the path, where no CDN drops it.
 std::string tiles_url(const TileJsonRequest& request, const std::string& base_url) {
-  return fmt::format("{}/tiles/{}/{{z}}/{{x}}/{{y}}.png{}", base_url,
-                     fmt::join(request.layers, ","), style_part(request.style));
+  const std::string& name = request.style.name;
+  return fmt::format("{}/tiles/{}{}/{{z}}/{{x}}/{{y}}{}.png{}", base_url,
+                     fmt::join(request.layers, ","), name.empty() ? name : "/s/" + name,
+                     scale_suffix(request.scale), after_path(request.style.own.canonical_text()));
 }
 
 std::string legend_url(const TileJsonRequest& request, const std::string& base_url) {
-  return fmt::format("{}/legend/{}.png{}", base_url, fmt::join(request.layers, ","),
-                     style_part(request.style));
+  return fmt::format("{}/legend/{}{}.png{}", base_url, fmt::join(request.layers, ","),
+                     scale_suffix(request.scale), after_path(request.style.query()));
 }
 
 }  // namespace
 
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
-                         const std::string& base_url) {
+                         const ViewerConfig& viewer, const std::string& base_url) {
   Json layers = Json::array();
   for (std::size_t i = 0; i < dataset.layers().size(); ++i) {
     layers.push_back(layer_json(dataset.layers()[i], i, base_url));
@@ -132,6 +142,7 @@ std::string catalog_json(const Dataset& dataset, const std::string& renderer,
   json["generation"] = dataset.generation();
   json["renderer"] = renderer;
   json["parameters"] = parameters_json();
+  json["viewer"] = {{"title", viewer.title}, {"start", viewer.start}};
   return to_text(json);
 }
 
@@ -148,8 +159,12 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["scheme"] = "xyz";
   json["format"] = "png";
   json["tiles"] = {tiles_url(request, base_url)};
+  // Of the ground that a tile shows, in pixels of the map, at every scale: MapLibre reads it, and
+  // takes tiles for 512 pixels wide without it.
+  json["tileSize"] = kTilePixels;
   json["minzoom"] = summary.min_zoom;
   json["maxzoom"] = summary.max_zoom;
+  if (summary.detail_zoom) json["detail_zoom"] = *summary.detail_zoom;
   json["bounds"] = summary.bounds();
   json["center"] = center_json(summary);
   json["legend"] = legend_url(request, base_url);

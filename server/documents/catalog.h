@@ -9,11 +9,12 @@
 
 namespace trapeze {
 
-/// {"layers": [...], "generation": ..., "renderer": ..., "parameters": [...]}. The bounds of a
-/// layer without polygons are null. `base_url` is how this server is reached, without a '/' at the
-/// end.
+/// {"layers": [...], "generation": ..., "renderer": ..., "parameters": [...], "viewer": {"title":
+/// ..., "start": ...}}. The bounds of a layer without polygons are null; "title_attribute", "group"
+/// and "detail_zoom" of a layer are there where they are known. `base_url` is how this server is
+/// reached, without a '/' at the end.
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
-                         const std::string& base_url);
+                         const ViewerConfig& viewer, const std::string& base_url);
 
 /// TileJSON 3.0 of the layers together, the style of the request in its tile URLs. The problem is
 /// 404 for an unknown layer.

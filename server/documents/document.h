@@ -39,6 +39,13 @@ struct DocumentRequest {
     if (!styled) return std::move(styled).problem();
     return styled->style_for(layers, others);
   }
+  /// The same for links in the document.
+  Result<StyleLink> style_link_for(std::span<const std::string> layers,
+                                   std::span<const std::string_view> others = {}) const {
+    auto styled = styles.read(query);
+    if (!styled) return std::move(styled).problem();
+    return styled->link_for(layers, others);
+  }
 };
 
 struct Document {

@@ -9,9 +9,12 @@
 #include <optional>
 
 #include "core/layer/features_at.h"
+#include "core/layer/part_at.h"
 #include "render/mask/mask.h"
 #include "server/base/json_text.h"
+#include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
+#include "server/data/title_attribute.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_plan.h"
 #include "server/tiles/tile_request.h"
@@ -21,13 +24,6 @@ namespace {
 
 constexpr std::array<std::string_view, 1> kOwnParameters = {"z"};
 constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
-
-struct IdentifyRequest {
-  std::vector<std::string> layers;  // bottom first
-  Point place;
-  std::optional<double> zoom;
-  StyleQuery style;
-};
 
 std::optional<double> parse_number(std::string_view text, double min, double max) {
   double number = 0;
@@ -69,7 +65,7 @@ Result<std::optional<double>> parse_zoom(const DocumentRequest& request) {
   return Problem{400, fmt::format("The parameter z takes {}.", takes), "z", *text, takes};
 }
 
-Result<IdentifyRequest> parse_request(const DocumentRequest& request) {
+Result<PlaceQuery> parse_request(const DocumentRequest& request) {
   if (request.path.size() != 3) {
     return Problem{404, fmt::format("There is nothing here. Features are at {}.", kPattern)};
   }
@@ -79,31 +75,23 @@ Result<IdentifyRequest> parse_request(const DocumentRequest& request) {
   if (!place) return std::move(place).problem();
   auto zoom = parse_zoom(request);
   if (!zoom) return std::move(zoom).problem();
-  IdentifyRequest parsed{*std::move(layers), *place, *zoom, {}};
+  PlaceQuery parsed{*std::move(layers), *place, *zoom, {}};
   auto style = request.style_for(parsed.layers, kOwnParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
   return parsed;
 }
 
-Level level_of(const IdentifyRequest& request, const StyleQuery& style, const std::string& layer) {
+Level level_of(const PlaceQuery& request, const StyleQuery& style, const std::string& layer) {
   if (!request.zoom) return 0;
   const double cells_per_pixel =
       static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
   return nearest_level(tolerance_in_pixels(style, layer) * cells_per_pixel);
 }
 
-bool is_drawn(const IdentifyRequest& request, const LayerConfig& config) {
+bool is_drawn(const PlaceQuery& request, const LayerConfig& config) {
   return !request.zoom ||
          (*request.zoom >= config.min_zoom && std::floor(*request.zoom) <= config.max_zoom);
-}
-
-GeographicBounds bounds_of_feature(const Layer& layer, std::uint32_t row) {
-  Rings outline;
-  layer.append_outline(row, outline);
-  Box box;
-  for (const Point p : outline.points) box.include(p);
-  return bounds_in_degrees(box);
 }
 
 /// Of a text in JSON, quotes left out; what is no UTF-8 may become somewhat longer.
@@ -140,6 +128,8 @@ Json properties_json(const FeatureTable& features, std::uint32_t row) {
 /// The features of an answer.
 class IdentifiedFeatures {
  public:
+  explicit IdentifiedFeatures(Point place) : place_(place) {}
+
   void add(const ServedLayer& served, std::uint32_t row) {
     if (++matched_ > kMaxIdentified) return;
     const std::size_t size = size_of_properties(served.layer->features(), row);
@@ -163,30 +153,47 @@ class IdentifiedFeatures {
   }
 
  private:
-  static Json feature_json(const ServedLayer& served, std::uint32_t row, bool has_properties);
+  Json feature_json(const ServedLayer& served, std::uint32_t row, bool has_properties) const;
+  void add_bounds(Json& json, const Layer& layer, std::uint32_t row) const;
 
+  Point place_;
   Json features_ = Json::array();
   std::size_t matched_ = 0;
   std::size_t left_out_ = 0;
   std::size_t bytes_left_ = kMaxIdentifiedBytes;
 };
 
+void IdentifiedFeatures::add_bounds(Json& json, const Layer& layer, std::uint32_t row) const {
+  Rings outline;
+  layer.append_outline(row, outline);
+  Box box;
+  for (const Point p : outline.points) box.include(p);
+  json["bbox"] = bounds_in_degrees(box);
+  const Box part = part_at(outline, place_);
+  if (part != box) json["part_bbox"] = bounds_in_degrees(part);
+}
+
 Json IdentifiedFeatures::feature_json(const ServedLayer& served, std::uint32_t row,
-                                      bool has_properties) {
+                                      bool has_properties) const {
   const FeatureTable& features = served.layer->features();
   Json json;
   json["type"] = "Feature";
   json["id"] = features.id(row);
   json["layer"] = served.config.name;
-  json["bbox"] = bounds_of_feature(*served.layer, row);
+  if (has_properties) {
+    const std::string title =
+        title_of(features, title_field(features, served.config.title_attribute), row);
+    if (!title.empty()) json["title"] = title;
+  }
+  add_bounds(json, *served.layer, row);
   json["geometry"] = nullptr;
   json["properties"] = has_properties ? properties_json(features, row) : Json();
   return json;
 }
 
 /// The rows of the features that are found, or what is wrong with the style.
-Result<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
-                                             const ServedLayer& served, std::size_t position) {
+Result<std::vector<std::uint32_t>> find_rows(const PlaceQuery& request, const ServedLayer& served,
+                                             std::size_t position) {
   const auto query = complete_style(request.style, served.config);
   if (!query) return query.problem();
   const auto style = layer_style(*query, served, position);
@@ -199,23 +206,83 @@ Result<std::vector<std::uint32_t>> find_rows(const IdentifyRequest& request,
   return rows;
 }
 
+Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
+  IdentifiedFeatures features(query.place);
+  for (auto name = query.layers.rbegin(); name != query.layers.rend(); ++name) {
+    const auto position = dataset.find(*name);
+    if (!position) return unknown_layer(*name, dataset);
+    const ServedLayer& served = dataset.layers()[*position];
+    if (!served.is_whole()) return damaged_layer(served);
+    const auto rows = find_rows(query, served, *position);
+    if (!rows) return rows.problem();
+    for (const std::uint32_t row : *rows) features.add(served, row);
+  }
+  return features.take_json();
+}
+
+constexpr std::string_view kNothing = "There is nothing here.";
+
+std::string words_of(const Json& value) {
+  if (value.is_null()) return {};
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// "Lac Léman", or "water 7" of a feature without a title.
+std::string heading_of(const Json& feature) {
+  if (feature.contains("title")) return words_of(feature["title"]);
+  return fmt::format("{} {}", words_of(feature["layer"]), words_of(feature["id"]));
+}
+
+std::string text_of(const Json& collection) {
+  std::string text;
+  for (const Json& feature : collection["features"]) {
+    if (!text.empty()) text += '\n';
+    text += fmt::format("{}\n  layer = {}\n  id = {}\n", heading_of(feature),
+                        words_of(feature["layer"]), words_of(feature["id"]));
+    for (const auto& [name, value] : feature["properties"].items()) {
+      text += fmt::format("  {} = {}\n", name, words_of(value));
+    }
+  }
+  return text.empty() ? fmt::format("{}\n", kNothing) : text;
+}
+
+std::string table_row(std::string_view name, const Json& value) {
+  return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", xml_escape(name),
+                     xml_escape(words_of(value)));
+}
+
+std::string html_of(const Json& collection) {
+  std::string tables;
+  for (const Json& feature : collection["features"]) {
+    tables += fmt::format("<table>\n<caption>{}</caption>\n", xml_escape(heading_of(feature)));
+    tables += table_row("layer", feature["layer"]) + table_row("id", feature["id"]);
+    for (const auto& [name, value] : feature["properties"].items()) {
+      tables += table_row(name, value);
+    }
+    tables += "</table>\n";
+  }
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">"
+      "<title>Features</title></head>\n<body>\n{}</body>\n</html>\n",
+      tables.empty() ? fmt::format("<p>{}</p>\n", kNothing) : tables);
+}
+
 }  // namespace
+
+Result<std::string> identified_features(const PlaceQuery& query, const Dataset& dataset,
+                                        IdentifyFormat format) {
+  const auto json = identify(query, dataset);
+  if (!json) return json.problem();
+  if (format == IdentifyFormat::text) return text_of(*json);
+  return format == IdentifyFormat::html ? html_of(*json) : to_text(*json);
+}
 
 Result<Document> identify_document(const DocumentRequest& request) {
   const auto parsed = parse_request(request);
   if (!parsed) return parsed.problem();
-  const auto& identify = *parsed;
-  IdentifiedFeatures features;
-  for (auto name = identify.layers.rbegin(); name != identify.layers.rend(); ++name) {
-    const auto position = request.dataset.find(*name);
-    if (!position) return unknown_layer(*name, request.dataset);
-    const ServedLayer& served = request.dataset.layers()[*position];
-    if (!served.is_whole()) return damaged_layer(served);
-    const auto rows = find_rows(identify, served, *position);
-    if (!rows) return rows.problem();
-    for (const std::uint32_t row : *rows) features.add(served, row);
-  }
-  return Document{"application/geo+json", to_text(features.take_json())};
+  auto json = identified_features(*parsed, request.dataset, IdentifyFormat::json);
+  if (!json) return std::move(json).problem();
+  return Document{"application/geo+json", *std::move(json)};
 }
 
 }  // namespace trapeze

@@ -98,9 +98,9 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
 
 /// What must follow the path of a link to keep the resource and its style.
 Result<std::string> query_of(const TiledResource& resource, const DocumentRequest& request) {
-  const auto style = request.style_for(resource.layers, kOwnParameters);
+  const auto style = request.style_link_for(resource.layers, kOwnParameters);
   if (!style) return style.problem();
-  const std::string text = style->canonical_text();
+  const std::string text = style->query();
   std::string query = resource.selection;
   if (!query.empty() && !text.empty()) query += '&';
   query += text;
@@ -193,16 +193,17 @@ Json bounding_box(const GeographicBounds& bounds) {
           {"crs", kDegreesCrsUri}};
 }
 
+/// Of the zooms only: where rows or columns are limited, GDAL 3.6, which is that of Debian 12,
+/// stretches the tiles, or finds none.
 Json limits_json(const LayerSummary& summary) {
   Json limits = Json::array();
   for (int zoom = summary.min_zoom; zoom <= summary.max_zoom; ++zoom) {
-    const Box world{kGridMin, kGridMin, kGridMax, kGridMax};
-    const TileLimits l = tile_limits(summary.box.is_empty() ? world : summary.box, zoom);
+    const int last = (1 << zoom) - 1;
     limits.push_back({{"tileMatrix", std::to_string(zoom)},
-                      {"minTileRow", l.min_row},
-                      {"maxTileRow", l.max_row},
-                      {"minTileCol", l.min_column},
-                      {"maxTileCol", l.max_column}});
+                      {"minTileRow", 0},
+                      {"maxTileRow", last},
+                      {"minTileCol", 0},
+                      {"maxTileCol", last}});
   }
   return limits;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/grid/web_mercator.h"
+#include "render/mask/mask.h"
 #include "server/base/build_id.h"
 #include "server/base/json_text.h"
 #include "server/documents/routes.h"
@@ -109,6 +110,13 @@ Json components_json() {
   parameters["path-tileMatrix"] = path_parameter("tileMatrix", "Zoom", zoom_schema());
   parameters["path-tileRow"] = path_parameter("tileRow", "Row, from the north", index_schema());
   parameters["path-tileCol"] = path_parameter("tileCol", "Column, from the west", index_schema());
+  for (const auto& [name, words] :
+       {std::pair("path-j", "Row of pixels in the tile, from the north"),
+        std::pair("path-i", "Column of pixels, from the west")}) {
+    parameters[name] =
+        path_parameter(std::string_view(name).substr(5), words,
+                       {{"type", "integer"}, {"minimum", 0}, {"maximum", kTilePixels - 1}});
+  }
   parameters["path-place"] = path_parameter(
       "place", "Longitude and latitude in degrees, with a comma between", {{"type", "string"}});
   parameters["z"] = {
@@ -142,6 +150,7 @@ Json reference(std::string_view parameter) {
 
 Json response(std::string_view description, std::string_view type) {
   Json schema = {{"type", "object"}};
+  if (type.starts_with("text/")) schema = {{"type", "string"}};
   if (type.starts_with("image/")) schema = {{"type", "string"}, {"format", "binary"}};
   return {{"description", description}, {"content", {{type, {{"schema", schema}}}}}};
 }
@@ -189,8 +198,13 @@ Json problem_response_json() {
   return problem;
 }
 
+Json problem_of(const Route& route) {
+  if (area_of(route.path) != Area::wmts) return problem_response_json();
+  return response("What is wrong, as an ows:ExceptionReport", "application/xml");
+}
+
 Json get_json(const Route& route) {
-  const Json problem = problem_response_json();
+  const Json problem = problem_of(route);
   const Json parameters = parameters_of(route);
   Json responses;
   responses["200"] = response(route.summary, route.content_type);

@@ -2,20 +2,21 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
-#include "server/base/nearest_name.h"
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/identify.h"
 #include "server/documents/tile_matrix_set.h"
+#include "server/documents/wmts_request.h"
 
 namespace trapeze {
 namespace {
-
-constexpr std::string_view kFormat = "image/png";
 
 constexpr std::string_view kHead =
     R"(<?xml version="1.0" encoding="UTF-8"?>
@@ -23,7 +24,10 @@ constexpr std::string_view kHead =
  xmlns:xlink="http://www.w3.org/1999/xlink" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
  xsi:schemaLocation="http://www.opengis.net/wmts/1.0 http://schemas.opengis.net/wmts/1.0/wmtsGetCapabilities_response.xsd"
  version="1.0.0">
-  <ows:ServiceIdentification>
+)";
+
+constexpr std::string_view kIdentification =
+    R"(  <ows:ServiceIdentification>
     <ows:Title>Trapeze</ows:Title>
     <ows:Abstract>Maps of polygons as tiles, simplified while they are drawn</ows:Abstract>
     <ows:ServiceType>OGC WMTS</ows:ServiceType>
@@ -45,11 +49,10 @@ std::string operation_xml(std::string_view name, const std::string& base_url) {
                      name, xml_escape(base_url));
 }
 
-std::string limits_xml(const LayerConfig& config, const Box& box) {
+std::string limits_xml(const ServedLayer& served) {
   std::string xml = "        <TileMatrixSetLimits>\n";
-  const Box world{kGridMin, kGridMin, kGridMax, kGridMax};
-  for (int zoom = config.min_zoom; zoom <= config.max_zoom; ++zoom) {
-    const TileLimits limits = tile_limits(box.is_empty() ? world : box, zoom);
+  for (int zoom = served.config.min_zoom; zoom <= served.config.max_zoom; ++zoom) {
+    const TileLimits limits = wmts_limits(served, zoom);
     xml += fmt::format(
         "          <TileMatrixLimits><TileMatrix>{}</TileMatrix><MinTileRow>{}</MinTileRow>"
         "<MaxTileRow>{}</MaxTileRow><MinTileCol>{}</MinTileCol><MaxTileCol>{}</MaxTileCol>"
@@ -62,13 +65,23 @@ std::string limits_xml(const LayerConfig& config, const Box& box) {
 std::string style_xml(const std::string& layer, std::string_view style,
                       const std::string& base_url) {
   const bool is_default = style == StyleBook::kDefaultName;
-  return fmt::format(R"(      <Style isDefault="{}">
-        <ows:Identifier>{}</ows:Identifier>
-        <LegendURL format="{}" xlink:href="{}/legend/{}.png{}"/>
+  // OpenLayers looks a style up by its title, and takes the first one if none has that.
+  return fmt::format(R"(      <Style isDefault="{0}">
+        <ows:Title>{1}</ows:Title>
+        <ows:Identifier>{1}</ows:Identifier>
+        <LegendURL format="{2}" xlink:href="{3}/legend/{4}.png{5}"/>
       </Style>
 )",
-                     is_default, style, kFormat, xml_escape(base_url), layer,
+                     is_default, style, kWmtsFormat, xml_escape(base_url), layer,
                      is_default ? "" : fmt::format("?style={}", style));
+}
+
+std::string resource_xml(std::string_view format, std::string_view type,
+                         const std::string& address) {
+  return fmt::format(R"(      <ResourceURL format="{}" resourceType="{}"
+       template="{}"/>
+)",
+                     format, type, xml_escape(address));
 }
 
 std::string layer_xml(const ServedLayer& served, const DocumentRequest& request) {
@@ -92,19 +105,26 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
   for (const std::string& style : request.styles.names()) {
     xml += style_xml(config.name, style, base_url);
   }
-  xml += fmt::format(R"(      <Format>{}</Format>
-      <TileMatrixSetLink>
+  xml += fmt::format("      <Format>{}</Format>\n", kWmtsFormat);
+  for (const WmtsInfoFormat& format : wmts_info_formats()) {
+    xml += fmt::format("      <InfoFormat>{}</InfoFormat>\n", format.name);
+  }
+  xml += fmt::format(R"(      <TileMatrixSetLink>
         <TileMatrixSet>{}</TileMatrixSet>
 )",
-                     kFormat, kTileMatrixSet);
-  xml += limits_xml(config, box);
-  xml += fmt::format(R"(      </TileMatrixSetLink>
-      <ResourceURL format="{}" resourceType="tile"
-       template="{}/tiles/{}/s/{{Style}}/{{TileMatrix}}/{{TileCol}}/{{TileRow}}.png"/>
-    </Layer>
-)",
-                     kFormat, xml_escape(base_url), config.name);
-  return xml;
+                     kTileMatrixSet);
+  xml += limits_xml(served);
+  xml += "      </TileMatrixSetLink>\n";
+  const std::string tile =
+      fmt::format("{}/wmts/{}/{{Style}}/{{TileMatrixSet}}/{{TileMatrix}}/{{TileRow}}/{{TileCol}}",
+                  base_url, config.name);
+  xml += resource_xml(kWmtsFormat, "tile", tile + ".png");
+  for (const WmtsInfoFormat& format : wmts_info_formats()) {
+    if (format.ending.empty()) continue;
+    xml += resource_xml(format.name, "FeatureInfo",
+                        fmt::format("{}/{{J}}/{{I}}{}", tile, format.ending));
+  }
+  return xml + "    </Layer>\n";
 }
 
 std::string matrix_set_xml() {
@@ -131,106 +151,50 @@ std::string matrix_set_xml() {
   return xml + "    </TileMatrixSet>\n";
 }
 
-std::string capabilities_xml(const DocumentRequest& request) {
+std::string capabilities_xml(const WmtsCapabilitiesRequest& sections,
+                             const DocumentRequest& request) {
   std::string xml(kHead);
-  xml += "  <ows:OperationsMetadata>\n" + operation_xml("GetCapabilities", request.base_url) +
-         operation_xml("GetTile", request.base_url) + "  </ows:OperationsMetadata>\n  <Contents>\n";
-  for (const ServedLayer& served : request.dataset.layers()) {
-    xml += layer_xml(served, request);
+  if (sections.identification) xml += kIdentification;
+  if (sections.operations) {
+    xml += "  <ows:OperationsMetadata>\n";
+    for (const char* operation : {"GetCapabilities", "GetTile", "GetFeatureInfo"}) {
+      xml += operation_xml(operation, request.base_url);
+    }
+    xml += "  </ows:OperationsMetadata>\n";
   }
-  xml += matrix_set_xml() + "  </Contents>\n";
+  if (sections.contents) {
+    xml += "  <Contents>\n";
+    for (const ServedLayer& served : request.dataset.layers()) xml += layer_xml(served, request);
+    xml += matrix_set_xml() + "  </Contents>\n";
+  }
   xml += fmt::format("  <ServiceMetadataURL xlink:href=\"{}/wmts.xml\"/>\n</Capabilities>\n",
                      xml_escape(request.base_url));
   return xml;
 }
 
-// The keys of GetTile, in any case of letters. What else stands in the query is about style.
-constexpr std::array<std::string_view, 10> kKeys = {
-    "service", "request",       "version",    "layer",   "style",
-    "format",  "tilematrixset", "tilematrix", "tilerow", "tilecol",
-};
-
-/// A query, divided.
-struct KeyValuePairs {
-  std::array<std::string, kKeys.size()> values;
-  std::vector<QueryPair> others;
-
-  const std::string& operator[](std::string_view key) const {
-    return values[static_cast<std::size_t>(std::ranges::find(kKeys, key) - kKeys.begin())];
-  }
-};
-
-KeyValuePairs divide(std::span<const QueryPair> query) {
-  KeyValuePairs pairs;
-  for (const auto& [name, value] : query) {
-    const auto key = std::ranges::find(kKeys, in_lower_case(name));
-    if (key == kKeys.end()) {
-      pairs.others.emplace_back(name, value);
-    } else {
-      pairs.values[static_cast<std::size_t>(key - kKeys.begin())] = value;
-    }
-  }
-  return pairs;
-}
-
-bool is_key_value_path(const DocumentRequest& request) {
-  return request.path.size() == 1 && request.path[0] == "wmts";
-}
-
-/// A key whose value must be the one given, or may be left out.
-std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
-                             std::string_view value) {
-  if (pairs[key].empty() || in_lower_case(pairs[key]) == in_lower_case(value)) return std::nullopt;
-  return Problem{400, fmt::format("{} takes {} here.", key, value), std::string(key), pairs[key],
-                 std::string(value)};
-}
-
-Result<TileRequest> tile_of(const KeyValuePairs& pairs, const StyleBook& styles) {
-  for (const auto& [key, value] :
-       std::initializer_list<std::pair<std::string_view, std::string_view>>{
-           {"service", "WMTS"},
-           {"version", "1.0.0"},
-           {"format", kFormat},
-           {"tilematrixset", kTileMatrixSet}}) {
-    if (auto problem = check(pairs, key, value)) return std::move(*problem);
-  }
-  auto layers = parse_layer_list(pairs["layer"]);
-  if (!layers) return std::move(layers).problem();
-  const auto tile = parse_tile_id(pairs["tilematrix"], pairs["tilecol"], pairs["tilerow"]);
-  if (!tile) return tile.problem();
-  TileRequest request{*std::move(layers), *tile, 1, {}};
-  std::vector<QueryPair> query = pairs.others;
-  if (!pairs["style"].empty()) query.emplace_back("style", pairs["style"]);
-  const auto styled = styles.read(std::move(query));
-  if (!styled) return styled.problem();
-  auto style = styled->style_for(request.layers);
-  if (!style) return std::move(style).problem();
-  request.style = *std::move(style);
-  return request;
-}
-
 }  // namespace
 
 Result<Document> wmts_document(const DocumentRequest& request) {
-  if (request.path.size() != 1) {
-    return Problem{404, "There is nothing here. The capabilities are at /wmts.xml."};
+  const auto parsed = parse_wmts_request(request);
+  if (!parsed) return parsed.problem();
+  const WmtsRequest& asked = *parsed;
+  if (const auto* sections = std::get_if<WmtsCapabilitiesRequest>(&asked)) {
+    return Document{"application/xml", capabilities_xml(*sections, request)};
   }
-  if (is_key_value_path(request)) {
-    const KeyValuePairs pairs = divide(request.query);
-    if (auto problem = check(pairs, "service", "WMTS")) return std::move(*problem);
-    if (in_lower_case(pairs["request"]) != "getcapabilities") {
-      return Problem{400, "request takes GetCapabilities or GetTile.", "request", pairs["request"],
-                     "GetCapabilities or GetTile"};
-    }
-  }
-  return Document{"application/xml", capabilities_xml(request)};
+  const auto* info = std::get_if<WmtsFeatureInfoRequest>(&asked);
+  if (info == nullptr) return Problem{400, "This is a tile."};
+  auto text = identified_features(info->query, request.dataset, info->format);
+  if (!text) return std::move(text).problem();
+  return Document{info->content_type, *std::move(text)};
 }
 
 std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
-  if (!is_key_value_path(request)) return std::nullopt;
-  const KeyValuePairs pairs = divide(request.query);
-  if (in_lower_case(pairs["request"]) != "gettile") return std::nullopt;
-  return tile_of(pairs, request.styles);
+  auto parsed = parse_wmts_request(request);
+  if (!parsed) return std::move(parsed).problem();
+  WmtsRequest asked = *std::move(parsed);
+  auto* tile = std::get_if<TileRequest>(&asked);
+  if (tile == nullptr) return std::nullopt;
+  return std::move(*tile);
 }
 
 }  // namespace trapeze

@@ -1,5 +1,4 @@
-// WMTS 1.0.0: capabilities at /wmts.xml, which name the tiles by RESTful templates, and the same
-// by key-value pairs at /wmts.
+// WMTS 1.0.0: the capabilities, and what lies under a pixel of a tile.
 #pragma once
 
 #include <optional>
@@ -10,11 +9,11 @@
 
 namespace trapeze {
 
-/// The capabilities, for /wmts.xml and for /wmts?request=GetCapabilities.
+/// The capabilities, or the features of GetFeatureInfo. Problems are those of parse_wmts_request().
 Result<Document> wmts_document(const DocumentRequest& request);
 
-/// The tile of /wmts?request=GetTile&...; nothing if another request is made. Further pairs of the
-/// query style the tile. Keys may be written in either case.
+/// The tile that is asked for, or what is wrong with the request; nothing if a document is asked
+/// for.
 std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request);
 
 }  // namespace trapeze

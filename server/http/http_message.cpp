@@ -22,6 +22,7 @@ HttpResponse problem_response(const Problem& problem) {
   response.status = problem.status;
   response.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
   response.body = std::make_shared<const std::string>(problem_json(problem));
+  response.problem = std::make_shared<const Problem>(problem);
   if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
   return response;
 }

@@ -23,6 +23,7 @@ struct HttpRequest {
   std::string body = {};      // untrusted
   ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
   std::shared_ptr<Disconnection> disconnection = {};  // null: it is not watched for
+  std::string accept_encoding = {};                   // as sent; empty if none was
 };
 
 struct HttpResponse {
@@ -31,6 +32,8 @@ struct HttpResponse {
   /// Null for responses that have none (204, 304). For HEAD it is what GET would send: the
   /// connection leaves it out and keeps its length.
   std::shared_ptr<const std::string> body;
+  /// What the body tells of, so that it can be told in other words; null if all went well.
+  std::shared_ptr<const Problem> problem = {};
 
   std::string_view header(std::string_view name) const {
     for (const auto& [key, value] : headers) {

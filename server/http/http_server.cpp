@@ -76,6 +76,17 @@ std::string_view view_of(beast::string_view view) {
   return {view.data(), view.size()};
 }
 
+/// A header that comes several times is one list.
+std::string list_of(const http::request<http::string_body>& message, beast::string_view name) {
+  std::string list;
+  const auto [first, last] = message.equal_range(name);
+  for (auto field = first; field != last; ++field) {
+    if (!list.empty()) list += ',';
+    list += view_of(field->value());
+  }
+  return list;
+}
+
 tcp::endpoint endpoint_of(const HttpServerOptions& options) {
   ErrorCode error;
   const auto address = net::ip::make_address(options.address, error);
@@ -334,7 +345,8 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
               text(message[http::field::if_none_match]),
               message.body(),
               client_of(message),
-              std::make_shared<Disconnection>()};
+              std::make_shared<Disconnection>(),
+              list_of(message, "Accept-Encoding")};
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
@@ -397,13 +409,8 @@ void HttpServer::Connection::stop_watching() {
 ClientAddress HttpServer::Connection::client_of(
     const http::request<http::string_body>& message) const {
   if (!is_trusted_) return peer_;
-  std::string said;  // a header that comes several times is one list
-  const auto [first, last] = message.equal_range("X-Forwarded-For");
-  for (auto field = first; field != last; ++field) {
-    if (!said.empty()) said += ',';
-    said += view_of(field->value());
-  }
-  return client_behind(peer_, said, state_.options().trusted_proxies);
+  return client_behind(peer_, list_of(message, "X-Forwarded-For"),
+                       state_.options().trusted_proxies);
 }
 
 void HttpServer::Connection::send(HttpResponse response) {

@@ -53,12 +53,40 @@ std::string read_bytes(const fs::path& path) {
   return bytes;
 }
 
-StaticFile load_file(const fs::path& path) {
-  std::string bytes = read_bytes(path);
+using Bytes = std::shared_ptr<const std::string>;
+
+Bytes shared(std::string bytes) {
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
+std::string tag_of(std::string_view bytes) {
   ContentHash hash;
   hash.add(bytes);
-  return {content_type_of(path.filename().string()), fmt::format("\"{}\"", hash.hex()),
-          std::make_shared<const std::string>(std::move(bytes))};
+  return fmt::format("\"{}\"", hash.hex());
+}
+
+StaticFile load_file(const fs::path& path) {
+  StaticFile file;
+  file.content_type = content_type_of(path.filename().string());
+  file.bytes = shared(read_bytes(path));
+  file.entity_tag = tag_of(*file.bytes);
+  const auto compressed = [&file](ContentEncoding encoding) -> Bytes {
+    auto made = compress(*file.bytes, encoding, Effort::quick);
+    return made ? shared(*std::move(made)) : nullptr;
+  };
+  if (file.bytes->size() >= kLeastToCompress && is_worth_compressing(file.content_type)) {
+    file.gzip = compressed(ContentEncoding::gzip);
+    file.brotli = compressed(ContentEncoding::brotli);
+  }
+  return file;
+}
+
+StaticFile take_file(const BuiltInFile& built_in) {
+  const auto taken = [](std::string_view bytes) {
+    return bytes.empty() ? nullptr : shared(std::string(bytes));
+  };
+  return {content_type_of(std::string(built_in.path)), tag_of(built_in.bytes),
+          shared(std::string(built_in.bytes)), taken(built_in.gzip), taken(built_in.brotli)};
 }
 
 }  // namespace
@@ -72,6 +100,29 @@ std::string content_type_of(const std::string& file_name) {
     if (ending == known) return std::string(type);
   }
   return "application/octet-stream";
+}
+
+std::vector<ContentEncoding> StaticFile::encodings() const {
+  std::vector<ContentEncoding> all;
+  if (brotli != nullptr) all.push_back(ContentEncoding::brotli);
+  if (gzip != nullptr) all.push_back(ContentEncoding::gzip);
+  return all;
+}
+
+const Bytes& StaticFile::in(ContentEncoding encoding) const {
+  switch (encoding) {
+    case ContentEncoding::gzip:
+      return gzip;
+    case ContentEncoding::brotli:
+      return brotli;
+    case ContentEncoding::identity:
+      break;
+  }
+  return bytes;
+}
+
+StaticFiles::StaticFiles(std::span<const BuiltInFile> files) {
+  for (const BuiltInFile& file : files) files_.emplace(file.path, take_file(file));
 }
 
 StaticFiles::StaticFiles(const std::string& root) {

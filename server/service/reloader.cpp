@@ -32,8 +32,11 @@ Reloader::Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentD
       metrics_(metrics),
       give_up_(std::move(give_up)),
       is_loaded_(std::move(is_loaded)),
-      retired_(std::make_shared<Retired>()),
-      thread_([this] { work(); }) {}
+      retired_(std::make_shared<Retired>()) {}
+
+void Reloader::start() {
+  thread_ = std::thread([this] { work(); });
+}
 
 Reloader::~Reloader() {
   {
@@ -41,7 +44,7 @@ Reloader::~Reloader() {
     is_stopping_ = true;
   }
   wake_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void Reloader::reload() {
@@ -65,6 +68,7 @@ std::string Reloader::last_problem() const {
 void Reloader::work() {
   if (!load_first()) return give_up_();
   is_loaded_();
+  return_free_memory();  // what building took, here and below
   while (true) {
     // Memory may be short outside of what load_again() catches; that passes.
     try {
@@ -85,7 +89,6 @@ bool Reloader::load_first() {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
-  return_free_memory();  // what building took, here and below
   is_loading_ = false;
   return data_.get() != nullptr;
 }
@@ -116,7 +119,7 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   files_ = watched_files(layers);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
-  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, data_.get().get());
+  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, data_.get().get(), &to_read_);
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);

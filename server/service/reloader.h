@@ -34,10 +34,8 @@ struct LayerSource {
 
 class Reloader {
  public:
-  /// Begins to read the layers in a thread of its own. `watch` is the time between looks at the
-  /// files, 0 for none: a change is taken up when two looks in a row see the same. If the layers
-  /// cannot be read the first time, calls `give_up` from that thread, and does no more; else it
-  /// calls `is_loaded` from there once. All references outlive the reloader.
+  /// Does nothing until start(). `watch` is the time between looks at the files, 0 for none: a
+  /// change is taken up when two looks in a row see the same. All references outlive the reloader.
   Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
            TileService& tiles, Metrics& metrics, std::function<void()> give_up,
            std::function<void()> is_loaded);
@@ -46,6 +44,11 @@ class Reloader {
   Reloader(const Reloader&) = delete;
   Reloader& operator=(const Reloader&) = delete;
 
+  /// Begins to read the layers in a thread of its own. If they cannot be read the first time, calls
+  /// `give_up` from that thread, and does no more; else it calls `is_loaded` from there once. Call
+  /// it once.
+  void start();
+
   /// Reads the layers again, soon.
   void reload();
 
@@ -53,6 +56,8 @@ class Reloader {
   bool is_loading() const { return is_loading_; }
   /// Throws what went wrong with reading the layers for the first time.
   void rethrow_failure() const;
+  /// How far each layer is of those that are being read, or were read last.
+  std::vector<LayerProgress> progress() const { return to_read_.get(); }
   /// What went wrong the last time, in words; empty if nothing did.
   std::string last_problem() const;
 
@@ -78,6 +83,8 @@ class Reloader {
   const std::function<void()> give_up_;
   const std::function<void()> is_loaded_;
   const std::shared_ptr<Retired> retired_;
+
+  LayersToRead to_read_;
 
   // Of the thread.
   std::vector<std::string> files_;

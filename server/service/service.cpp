@@ -16,14 +16,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
-StaticFiles open_web_root(const std::string& root) {
-  if (root.empty()) {
-    spdlog::info("no viewer: web_root is not set");
-    return {};
-  }
+/// The viewer of the program, or of a folder that is named in its place.
+StaticFiles open_viewer(const std::string& root) {
+  if (root.empty()) return StaticFiles(viewer_files());
   StaticFiles files(root);
   spdlog::info("viewer: {} files of {}", files.size(), root);
   return files;
+}
+
+std::string why_no_viewer(const std::string& root) {
+  if (!root.empty()) return "There is no viewer here: web_root has no index.html.";
+  return "There is no viewer here: this program was built without it (TRAPEZE_VIEWER), and "
+         "web_root is not set.";
 }
 
 int worker_count(const Config& config) {
@@ -36,6 +40,7 @@ SiteOptions site_options(const Config& config) {
   options.public_url = config.server.public_url;
   options.allowed_hosts = config.server.allowed_hosts;
   options.cache_control = config.server.cache_control;
+  options.viewer = config.viewer;
   options.styles = config.styles;
   options.posted_styles = std::size_t{config.server.posted_styles_mb} << 20;
   options.max_layers = config.limits.layers;
@@ -49,12 +54,15 @@ SiteOptions site_options(const Config& config) {
   return options;
 }
 
-/// An address that listens on all interfaces cannot be opened; the loopback address can.
-std::string address_to_open(const std::string& listening, std::uint16_t port) {
-  if (listening == "0.0.0.0") return fmt::format("http://127.0.0.1:{}/", port);
-  if (listening == "::") return fmt::format("http://[::1]:{}/", port);
-  if (listening.find(':') != std::string::npos)
+/// As this machine reaches the server. An address that listens on all interfaces cannot be opened;
+/// that of this machine can.
+std::string local_url(const std::string& listening, std::uint16_t port) {
+  if (listening == "0.0.0.0" || listening == "::" || listening == "127.0.0.1") {
+    return fmt::format("http://localhost:{}/", port);
+  }
+  if (listening.find(':') != std::string::npos) {
     return fmt::format("http://[{}]:{}/", listening, port);
+  }
   return fmt::format("http://{}:{}/", listening, port);
 }
 
@@ -87,7 +95,7 @@ std::vector<std::string> what_is_open(const Config& config) {
   if (is_loopback(config.server.address)) return open;
   if (config.limits.tile_cost == 0) open.emplace_back("tiles of any cost (limits.tile_cost = 0)");
   if (config.limits.cost_per_second == 0) {
-    open.emplace_back("any number of dear tiles (limits.cost_per_second = 0)");
+    open.emplace_back("any number of expensive tiles (limits.cost_per_second = 0)");
   }
   if (config.limits.drawn_per_second == 0) {
     open.emplace_back("any number of ordinary tiles (limits.drawn_per_second = 0)");
@@ -116,7 +124,9 @@ Service::Service(const Config& config, LayerSource source)
   if (!config.log.access.empty()) {
     access_log_ = std::make_unique<AccessLog>(config.log.access, config.log.access_format);
   }
-  StaticFiles files = open_web_root(config.server.web_root);
+  StaticFiles files = open_viewer(config.server.web_root);
+  const bool has_viewer = files.find("/") != nullptr;
+  if (!has_viewer) spdlog::info("{}", why_no_viewer(config.server.web_root));
   TileServiceOptions drawing;
   drawing.queue = config.server.queue;
   drawing.deadline = milliseconds(config.server.deadline_ms);
@@ -128,14 +138,20 @@ Service::Service(const Config& config, LayerSource source)
   tiles_ = std::make_unique<TileService>(drawing, std::move(renderers));
   SiteOptions options = site_options(config);
   options.fonts = drawing.fonts;
+  options.why_no_viewer = why_no_viewer(config.server.web_root);
   if (config.server.metrics) options.metrics = [this] { return metrics_text(); };
+  options.loading = [this] { return reloader_->progress(); };
   options.is_stopping = [this] { return server_->is_stopping(); };
   site_ = std::make_unique<Site>(std::move(options), std::move(files), data_, *tiles_, cache_);
   open_server(config);
+  address_to_open_ = has_viewer
+                         ? fmt::format("open {}", local_url(config.server.address, server_->port()))
+                         : fmt::format("the layers are at {}catalog",
+                                       local_url(config.server.address, server_->port()));
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(
       std::move(source), milliseconds(config.server.watch_ms), data_, *tiles_, metrics_,
-      [this] { server_->stop(); }, [this] { tell_address_when_started(); });
+      [this] { server_->stop(); }, [this] { spdlog::info("{}", address_to_open_); });
 }
 
 Service::~Service() = default;
@@ -152,7 +168,6 @@ void Service::open_server(const Config& config) {
   if (const auto open = what_is_open(config); !open.empty()) {
     where_.push_back(fmt::format("open to everybody who reaches it: {}", fmt::join(open, ", ")));
   }
-  address_to_open_ = address_to_open(config.server.address, server_->port());
 }
 
 void Service::open_admin(const Config& config) {
@@ -183,7 +198,7 @@ void Service::act_on_signals() {
 // Told only now, as who reads it may send a signal at once.
 void Service::run() {
   for (const std::string& line : where_) spdlog::info("{}", line);
-  tell_address_when_started();
+  reloader_->start();  // its first words come after these
   // As long as the other, to be watched while it ends.
   std::thread admin;
   if (admin_ != nullptr) admin = std::thread([this] { admin_->run(); });
@@ -200,10 +215,6 @@ void Service::run() {
   }
   end_admin();
   reloader_->rethrow_failure();
-}
-
-void Service::tell_address_when_started() {
-  if (--steps_to_start_ == 0) spdlog::info("open {}", address_to_open_);
 }
 
 void Service::reload() {

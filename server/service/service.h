@@ -1,7 +1,6 @@
 // A whole server: layers, workers, cache, sites and sockets, put together as configured.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,7 +23,7 @@ namespace trapeze {
 
 class Service {
  public:
-  /// Opens the sockets, and begins to read the layers that `source` names. Throws
+  /// Opens the sockets of a server of the layers that `source` names. Throws
   /// std::runtime_error if a socket, the renderer, the viewer or the log of requests does not work.
   Service(const Config& config, LayerSource source);
   ~Service();
@@ -37,7 +36,7 @@ class Service {
   /// log of requests again). Call before run().
   void act_on_signals();
 
-  /// Serves until stop() is called. Throws what went wrong if the layers cannot be read.
+  /// Reads the layers, and serves until stop() is called. Throws what went wrong if the layers cannot be read.
   void run();
   /// From any thread.
   void stop() { server_->stop(); }
@@ -53,8 +52,6 @@ class Service {
   void observe(const Answered& answered);
   void open_server(const Config& config);
   void open_admin(const Config& config);
-  /// The last line of the log of starting, from whichever thread takes the last step.
-  void tell_address_when_started();
 
   const std::size_t cache_budget_;
   const std::size_t queue_limit_;
@@ -69,7 +66,6 @@ class Service {
   std::unique_ptr<AdminSite> admin_site_;  // these two are null if there is no admin address
   std::unique_ptr<HttpServer> admin_;
   std::string address_to_open_;
-  std::atomic<int> steps_to_start_ = 2;  // listening is logged, the layers are loaded; in any order
   std::unique_ptr<Reloader> reloader_;
 };
 

@@ -16,8 +16,11 @@
 #include "server/documents/identify.h"
 #include "server/documents/legend.h"
 #include "server/documents/ogc_api.h"
+#include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
 #include "server/documents/wmts.h"
+#include "server/documents/wmts_request.h"
+#include "server/http/content_encoding.h"
 #include "server/service/metrics.h"
 #include "server/styles/style_document.h"
 #include "server/tiles/drawing_cost.h"
@@ -42,6 +45,12 @@ double share_of_styles(const SiteOptions& options) {
   return static_cast<double>(options.posted_styles) / 8;
 }
 
+Problem too_large_style(std::size_t length, const SiteOptions& options) {
+  return {403, fmt::format("This style has {} bytes, written as a query: more than one address may "
+                           "post here. An eighth of the {} MB for styles is for each.",
+                           length, options.posted_styles >> 20)};
+}
+
 Problem too_dear(std::uint64_t most) {
   return {400,
           fmt::format("This tile takes more drawing than the {} units that one may take here. "
@@ -51,6 +60,16 @@ Problem too_dear(std::uint64_t most) {
 
 Problem still_loading() {
   return {503, "The data is still being loaded."};
+}
+
+/// For /ready, which tells the state of the server and no problem with a request.
+HttpResponse not_ready(const Json& state) {
+  HttpResponse response;
+  response.status = 503;
+  response.headers = {
+      {"Content-Type", "application/json"}, {"Cache-Control", "no-store"}, {"Retry-After", "1"}};
+  response.body = std::make_shared<const std::string>(to_text(state));
+  return response;
 }
 
 void allow_every_origin(HttpResponse& response) {
@@ -80,32 +99,45 @@ HttpResponse refuse_method(const std::string& method, std::string_view path) {
   return response;
 }
 
+/// What is known of a document before it is sent.
+struct DocumentHead {
+  std::string_view content_type;
+  std::string entity_tag;
+  ContentEncoding encoding = ContentEncoding::identity;
+  bool varies = false;  // others may get it in another encoding
+};
+
 /// 200 with the document, or 304 if the client has it already.
-HttpResponse document(const HttpRequest& request, std::string_view content_type,
-                      const std::string& entity_tag, std::shared_ptr<const std::string> body) {
+HttpResponse document(const HttpRequest& request, const DocumentHead& head,
+                      std::shared_ptr<const std::string> body) {
   HttpResponse response;
-  response.headers = {{"ETag", entity_tag}, {"Cache-Control", std::string(kDocumentCaching)}};
-  if (matches_entity_tag(request.if_none_match, entity_tag)) {
+  response.headers = {{"ETag", head.entity_tag}, {"Cache-Control", std::string(kDocumentCaching)}};
+  if (head.varies) response.headers.emplace_back("Vary", "Accept-Encoding");
+  if (matches_entity_tag(request.if_none_match, head.entity_tag)) {
     response.status = 304;
     return response;
   }
-  response.headers.emplace_back("Content-Type", std::string(content_type));
+  response.headers.emplace_back("Content-Type", std::string(head.content_type));
+  if (head.encoding != ContentEncoding::identity) {
+    response.headers.emplace_back("Content-Encoding", std::string(name_of(head.encoding)));
+  }
   response.body = std::move(body);
   return response;
 }
 
-HttpResponse document_response(const HttpRequest& request,
-                               const std::shared_ptr<const Document>& made) {
-  ContentHash hash;
-  hash.add(made->content_type);
-  hash.add(made->bytes);
-  return document(request, made->content_type, fmt::format("\"{}\"", hash.hex()),
-                  std::shared_ptr<const std::string>(made, &made->bytes));
+std::shared_ptr<const std::string> bytes_of(const std::shared_ptr<const Document>& document) {
+  return {document, &document->bytes};
 }
 
-HttpResponse json_document(const HttpRequest& request, std::string json) {
-  return document_response(
-      request, std::make_shared<const Document>(Document{"application/json", std::move(json)}));
+DocumentHead head_of(const Document& made) {
+  ContentHash hash;
+  hash.add(made.content_type);
+  hash.add(made.bytes);
+  DocumentHead head;
+  head.content_type = made.content_type;
+  head.entity_tag = fmt::format("\"{}\"", hash.hex());
+  head.varies = made.bytes.size() >= kLeastToCompress && is_worth_compressing(made.content_type);
+  return head;
 }
 
 std::string server_timing(const PaintTimes& times) {
@@ -135,6 +167,18 @@ HttpResponse tile_response(const TileCache::Tile& tile, const std::string& entit
     response.headers.emplace_back("OATiles-hint", tile.hint == TileHint::empty ? "empty" : "full");
   }
   response.body = tile.bytes;
+  return response;
+}
+
+/// What is wrong, as clients of WMTS expect to be told. By key-value pairs nothing is "not found":
+/// the address is always the same.
+HttpResponse in_words_of_wmts(HttpResponse response, std::string_view path) {
+  if (response.problem == nullptr) return response;
+  if (response.status == 404 && is_wmts_key_value_path(path)) response.status = 400;
+  for (auto& [name, value] : response.headers) {
+    if (name == "Content-Type") value = "application/xml";
+  }
+  response.body = std::make_shared<const std::string>(exception_report(*response.problem));
   return response;
 }
 
@@ -168,12 +212,16 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       documents_(std::make_unique<DocumentWorker>()) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {
-  const auto respond_to_all = [respond = std::move(respond)](HttpResponse response) {
+  const auto target = split_target(request.target);
+  const std::string_view path = target ? target->path : std::string_view();
+  const bool is_wmts = area_of(path) == Area::wmts;
+  const auto respond_to_all = [respond = std::move(respond), is_wmts,
+                               path = is_wmts ? std::string(path)
+                                              : std::string()](HttpResponse response) {
+    if (is_wmts) response = in_words_of_wmts(std::move(response), path);
     allow_every_origin(response);
     respond(std::move(response));
   };
-  const auto target = split_target(request.target);
-  const std::string_view path = target ? target->path : std::string_view();
   if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
   if (!understands(path, request.method)) {
     return respond_to_all(refuse_method(request.method, path));
@@ -198,10 +246,10 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
     case Area::wmts:
       return handle_document({wmts_document, parse_wmts_tile}, target, request, respond);
     case Area::styles:
-      return respond(request.method == "POST" ? answer_posted_style(request)
-                                              : answer_style(target.path, request));
+      if (request.method == "POST") return respond(answer_posted_style(request));
+      return send_json(request, style_json(target.path), respond);
     case Area::catalog:
-      if (is_all) return respond(answer_catalog(request));
+      if (is_all) return send_json(request, catalog(request), respond);
       break;
     case Area::health:
       if (is_all) return respond(answer_health());
@@ -225,10 +273,22 @@ HttpResponse Site::answer_health() {
   return response;
 }
 
+/// Which layers are read, and how far.
+Json Site::loading_json() const {
+  Json layers = Json::array();
+  for (const LayerProgress& layer :
+       options_.loading ? options_.loading() : std::vector<LayerProgress>()) {
+    layers.push_back({{"name", layer.name},
+                      {"title", layer.title},
+                      {"percent", layer.percent ? Json(*layer.percent) : Json(nullptr)}});
+  }
+  return {{"status", "loading"}, {"detail", still_loading().detail}, {"layers", std::move(layers)}};
+}
+
 HttpResponse Site::answer_ready() const {
-  if (data_.get() == nullptr) return problem_response(still_loading());
+  if (data_.get() == nullptr) return not_ready(loading_json());
   if (options_.is_stopping && options_.is_stopping()) {
-    return problem_response({503, "The server is about to end."});
+    return not_ready({{"status", "stopping"}, {"detail", "The server is about to end."}});
   }
   HttpResponse response;
   response.headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}};
@@ -244,32 +304,68 @@ HttpResponse Site::answer_metrics() const {
   return response;
 }
 
-HttpResponse Site::answer_catalog(const HttpRequest& request) const {
+Result<std::string> Site::catalog(const HttpRequest& request) const {
   const auto dataset = data_.get();
-  if (dataset == nullptr) return problem_response(still_loading());
+  if (dataset == nullptr) return still_loading();
   const auto base = base_url(request);
-  if (!base) return problem_response(base.problem());
-  return json_document(request, catalog_json(*dataset, tiles_.renderer_name(), *base));
+  if (!base) return base.problem();
+  return catalog_json(*dataset, tiles_.renderer_name(), options_.viewer, *base);
 }
 
-HttpResponse Site::answer_tile_json(const TileJsonRequest& tiles,
-                                    const HttpRequest& request) const {
+Result<std::string> Site::tile_json_of(const TileJsonRequest& tiles,
+                                       const HttpRequest& request) const {
   const auto dataset = data_.get();
-  if (dataset == nullptr) return problem_response(still_loading());
+  if (dataset == nullptr) return still_loading();
   const auto base = base_url(request);
-  if (!base) return problem_response(base.problem());
-  auto json = tile_json(tiles, *dataset, *base);
-  if (!json) return problem_response(json.problem());
-  return json_document(request, *std::move(json));
+  if (!base) return base.problem();
+  return tile_json(tiles, *dataset, *base);
 }
 
 // All names, or one style.
-HttpResponse Site::answer_style(std::string_view path, const HttpRequest& request) const {
+Result<std::string> Site::style_json(std::string_view path) const {
   const std::string_view name = path.substr(name_of(Area::styles).size() + 1);
-  if (name.empty()) return json_document(request, to_text({{"styles", styles_->names()}}));
+  if (name.empty()) return to_text({{"styles", styles_->names()}});
   const auto style = styles_->find(name.substr(1));
-  if (style == nullptr) return problem_response({404, "There is no style of that name."});
-  return json_document(request, style_document(*style));
+  if (style == nullptr) return Problem{404, "There is no style of that name."};
+  return style_document(*style);
+}
+
+void Site::send_json(const HttpRequest& request, Result<std::string> json,
+                     const Respond& respond) const {
+  if (!json) return respond(problem_response(json.problem()));
+  send_document(request,
+                std::make_shared<const Document>(Document{"application/json", *std::move(json)}),
+                respond);
+}
+
+// What is compressed is kept by the tag of its contents, whatever the address was. Where the worker
+// has too much to do, text is sent as it is.
+void Site::send_document(const HttpRequest& request, const std::shared_ptr<const Document>& made,
+                         const Respond& respond) const {
+  const DocumentHead plain = head_of(*made);
+  DocumentHead head = plain;
+  if (plain.varies) head.encoding = best_encoding(request.accept_encoding);
+  head.entity_tag = encoded_tag(plain.entity_tag, head.encoding);
+  if (head.encoding == ContentEncoding::identity ||
+      matches_entity_tag(request.if_none_match, head.entity_tag)) {
+    return respond(document(request, head, bytes_of(made)));
+  }
+  const auto dataset = data_.get();
+  if (const auto kept = documents_->find(dataset, head.entity_tag)) {
+    return respond(document(request, head, bytes_of(kept)));
+  }
+  documents_->submit(
+      dataset, head.entity_tag,
+      [made, encoding = head.encoding]() -> Result<Document> {
+        auto compressed = compress(made->bytes, encoding, Effort::quick);
+        if (!compressed) return Problem{500, "The document does not become smaller."};
+        return Document{made->content_type, *std::move(compressed)};
+      },
+      // The content types that the heads look at are those of `made`.
+      [request, respond, made, plain, head](const DocumentWorker::Answer& compressed) {
+        respond(compressed ? document(request, head, bytes_of(*compressed))
+                           : document(request, plain, bytes_of(made)));
+      });
 }
 
 HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
@@ -279,8 +375,12 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   if (!style) return problem_response(style.problem());
   const std::string query = style->canonical_text();
   if (styles_->find(StyleBook::id_of(*style)) == nullptr) {
-    const auto pause = post_limit_->take(limited_address(request.client), RateLimit::Clock::now(),
-                                         static_cast<double>(StyleBook::memory_of(*style)));
+    const auto memory = static_cast<double>(StyleBook::memory_of(*style));
+    if (options_.posted_styles > 0 && memory > share_of_styles(options_)) {
+      return problem_response(too_large_style(query.size(), options_));
+    }
+    const auto pause =
+        post_limit_->take(limited_address(request.client), RateLimit::Clock::now(), memory);
     if (pause) {
       return problem_response({429, "These are more styles than one address may post. Ask again."},
                               *pause);
@@ -308,11 +408,16 @@ HttpResponse Site::answer_file(const Target& target, const HttpRequest& request)
   const StaticFile* file = files_.find(*path);
   if (file == nullptr) {
     return problem_response({404, *path == "/"
-                                      ? "There is no viewer here: web_root is not set, or has "
-                                        "no index.html. The layers are at /catalog."
+                                      ? options_.why_no_viewer + " The layers are at /catalog."
                                       : "There is nothing here. The layers are at /catalog."});
   }
-  return document(request, file->content_type, file->entity_tag, file->bytes);
+  const auto encodings = file->encodings();
+  DocumentHead head;
+  head.content_type = file->content_type;
+  head.encoding = best_encoding(request.accept_encoding, encodings);
+  head.entity_tag = encoded_tag(file->entity_tag, head.encoding);
+  head.varies = !encodings.empty();
+  return document(request, head, file->in(head.encoding));
 }
 
 void Site::handle_tiles(const Target& target, const HttpRequest& request,
@@ -321,7 +426,7 @@ void Site::handle_tiles(const Target& target, const HttpRequest& request,
   if (!parsed) return respond(problem_response(parsed.problem()));
   const auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
-    return respond(answer_tile_json(*tile_json, request));
+    return send_json(request, tile_json_of(*tile_json, request), respond);
   }
   handle_tile(std::get<TileRequest>(tiles), request, respond);
 }
@@ -344,13 +449,14 @@ void Site::handle_document(const Documents& documents, const Target& target,
                  : respond(problem_response(found.problem()));
   }
   if (const auto kept = documents_->find(dataset, key)) {
-    return respond(document_response(request, kept));
+    return send_document(request, kept, respond);
   }
   if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
   documents_->submit(
       dataset, std::move(key), [asked, make = documents.make] { return make(asked); },
-      [request, respond](const DocumentWorker::Answer& made) {
-        respond(made ? document_response(request, *made) : problem_response(made.problem()));
+      [this, request, respond](const DocumentWorker::Answer& made) {
+        if (!made) return respond(problem_response(made.problem()));
+        send_document(request, *made, respond);
       });
 }
 
@@ -372,9 +478,11 @@ std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
 
 std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
   if (tile.tile.z > options_.max_zoom) {
-    return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 "
-                                    "to 2^zoom - 1.",
-                                    options_.max_zoom)};
+    Problem problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 "
+                                     "to 2^zoom - 1.",
+                                     options_.max_zoom)};
+    problem.code = ows::kTileOutOfRange;
+    return problem;
   }
   if (tile.scale > options_.max_scale) {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",

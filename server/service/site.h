@@ -14,8 +14,10 @@
 
 #include "render/text/fonts.h"
 #include "server/base/defaults.h"
+#include "server/base/json_text.h"
 #include "server/base/result.h"
 #include "server/base/url.h"
+#include "server/config/config.h"
 #include "server/data/dataset.h"
 #include "server/documents/document.h"
 #include "server/http/http_message.h"
@@ -49,8 +51,13 @@ struct SiteOptions {
   double cost_burst = 1;
   /// What /metrics answers; empty: it is not there.
   std::function<std::string()> metrics = {};
+  /// What /ready tells of layers while they are read; empty: nothing.
+  std::function<std::vector<LayerProgress>()> loading = {};
   /// Whether the server is about to end, and so not ready any more; empty: never.
   std::function<bool()> is_stopping = {};
+  ViewerConfig viewer = {};
+  /// What is said at "/" where `files` have no page.
+  std::string why_no_viewer = "There is no viewer here.";
   /// What legends are written in.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   /// Styles by name, and the memory in bytes for those that are posted.
@@ -76,11 +83,17 @@ class Site {
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
   static HttpResponse answer_health();
+  Json loading_json() const;
   HttpResponse answer_ready() const;
-  HttpResponse answer_catalog(const HttpRequest& request) const;
-  HttpResponse answer_tile_json(const TileJsonRequest& tiles, const HttpRequest& request) const;
+  Result<std::string> catalog(const HttpRequest& request) const;
+  Result<std::string> tile_json_of(const TileJsonRequest& tiles, const HttpRequest& request) const;
+  Result<std::string> style_json(std::string_view path) const;
+  /// Both are compressed for whoever takes that: by the worker of documents, as it takes time.
+  void send_json(const HttpRequest& request, Result<std::string> json,
+                 const Respond& respond) const;
+  void send_document(const HttpRequest& request, const std::shared_ptr<const Document>& made,
+                     const Respond& respond) const;
   HttpResponse answer_file(const Target& target, const HttpRequest& request) const;
-  HttpResponse answer_style(std::string_view path, const HttpRequest& request) const;
   HttpResponse answer_posted_style(const HttpRequest& request) const;
   void handle_tiles(const Target& target, const HttpRequest& request, const Respond& respond) const;
   void handle_document(const Documents& documents, const Target& target, const HttpRequest& request,

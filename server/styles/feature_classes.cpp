@@ -46,6 +46,7 @@ bool Classing::is_plain() const {
 std::string Classing::key() const {
   std::string text = fmt::format("field {}", field);
   for (const auto& value : values) text += " " + key_of(value);
+  if (!alike.empty()) text += fmt::format(" alike {}", fmt::join(alike, ","));
   for (const double number : breaks) text += fmt::format(" <{}", number);
   if (!ids.empty()) text += fmt::format(" ids {}", fmt::join(ids, ","));
   if (!highlighted_ids.empty()) {
@@ -60,7 +61,7 @@ FeatureClassifier::FeatureClassifier(const Classing& classing, const FeatureTabl
   for (std::size_t i = 0; i < classing.values.size(); ++i) {
     if (!classing.values[i]) continue;
     const auto* text = std::get_if<std::string>(&*classing.values[i]);
-    if (text != nullptr) texts_.emplace(*text, static_cast<std::uint8_t>(i));
+    if (text != nullptr) texts_.emplace(*text, class_of_index(i));
   }
 }
 
@@ -86,7 +87,8 @@ std::uint8_t FeatureClassifier::class_of_value(const Value& value) const {
     const auto found = std::ranges::find_if(classing_.values, [&](const auto& wanted) {
       return is_null ? !wanted.has_value() : wanted.has_value() && is_equal(value, *wanted);
     });
-    return static_cast<std::uint8_t>(found - classing_.values.begin());  // its end is the others
+    // Its end is the others.
+    return class_of_index(static_cast<std::size_t>(found - classing_.values.begin()));
   }
   if (is_null) return others;
   const auto* integer = std::get_if<std::int64_t>(&value);
@@ -95,6 +97,10 @@ std::uint8_t FeatureClassifier::class_of_value(const Value& value) const {
   if (number != number) return others;  // not a number
   return static_cast<std::uint8_t>(std::ranges::upper_bound(classing_.breaks, number) -
                                    classing_.breaks.begin());
+}
+
+std::uint8_t FeatureClassifier::class_of_index(std::size_t i) const {
+  return i < classing_.alike.size() ? classing_.alike[i] : static_cast<std::uint8_t>(i);
 }
 
 FeatureClasses classify(const Classing& classing, const FeatureTable& features) {

@@ -28,6 +28,9 @@ struct Classing {
   int field = -1;  // number of the property that values or breaks are about; -1: none
   /// Class i is that of the value; null: of the features that have none.
   std::vector<std::optional<FilterLiteral>> values;
+  /// The class that stands for class i of `values`: those that look alike are drawn as one.
+  /// Empty: each for itself.
+  std::vector<std::uint8_t> alike;
   std::vector<double> breaks;  // ascending; class i is that of the numbers below breaks[i]
   std::shared_ptr<const BoundFilter> filter;  // null: all pass
   std::vector<std::int64_t> ids;              // ascending; the only ones drawn; empty: all
@@ -51,6 +54,7 @@ class FeatureClassifier {
 
  private:
   std::uint8_t class_of_value(const Value& value) const;
+  std::uint8_t class_of_index(std::size_t i) const;
 
   const Classing& classing_;
   const FeatureTable& features_;

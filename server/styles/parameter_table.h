@@ -1,4 +1,4 @@
-// The table of query parameters as the README has it.
+// The table of query parameters as docs/styling.md has it.
 #pragma once
 
 #include <string>

@@ -19,6 +19,11 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
   return styles;
 }
 
+std::size_t memory_of_text(std::string_view canonical_text) {
+  constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
+  return kOverhead + 4 * canonical_text.size();
+}
+
 }  // namespace
 
 Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers,
@@ -28,6 +33,19 @@ Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers,
   return style->over(*named, layers);
 }
 
+Result<StyleLink> StyledQuery::link_for(std::span<const std::string> layers,
+                                        std::span<const std::string_view> others) const {
+  auto own = StyleQuery::parse(pairs, layers, others);
+  if (!own) return std::move(own).problem();
+  return StyleLink{name, *std::move(own)};
+}
+
+std::string StyleLink::query() const {
+  const std::string text = own.canonical_text();
+  if (name.empty()) return text;
+  return fmt::format("style={}{}{}", name, text.empty() ? "" : "&", text);
+}
+
 StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
     : named_(shared(std::move(named))), posted_(budget) {}
 
@@ -35,14 +53,14 @@ Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
   if (asked == query.end()) return StyledQuery{std::move(query), nullptr};
-  const std::string& name = asked->second;
+  const std::string name = asked->second;
   if (std::any_of(asked + 1, query.end(), is_style)) {
     return Problem{400, "The parameter style is given twice.", "style", name, "one name, once"};
   }
   if (name == kDefaultName) return StyledQuery{std::move(query), nullptr};
   auto style = find(name);
   if (style == nullptr) return unknown(name);
-  return StyledQuery{std::move(query), std::move(style)};
+  return StyledQuery{std::move(query), std::move(style), name};
 }
 
 Problem StyleBook::unknown(const std::string& name) const {
@@ -63,8 +81,7 @@ std::string StyleBook::id_of(const StyleQuery& style) {
 }
 
 std::size_t StyleBook::memory_of(const StyleQuery& style) {
-  constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
-  return kOverhead + 4 * style.canonical_text().size();
+  return memory_of_text(style.canonical_text());
 }
 
 Result<std::string> StyleBook::post(StyleQuery style) {
@@ -74,8 +91,8 @@ Result<std::string> StyleBook::post(StyleQuery style) {
                                     "one has {}.",
                                     kMaxStyleLength, text.size())};
   }
-  const std::size_t bytes = memory_of(style);
-  std::string id = id_of(style);
+  const std::size_t bytes = memory_of_text(text);
+  std::string id = digest_of(text);
   const std::lock_guard lock(mutex_);
   if (bytes > posted_.budget()) {
     return Problem{403,

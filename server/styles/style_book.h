@@ -22,15 +22,29 @@
 
 namespace trapeze {
 
+/// A style as links have it: its name where it has one, so that they stay short and follow what the
+/// name stands for, and what is set besides.
+struct StyleLink {
+  std::string name;  // empty: none, or the one that sets nothing
+  StyleQuery own;
+
+  /// Both as a query, "style=night&fill=ff0000ff"; empty if there is neither.
+  std::string query() const;
+};
+
 /// A query, and the style that it names.
 struct StyledQuery {
   std::vector<QueryPair> pairs;
   std::shared_ptr<const StyleQuery> named;  // null: none, or the one that sets nothing
+  std::string name = {};                    // of that style
 
   /// What the pairs set and, where they are silent, the named style. Problems, and the names of
   /// `others`, are those of StyleQuery::parse().
   Result<StyleQuery> style_for(std::span<const std::string> layers,
                                std::span<const std::string_view> others = {}) const;
+  /// The same for links; with the same problems.
+  Result<StyleLink> link_for(std::span<const std::string> layers,
+                             std::span<const std::string_view> others = {}) const;
 };
 
 class StyleBook {
@@ -63,8 +77,9 @@ class StyleBook {
   /// The name of the style that sets nothing: each layer has its own.
   static constexpr std::string_view kDefaultName = "default";
   static constexpr std::size_t kDefaultBudget = std::size_t{defaults::kPostedStylesMegabytes} << 20;
-  /// In bytes of canonical text: with it, a URL stays within its limit.
-  static constexpr std::size_t kMaxStyleLength = 2048;
+  /// In bytes of canonical text. 30 layers of which each has 64 classes, 256 ids, 256 highlighted
+  /// and the longest filter take about half of it.
+  static constexpr std::size_t kMaxStyleLength = std::size_t{1} << 20;
 
  private:
   Problem unknown(const std::string& name) const;

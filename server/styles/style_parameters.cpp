@@ -20,7 +20,8 @@ namespace {
 
 // The greatest tolerance that a request may ask for: half the side of a tile would leave nothing.
 constexpr double kMaxSimplify = 64;
-constexpr std::size_t kMaxClasses = 64;  // by value; by breaks one more
+constexpr std::size_t kMaxClasses = 253;  // by value: with two more, and one not drawn, a byte
+constexpr std::size_t kMaxBreaks = 63;
 constexpr std::size_t kMaxIds = 256;
 constexpr std::size_t kMaxNameLength = 128;
 
@@ -42,7 +43,7 @@ constexpr std::array kParameters = {
                    .type = Type::ascending,
                    .min = -1e300,
                    .max = 1e300,
-                   .max_items = kMaxClasses - 1,
+                   .max_items = kMaxBreaks,
                    .default_text = "no classes",
                    .description = "where classes of the numbers of color-by part: a number is in "
                                   "the class above each break that it reaches"},

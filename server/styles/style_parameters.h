@@ -1,5 +1,5 @@
 // The query parameters that style a tile: one table from which the parser, the canonical form, the
-// error bodies, the OpenAPI document and the table of the README come.
+// error bodies, the OpenAPI document and the table of docs/styling.md come.
 #pragma once
 
 #include <cstdint>

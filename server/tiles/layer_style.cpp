@@ -22,6 +22,20 @@ constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
                                            {0xc6, 0x7b, 0x82, 255},
                                            {0x62, 0xa6, 0xa0, 255},
                                            {0x94, 0x8b, 0x80, 255}}};
+/// The colour of the layer at `position` after those of the palette: hues at the golden angle,
+/// which stay apart however many there are.
+Rgba hue_at(std::size_t position) {
+  constexpr double kGoldenAngle = 137.50776405003785;
+  constexpr double kMiddle = 158;  // of the channels, and how far they go from it
+  constexpr double kReach = 46;
+  const double degrees = std::fmod(static_cast<double>(position) * kGoldenAngle, 360);
+  const auto channel = [&](double turned) {
+    const double radians = (degrees - turned) * M_PI / 180;
+    return static_cast<std::uint8_t>(std::lround(kMiddle + kReach * std::cos(radians)));
+  };
+  return {channel(0), channel(120), channel(240), 255};
+}
+
 constexpr Rgba kHighlight{0xff, 0xcc, 0x00, 255};
 constexpr Rgba kBlack{0, 0, 0, 255};
 
@@ -168,6 +182,16 @@ struct Making {
   std::vector<Rgba> fills = {};  // of the classes by value
 };
 
+/// Many values in few colours are as few passes as there are colours.
+void make_alike(Making& making) {
+  std::vector<std::uint8_t> alike;
+  for (const Rgba fill : making.fills) {
+    const auto first = std::ranges::find(making.fills, fill);
+    alike.push_back(static_cast<std::uint8_t>(first - making.fills.begin()));
+  }
+  making.style.classing.alike = std::move(alike);
+}
+
 std::optional<Problem> make_values(Making& making, const Field& field) {
   for (const ColourClass& wanted :
        *making.settings.find<std::vector<ColourClass>>(ParameterId::classes)) {
@@ -191,6 +215,7 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
     making.style.classing.values.push_back(std::move(value));
     making.fills.push_back(colour);
   }
+  make_alike(making);
   return std::nullopt;
 }
 
@@ -305,7 +330,8 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
 
 Rgba default_fill(const LayerConfig& config, std::size_t position) {
   const ParameterValue* fill = config.style.find({}, ParameterId::fill);
-  return fill != nullptr ? std::get<Rgba>(*fill) : kPalette[position % kPalette.size()];
+  if (fill != nullptr) return std::get<Rgba>(*fill);
+  return position < kPalette.size() ? kPalette[position] : hue_at(position);
 }
 
 }  // namespace trapeze

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <span>
 
 #include "render/picture/webp.h"
 
@@ -12,6 +13,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].{png,webp}";
+constexpr std::string_view kTileJsonPattern = "/tiles/{layers}[@{1-4}x].json";
 constexpr std::string_view kPng = ".png";
 constexpr std::string_view kWebp = ".webp";
 constexpr std::string_view kJson = ".json";
@@ -51,20 +53,50 @@ Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const Styl
   return TilesRequest(std::move(request));
 }
 
-Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& query) {
-  file.remove_suffix(kJson.size());
-  auto layers = parse_layer_list(file);
-  if (!layers) return std::move(layers).problem();
-  TileJsonRequest request{*std::move(layers), {}};
-  auto style = query.style_for(request.layers);
-  if (!style) return std::move(style).problem();
-  request.style = *std::move(style);
-  return TilesRequest(std::move(request));
+/// Of a name without its ending: "7" and 2 of "7@2x".
+struct ScaledStem {
+  std::string_view stem;
+  int scale = 1;
+};
+Result<ScaledStem> parse_scale(std::string_view name) {
+  const std::size_t at = name.find('@');
+  if (at == std::string_view::npos) return ScaledStem{name, 1};
+  const std::string_view suffix = name.substr(at + 1);
+  const bool is_scale =
+      suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
+  if (!is_scale) {
+    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
+                   std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
+  }
+  return ScaledStem{name.substr(0, at), suffix[0] - '0'};
 }
 
-/// From /tiles/{layers}/s/{style}/{z}/{x}/{y}.png to the same without it.
+Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& query) {
+  file.remove_suffix(kJson.size());
+  auto stem = parse_scale(file);
+  if (!stem) return std::move(stem).problem();
+  auto layers = parse_layer_list(stem->stem);
+  if (!layers) return std::move(layers).problem();
+  auto style = query.link_for(*layers);
+  if (!style) return std::move(style).problem();
+  return TilesRequest(TileJsonRequest{*std::move(layers), *std::move(style), stem->scale});
+}
+
+bool has_style(std::span<const std::string> path) {
+  if (path.size() < 3 || path[2] != "s") return false;
+  return path.size() == 7 || (path.size() == 4 && path[3].ends_with(kJson));
+}
+
+/// From /tiles/{layers}/s/{style}/{z}/{x}/{y}.png, and from /tiles/{layers}/s/{style}.json, to the
+/// same without it.
 void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
-  query.emplace_back("style", std::move(path[3]));
+  std::string& style = path[3];
+  if (path.size() == 4) {
+    const std::size_t end = std::min(style.find('@'), style.size() - kJson.size());
+    path[1] += style.substr(end);
+    style.resize(end);
+  }
+  query.emplace_back("style", std::move(style));
   path.erase(path.begin() + 2, path.begin() + 4);
 }
 
@@ -105,16 +137,13 @@ Result<PictureName> parse_picture_name(std::string_view name) {
   }
   const TileFormat format = is_webp ? TileFormat::webp : TileFormat::png;
   name.remove_suffix(is_webp ? kWebp.size() : kPng.size());
-  const std::size_t at = name.find('@');
-  if (at == std::string_view::npos) return PictureName{name, 1, format};
-  const std::string_view suffix = name.substr(at + 1);
-  const bool is_scale =
-      suffix.size() == 2 && suffix[0] >= '1' && suffix[0] <= '0' + kMaxScale && suffix[1] == 'x';
-  if (!is_scale) {
-    return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", kMaxScale), "scale",
-                   std::string(suffix), fmt::format("1x to {}x", kMaxScale)};
-  }
-  return PictureName{name.substr(0, at), suffix[0] - '0', format};
+  auto stem = parse_scale(name);
+  if (!stem) return std::move(stem).problem();
+  return PictureName{stem->stem, stem->scale, format};
+}
+
+std::string scale_suffix(int scale) {
+  return scale == 1 ? std::string() : fmt::format("@{}x", scale);
 }
 
 Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
@@ -148,20 +177,20 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
   if (!path || !query) {
     return malformed_target();
   }
-  const bool has_style = path->size() == 7 && (*path)[2] == "s";
-  if (has_style) take_style(*path, *query);
+  const bool is_styled = has_style(*path);
+  if (is_styled) take_style(*path, *query);
   auto styled = styles.read(std::move(*query));
   if (!styled) {
-    if (has_style) styled.problem().status = 404;
+    if (is_styled) styled.problem().status = 404;
     return std::move(styled).problem();
   }
   if (path->size() == 5) return parse_tile(*path, *styled);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
     return parse_tile_json(path->back(), *styled);
   }
-  return Problem{404, fmt::format("There is nothing here. Tiles are at {}, their description at "
-                                  "/tiles/{{layers}}.json.",
-                                  kTilePattern)};
+  return Problem{404,
+                 fmt::format("There is nothing here. Tiles are at {}, their description at {}.",
+                             kTilePattern, kTileJsonPattern)};
 }
 
 }  // namespace trapeze

@@ -29,10 +29,11 @@ struct TileRequest {
   TileFormat format = TileFormat::png;
 };
 
-/// A description of tiles: /tiles/{layers}.json
+/// A description of tiles: /tiles/{layers}[/s/{style}][@{1-4}x].json
 struct TileJsonRequest {
   std::vector<std::string> layers;
-  StyleQuery style;
+  StyleLink style;
+  int scale = 1;
 };
 
 using TilesRequest = std::variant<TileRequest, TileJsonRequest>;
@@ -54,6 +55,9 @@ struct PictureName {
   TileFormat format = TileFormat::png;
 };
 Result<PictureName> parse_picture_name(std::string_view name);
+
+/// "@2x" of the scale 2; nothing of the scale 1.
+std::string scale_suffix(int scale);
 
 /// Parses the z, x, y of a tile written as "Z/X/Y".
 Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y);

@@ -102,7 +102,8 @@ std::string canonical_target(const TileRequest& request) {
 }
 
 std::string canonical_target(const TileJsonRequest& request) {
-  return "/tiles/" + joined(request.layers) + ".json?" + request.style.canonical_text();
+  return "/tiles/" + joined(request.layers) + scale_suffix(request.scale) + ".json?" +
+         request.style.query();
 }
 
 void check_plan(const TileRequest& request, const TileRequest& again) {

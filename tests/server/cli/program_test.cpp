@@ -22,6 +22,7 @@
 
 #include "render/picture/png.h"
 #include "server/config/config.h"
+#include "server/http/viewer_files.h"
 #include "tests/sanitized.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/service/sample_site.h"
@@ -243,13 +244,30 @@ TEST(ProgramTest, KeepsTheMemoryOfLayersAndNotThatOfBuildingThem) {
   EXPECT_GT(metric(server.port(), "process_resident_memory_peak_bytes"), with);
 }
 
-TEST(ProgramTest, EndsItsStartWithTheAddressToOpen) {
+TEST(ProgramTest, TellsTheAddressToOpenInTheLineAfterReady) {
   Program program(serve_arguments({fixture("rings.geojson")}));
-  const std::string address = "open http://127.0.0.1:" + std::to_string(program.port()) + "/\n";
+  const std::string root = "http://localhost:" + std::to_string(program.port()) + "/";
+  const std::string address =
+      viewer_files().empty() ? "the layers are at " + root + "catalog\n" : "open " + root + "\n";
   for (int i = 0; i < 2000 && program.output().find(address) == std::string::npos; ++i) {
     std::this_thread::sleep_for(10ms);
   }
-  EXPECT_THAT(program.output(), AllOf(HasSubstr("ready: 1 layers"), EndsWith(address)));
+  const std::string said = program.output();
+  EXPECT_THAT(said, EndsWith(address));
+  EXPECT_THAT(said, ::testing::ContainsRegex("ready: 1 layers[^\n]*\n[^\n]*" + root));
+}
+
+TEST(ProgramTest, ServesItsOwnViewerOverDataOfOnesOwn) {
+  if (viewer_files().empty()) GTEST_SKIP() << "built without the viewer";
+  Program program(serve_arguments({fixture("rings.geojson")}));
+  testing::RawClient client(program.port());
+  const auto page = client.get("/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.headers.at("content-type"), "text/html; charset=utf-8");
+  EXPECT_THAT(page.body, HasSubstr("<html"));
+  const auto script = client.get("/viewer.js");
+  EXPECT_EQ(script.status, 200);
+  EXPECT_EQ(script.headers.at("content-type"), "text/javascript; charset=utf-8");
 }
 
 TEST(ProgramTest, EndsInOrderOnSigint) {

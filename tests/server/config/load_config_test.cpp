@@ -139,6 +139,9 @@ TEST_F(ConfigTest, ReadsEveryKey) {
     public_url = "https://maps.example/trapeze/"
     allowed_hosts = ["maps.example", "*.cdn.example:80"]
     web_root = "web"
+    [viewer]
+    title = "Atlas"
+    start = "#map=3/1/2"
 
     [text]
     fonts = ["fonts/a.ttf", "/usr/share/fonts/b.ttc#2"]
@@ -151,6 +154,9 @@ TEST_F(ConfigTest, ReadsEveryKey) {
     description = "blue"
     min_zoom = 2
     max_zoom = 9
+    detail_zoom = 12
+    group = "World"
+    title_attribute = "label"
     style = { fill = "teal", fill_opacity = 0.25 }
 
     [[layer]]
@@ -173,8 +179,14 @@ TEST_F(ConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.text.fonts,
             (std::vector<std::string>{(folder / "fonts/a.ttf").lexically_normal().string(),
                                       "/usr/share/fonts/b.ttc#2"}));
+  EXPECT_EQ(config.viewer.title, "Atlas");
+  EXPECT_EQ(config.viewer.start, "map=3/1/2");
   ASSERT_EQ(config.layers.size(), 2u);
   const LayerConfig& lakes = config.layers[0];
+  EXPECT_EQ(lakes.detail_zoom, 12);
+  EXPECT_EQ(lakes.group, "World");
+  EXPECT_EQ(lakes.title_attribute, "label");
+  EXPECT_EQ(config.layers[1].detail_zoom, std::nullopt);
   EXPECT_EQ(lakes.name, "lakes");
   EXPECT_EQ(std::filesystem::path(lakes.file), (folder / "water.fgb").lexically_normal());
   EXPECT_EQ(lakes.title, "Lakes of the world");
@@ -206,7 +218,8 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"[server]\nprot = 1", ":2:1: ", "did you mean port?"},
       {"sevrer = 1", ":1:1: ", "did you mean server?"},
       {"sevrer = 1", ":1:1: ",
-       "unknown key sevrer; allowed here are server, limits, text, log, admin, styles, layer"},
+       "unknown key sevrer; allowed here are server, viewer, limits, text, log, admin, styles, "
+       "layer"},
       {"[server]\nport = 70000", ":2:8: ", "server.port takes an integer from 0 to 65535"},
       {"[server]\nport = -1", ":2:8: ", "server.port takes an integer"},
       {"[server]\nport = \"80\"", ":2:8: ", "server.port takes an integer"},
@@ -429,7 +442,8 @@ std::string example_text() {
 
 /// What not to say is another thing than any value.
 bool is_comment_in_example(const std::string& key) {
-  return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes";
+  return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes" ||
+         key == "detail_zoom" || key == "group" || key == "title_attribute";
 }
 
 TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/layer/layer_builder.h"
+#include "server/data/title_attribute.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -47,6 +48,40 @@ TEST_F(IdentifyTest, TellsTheAttributesAndTheIdOfTheSource) {
   EXPECT_EQ(feature["properties"]["rank"], 1);
   EXPECT_NEAR(feature["bbox"][0], -90, 1e-6);
   EXPECT_NEAR(feature["bbox"][3], 66.5132604, 1e-6);
+}
+
+TEST_F(IdentifyTest, TellsTheTitleAndWhereThePartUnderThePlaceIs) {
+  const auto mainland = json("/identify/rings/-60,0")["features"][0];
+  EXPECT_EQ(mainland["title"], "a square with a hole, and an island in the hole");
+  EXPECT_FALSE(mainland.contains("part_bbox")) << "it is as large as the whole";
+  const auto island = json("/identify/rings/0,0")["features"][0];
+  EXPECT_EQ(island["bbox"], mainland["bbox"]);
+  EXPECT_NEAR(island["part_bbox"][0], -22.5, 1e-6);
+  EXPECT_NEAR(island["part_bbox"][2], 22.5, 1e-6);
+  const auto drawn_there = json("/identify/rings/30,0?z=0&rings.simplify=64")["features"][0];
+  EXPECT_EQ(drawn_there["part_bbox"], island["part_bbox"]) << "the nearest, in the hole";
+}
+
+TEST(TitleAttributeTest, IsNamedOrFoundByItsName) {
+  const FeatureTable table({{"ID", FieldType::integer},
+                            {"Label", FieldType::text},
+                            {"NAME", FieldType::text},
+                            {"name:en", FieldType::text}});
+  EXPECT_EQ(title_field(table), 2);
+  EXPECT_EQ(title_field(table, "Label"), 1);
+  EXPECT_EQ(title_field(table, "label"), std::nullopt) << "what is set is taken as it is written";
+  EXPECT_EQ(title_field(FeatureTable({{"names", FieldType::text}})), std::nullopt);
+}
+
+TEST(TitleAttributeTest, IsTextWhateverItsType) {
+  FeatureTable table({{"name", FieldType::text}, {"number", FieldType::integer}});
+  table.append(1, std::vector<Value>{std::string_view("Aare"), std::int64_t{12}});
+  table.append(2, std::vector<Value>{std::monostate(), std::monostate()});
+  EXPECT_EQ(title_of(table, 0, 0), "Aare");
+  EXPECT_EQ(title_of(table, 1, 0), "12");
+  EXPECT_EQ(title_of(table, 0, 1), "");
+  EXPECT_EQ(title_of(table, 1, 1), "");
+  EXPECT_EQ(title_of(table, std::nullopt, 0), "");
 }
 
 TEST_F(IdentifyTest, SeesHolesAndIslands) {

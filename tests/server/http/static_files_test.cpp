@@ -64,6 +64,38 @@ TEST_F(StaticFilesTest, TagsFollowTheContents) {
   EXPECT_NE(StaticFiles(root()).find("/")->entity_tag, before);
 }
 
+TEST_F(StaticFilesTest, TextIsKeptCompressedToo) {
+  write("web/long.js", std::string(5000, 'x'));
+  write("web/photo.png", std::string(5000, 'x'));
+  const StaticFiles files(root());
+  const StaticFile* script = files.find("/long.js");
+  ASSERT_NE(script->in(ContentEncoding::gzip), nullptr);
+  EXPECT_LT(script->in(ContentEncoding::gzip)->size(), 500u);
+  EXPECT_EQ(script->in(ContentEncoding::identity), script->bytes);
+  EXPECT_TRUE(files.find("/photo.png")->encodings().empty()) << "of its kind it is compressed";
+  EXPECT_TRUE(files.find("/")->encodings().empty()) << "short";
+}
+
+TEST(ViewerFilesTest, TheViewerOfTheProgramIsWholeAndSmall) {
+  if (viewer_files().empty()) GTEST_SKIP() << "built without the viewer";
+  const StaticFiles files(viewer_files());
+  std::size_t sent = 0;
+  for (const BuiltInFile& file : viewer_files()) {
+    const bool is_shown =
+        !file.path.starts_with("/leaflet/images/") && !file.path.ends_with(".txt");
+    sent += !is_shown ? 0 : file.brotli.empty() ? file.bytes.size() : file.brotli.size();
+    const StaticFile* found = files.find(std::string(file.path));
+    ASSERT_NE(found, nullptr) << file.path;
+    EXPECT_EQ(*found->bytes, file.bytes);
+    if (file.gzip.empty()) continue;
+    EXPECT_LT(file.gzip.size(), file.bytes.size()) << file.path;
+    EXPECT_TRUE(file.gzip.starts_with("\x1f\x8b")) << file.path;
+  }
+  EXPECT_NE(files.find("/"), nullptr);
+  EXPECT_NE(files.find("/leaflet/leaflet.js"), nullptr);
+  EXPECT_LE(sent, 120'000u) << "what a browser that opens the page is sent";
+}
+
 TEST_F(StaticFilesTest, AMissingFolderIsAnErrorThatNamesIt) {
   try {
     StaticFiles files(root() + "/nosuch");

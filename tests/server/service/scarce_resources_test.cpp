@@ -39,6 +39,7 @@ void write_island(const std::string& path, int vertices) {
 class ScarceResourcesTest : public ::testing::Test {
  protected:
   ScarceResourcesTest() {
+    reloader_.start();
     EXPECT_TRUE(has_loaded([this] { return data_.get() != nullptr; }));
   }
 

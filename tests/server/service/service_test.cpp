@@ -356,6 +356,7 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   // up.
   Reloader reloader(
       {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+  reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto draw = [&](const char* query) {
     std::atomic<int> status = 0;
@@ -394,6 +395,7 @@ TEST(ReloaderTest, TheRendererKeepsMeshesOfLayersThatAreServedOn) {
   {
     Reloader reloader(
         {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+    reloader.start();
     ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
     const std::uint64_t mesh = data.get()->layers()[0].layer->mesh().id;
     {
@@ -435,6 +437,7 @@ TEST(ReloaderTest, ALayerThatLostMostOfItsFeaturesIsNotTakenUnlessItMayShrink) {
   TileService tiles({}, make_renderers({RendererKind::software, {}}, 1).renderers);
   Reloader reloader(
       {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+  reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto bands_served = [&data] { return data.get()->layers()[0].report.loaded; };
   write_bands(4);
@@ -461,6 +464,7 @@ TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {
   Reloader reloader(
       {layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; },
       [] { FAIL() << "nothing is loaded"; });
+  reloader.start();
   EXPECT_TRUE(holds_within(5s, [&] { return has_given_up.load(); }));
   EXPECT_THROW(reloader.rethrow_failure(), std::runtime_error);
   EXPECT_FALSE(reloader.is_loading());

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,12 @@ class SiteTest : public ::testing::Test {
  protected:
   HttpResponse get(const std::string& target, const std::string& if_none_match = {}) {
     return sample_.get(target, if_none_match);
+  }
+  HttpResponse get_compressed(const std::string& target, const std::string& accept_encoding,
+                              const std::string& if_none_match = {}) {
+    HttpRequest request{"GET", target, "maps.example:8080", if_none_match, {}};
+    request.accept_encoding = accept_encoding;
+    return sample_.handle(request);
   }
   int status(const std::string& target) { return get(target).status; }
   nlohmann::json json(const std::string& target) {
@@ -382,6 +390,48 @@ TEST_F(SiteTest, TileJsonDescribesTheLayersTogether) {
   EXPECT_GE(json["center"][2], json["minzoom"]);
 }
 
+TEST_F(SiteTest, TileJsonSaysHowMuchGroundATileShowsAtEveryScale) {
+  for (const std::string scale : {"", "@1x", "@2x", "@4x"}) {
+    const auto json = this->json("/tiles/rings" + scale + ".json?fill=teal");
+    EXPECT_EQ(json["tileSize"], 256) << scale;
+    const std::string suffix = scale == "@1x" ? "" : scale;
+    EXPECT_EQ(json["tiles"][0],
+              "http://maps.example:8080/tiles/rings/{z}/{x}/{y}" + suffix + ".png?fill=008080ff");
+    EXPECT_EQ(json["legend"],
+              "http://maps.example:8080/legend/rings" + suffix + ".png?fill=008080ff");
+  }
+  EXPECT_EQ(picture_of(get("/tiles/rings/0/0/0@2x.png")).width, 512);
+}
+
+TEST(SiteStyleNameTest, DocumentsKeepTheNameOfTheStyle) {
+  testing::SampleSite sample(true, {},
+                             {.styles = {{"night", testing::style_of("fill=navy&stroke=white")}}});
+  const auto json = [&sample](const std::string& target) {
+    return nlohmann::json::parse(*sample.get(target).body);
+  };
+  const std::string root = "http://maps.example:8080";
+  for (const char* target : {"/tiles/rings@2x.json?style=night&stroke-width=3&_=1",
+                             "/tiles/rings/s/night@2x.json?stroke-width=3"}) {
+    const auto tiles = json(target);
+    EXPECT_EQ(tiles["tiles"][0], root + "/tiles/rings/s/night/{z}/{x}/{y}@2x.png?stroke-width=3");
+    EXPECT_EQ(tiles["legend"], root + "/legend/rings@2x.png?style=night&stroke-width=3");
+  }
+  const std::string query = "?collections=rings,west&style=night&stroke-width=3";
+  const auto tilesets = json("/ogc/map/tiles" + query);
+  EXPECT_EQ(tilesets["tilesets"][0]["links"][0]["href"],
+            root + "/ogc/map/tiles/WebMercatorQuad" + query);
+  const auto tileset = json("/ogc/map/tiles/WebMercatorQuad" + query);
+  const std::string item = tileset["links"][2]["href"];
+  EXPECT_EQ(item, root + "/ogc/map/tiles/WebMercatorQuad/{tileMatrix}/{tileRow}/{tileCol}" + query);
+  EXPECT_EQ(json("/tiles/rings.json?style=default&fill=red")["tiles"][0],
+            root + "/tiles/rings/{z}/{x}/{y}.png?fill=ff0000ff");
+  // What they lead to is what was asked for.
+  EXPECT_EQ(*sample.get("/tiles/rings/s/night/0/0/0@2x.png?stroke-width=3").body,
+            *sample.get("/tiles/rings/0/0/0@2x.png?fill=navy&stroke=white&stroke-width=3").body);
+  EXPECT_EQ(*sample.get("/ogc/map/tiles/WebMercatorQuad/0/0/0" + query).body,
+            *sample.get("/tiles/rings,west/0/0/0.png?fill=navy&stroke=white&stroke-width=3").body);
+}
+
 TEST_F(SiteTest, TileJsonOfOneLayerHasItsZooms) {
   const auto json = this->json("/tiles/west.json");
   EXPECT_EQ(json["maxzoom"], 5);
@@ -407,7 +457,8 @@ TEST(SiteAllowedHostsTest, AnswersOnlyToTheNamesThatAreAllowed) {
   for (const char* target : {"/tiles/rings.json", "/catalog", "/ogc", "/wmts.xml"}) {
     const auto response = sample.handle({"GET", target, "evil.example", ""});
     EXPECT_EQ(response.status, 400) << target;
-    EXPECT_EQ(nlohmann::json::parse(*response.body)["parameter"], "Host") << target;
+    EXPECT_THAT(*response.body, ::testing::ContainsRegex("(parameter\": |locator=)\"Host\""))
+        << target;
     EXPECT_EQ(sample.handle({"GET", target, "a.cdn.example", ""}).status, 200) << target;
   }
 }
@@ -434,12 +485,108 @@ TEST_F(SiteTest, TheCatalogListsLayersAndParameters) {
   EXPECT_EQ(json["parameters"].size(), style_parameters().size());
 }
 
+TEST(SiteViewerTest, TheCatalogSaysHowTheViewerBegins) {
+  testing::SampleSite sample(true, {}, {.viewer = {"Atlas", "map=3/1/2"}});
+  const auto json = nlohmann::json::parse(*sample.get("/catalog").body);
+  EXPECT_EQ(json["viewer"], nlohmann::json::parse(R"({"title": "Atlas", "start": "map=3/1/2"})"));
+}
+
+TEST(SiteLayerWordsTest, LayersSayTheirGroupTheirDetailAndWhatTheirFeaturesAreCalledBy) {
+  auto layers =
+      layers_of_files({testing::fixture("rings.geojson"), testing::fixture("west.geojson")});
+  layers[0].group = "World";
+  layers[0].detail_zoom = 8;
+  layers[1].detail_zoom = 18;
+  layers[1].title_attribute = "no such attribute";
+  testing::SampleSite sample(false);
+  sample.data().set(Dataset::load(layers));
+  const auto json = [&sample](const char* target) {
+    return nlohmann::json::parse(*sample.get(target).body);
+  };
+  const auto catalog = json("/catalog");
+  EXPECT_EQ(catalog["layers"][0]["group"], "World");
+  EXPECT_EQ(catalog["layers"][0]["detail_zoom"], 8);
+  EXPECT_EQ(catalog["layers"][0]["title_attribute"], "name") << "found by its name";
+  EXPECT_FALSE(catalog["layers"][1].contains("group"));
+  EXPECT_FALSE(catalog["layers"][1].contains("title_attribute"));
+  EXPECT_EQ(json("/tiles/west.json")["detail_zoom"], 18);
+  EXPECT_EQ(json("/tiles/west,rings.json")["detail_zoom"], 8) << "up to there both are true";
+  layers[0].title_attribute = "rank";
+  sample.data().set(Dataset::load(layers));
+  EXPECT_EQ(json("/catalog")["layers"][0]["title_attribute"], "rank");
+  EXPECT_EQ(json("/identify/rings/-80,0")["features"][0]["title"], "1");
+}
+
 TEST_F(SiteTest, DocumentsAreNotSentAgainToWhoHasThem) {
   for (const char* target : {"/catalog", "/tiles/rings.json"}) {
     const std::string tag(get(target).header("ETag"));
     EXPECT_EQ(get(target, tag).status, 304);
     EXPECT_EQ(get(target, "\"other\"").status, 200);
   }
+}
+
+TEST_F(SiteTest, TextIsSentCompressedToWhoTakesThat) {
+  for (const char* target :
+       {"/catalog", "/wmts.xml", "/ogc/api", "/ogc/tileMatrixSets/WebMercatorQuad"}) {
+    const auto plain = get(target);
+    ASSERT_GT(plain.body->size(), kLeastToCompress) << target;
+    EXPECT_EQ(plain.header("Content-Encoding"), "");
+    EXPECT_EQ(plain.header("Vary"), "Accept-Encoding") << target;
+    for (int i = 0; i < 2; ++i) {  // made, and kept
+      const auto gzip = get_compressed(target, "gzip");
+      EXPECT_EQ(gzip.status, 200) << target;
+      EXPECT_EQ(gzip.header("Content-Encoding"), "gzip") << target;
+      EXPECT_EQ(gzip.header("Vary"), "Accept-Encoding") << target;
+      EXPECT_EQ(gzip.header("Content-Type"), plain.header("Content-Type")) << target;
+      EXPECT_TRUE(gzip.body->starts_with("\x1f\x8b")) << target;
+      EXPECT_LT(2 * gzip.body->size(), plain.body->size()) << target;
+    }
+  }
+}
+
+TEST_F(SiteTest, ATagIsOfOneEncodingAlone) {
+  const std::string plain(get("/catalog").header("ETag"));
+  const std::string gzip(get_compressed("/catalog", "gzip").header("ETag"));
+  EXPECT_NE(plain, gzip);
+  EXPECT_EQ(get_compressed("/catalog", "gzip", gzip).status, 304);
+  EXPECT_EQ(get_compressed("/catalog", "gzip", gzip).header("Vary"), "Accept-Encoding");
+  EXPECT_EQ(get_compressed("/catalog", "gzip", plain).status, 200);
+  EXPECT_EQ(get("/catalog", gzip).status, 200);
+  EXPECT_EQ(get("/catalog", plain).status, 304);
+}
+
+TEST_F(SiteTest, WhatIsShortOrAPictureIsSentAsItIs) {
+  for (const char* target : {"/styles", "/tiles/rings/0/0/0.png", "/legend/rings.png", "/health"}) {
+    const auto response = get_compressed(target, "gzip, br");
+    EXPECT_EQ(response.status, 200) << target;
+    EXPECT_EQ(response.header("Content-Encoding"), "") << target;
+    EXPECT_EQ(response.header("Vary"), "") << target;
+  }
+}
+
+TEST(SiteLoadingTest, TellsWhichLayersAreReadAndHowFar) {
+  LayersToRead layers;
+  testing::SampleSite sample(false, {}, {.loading = [&layers] { return layers.get(); }});
+  const auto ready = [&sample] { return nlohmann::json::parse(*sample.get("/ready").body); };
+  EXPECT_EQ(ready()["layers"], nlohmann::json::array());
+  layers.begin({{"a", "A", 0}, {"b", "B", 0}, {"c", "C", 0}});
+  layers.show(0, 0.4567);
+  layers.show(1, -1);
+  layers.show(2, 1);
+  EXPECT_EQ(sample.get("/ready").header("Content-Type"), "application/json");
+  EXPECT_EQ(ready()["status"], "loading");
+  EXPECT_EQ(ready()["layers"], nlohmann::json::parse(R"([
+      {"name": "a", "title": "A", "percent": 45}, {"name": "b", "title": "B", "percent": null},
+      {"name": "c", "title": "C", "percent": 99}])"));
+  layers.finish(2);
+  EXPECT_EQ(ready()["layers"][2]["percent"], 100);
+}
+
+TEST(SiteLoadingTest, TheViewerIsThereBeforeTheLayersAre) {
+  constexpr BuiltInFile kFiles[] = {{"/index.html", "<html>", "", ""}};
+  testing::SampleSite sample(/*is_loaded=*/false, StaticFiles(kFiles));
+  EXPECT_EQ(sample.get("/").status, 200);
+  EXPECT_EQ(sample.get("/catalog").status, 503);
 }
 
 TEST(SiteLoadingTest, IsHealthyButNotReadyUntilTheDataIsThere) {
@@ -471,6 +618,37 @@ TEST(SiteFilesTest, ServesTheViewer) {
   EXPECT_EQ(sample.get("/", std::string(index.header("ETag"))).status, 304);
   EXPECT_EQ(*sample.get("/a%20b.css").body, "p {}");
   EXPECT_EQ(sample.get("/..%2f..%2fetc/passwd").status, 404);
+}
+
+TEST(SiteFilesTest, WithoutAViewerTheRootSaysWhy) {
+  testing::SampleSite sample(true, {}, {.why_no_viewer = "It was left out."});
+  const auto response = sample.get("/");
+  EXPECT_EQ(response.status, 404);
+  EXPECT_THAT(*response.body, ::testing::HasSubstr("It was left out. The layers are at /catalog."));
+}
+
+TEST(SiteFilesTest, TheViewerIsSentCompressedToWhoTakesThat) {
+  constexpr BuiltInFile kFiles[] = {{"/index.html", "long text", "short", "br"}};
+  testing::SampleSite sample(false, StaticFiles(kFiles));
+  const auto get = [&sample](const char* method, const char* accept_encoding) {
+    HttpRequest request{method, "/", "maps.example", "", {}};
+    request.accept_encoding = accept_encoding;
+    return sample.handle(request);
+  };
+  std::set<std::string> tags;
+  for (const auto& [accepted, encoding, bytes] :
+       {std::tuple("", "", "long text"), std::tuple("gzip", "gzip", "short"),
+        std::tuple("gzip, br", "br", "br")}) {
+    for (const char* method : {"GET", "HEAD"}) {
+      const auto response = get(method, accepted);
+      EXPECT_EQ(response.status, 200);
+      EXPECT_EQ(response.header("Content-Encoding"), encoding);
+      EXPECT_EQ(response.header("Vary"), "Accept-Encoding");
+      EXPECT_EQ(*response.body, bytes);
+      tags.insert(std::string(response.header("ETag")));
+    }
+  }
+  EXPECT_EQ(tags.size(), 3u);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "core/layer/layer_builder.h"
+#include "core/layer/untested_layer.h"
 #include "render/picture/png.h"
 #include "server/service/site.h"
 #include "tests/server/service/sample_site.h"
@@ -57,6 +58,7 @@ std::shared_ptr<const Dataset> plots() {
   served.config.title = "Plots";
   served.config.style = testing::style_of("fill=808080");
   served.layer = LayerBuilder::join(builders, std::move(features));
+  served.untested = build_without_topology_test(*served.layer);
   served.revision = revision_of(*served.layer);
   std::vector<ServedLayer> layers;
   layers.push_back(std::move(served));
@@ -68,6 +70,7 @@ constexpr Rgba kWood{0, 255, 0, 255};
 constexpr Rgba kLake{0, 0, 255, 255};
 constexpr Rgba kYellow{255, 255, 0, 255};
 const std::string kClasses = "color-by=kind&classes=field:red,wood:lime,lake:blue";
+const std::string kHalfOpaque = "fill-opacity=0.5";
 
 class OverlapPicturesTest : public ::testing::Test {
  protected:
@@ -88,6 +91,15 @@ void expect_near(Rgba actual, Rgba expected, int tolerance) {
   EXPECT_NEAR(actual.r, expected.r, tolerance);
   EXPECT_NEAR(actual.g, expected.g, tolerance);
   EXPECT_NEAR(actual.b, expected.b, tolerance);
+}
+
+TEST_F(OverlapPicturesTest, AreTheSameWithoutTheTestOfTopology) {
+  for (const std::string& style : {kClasses, kClasses + "&stroke=000", kHalfOpaque}) {
+    const std::string target = "/tiles/plots/0/0/0.png?" + style;
+    const HttpResponse apart = site_.get(target + "&topology=fast");
+    ASSERT_EQ(apart.status, 200) << style;
+    EXPECT_EQ(*apart.body, *site_.get(target).body) << style;
+  }
 }
 
 TEST_F(OverlapPicturesTest, TheLaterFeatureIsOnTop) {

@@ -2,7 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "server/base/defaults.h"
+#include "server/styles/filter.h"
 #include "server/styles/style_document.h"
+#include "tests/sanitized.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -92,12 +100,69 @@ TEST(StyleBookTest, WithoutABudgetNothingIsKept) {
 }
 
 TEST(StyleBookTest, ALongStyleIsRefused) {
-  std::string query = "ids=";
-  for (int i = 0; i < 256; ++i) query += std::to_string(1'000'000'000 + i) + ",";
-  query.pop_back();
-  const auto answer = StyleBook().post(testing::style_of(query));
+  const std::string half(StyleBook::kMaxStyleLength / 2, 'x');
+  const auto style = parse_style_document(R"({"color-by": "a", "classes": {")" + half +
+                                          R"(": "red", ")" + half + R"(y": "red"}})");
+  ASSERT_TRUE(style);
+  const auto answer = StyleBook().post(*style);
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.problem().status, 400);
+}
+
+/// A document in which each of the layers sets every long parameter in full.
+nlohmann::json full_style(int layers) {
+  nlohmann::json document;
+  for (int layer = 0; layer < layers; ++layer) {
+    nlohmann::json style = {{"fill", "#123456"}, {"stroke", "white"}, {"color-by", "kind of use"}};
+    for (int i = 0; i < 64; ++i) {
+      style["classes"]["use of the land, number " + std::to_string(i)] = "#abcdef";
+    }
+    for (std::int64_t i = 0; i < 256; ++i) {
+      style["ids"].push_back(std::numeric_limits<std::int64_t>::max() - i);
+      style["highlight"].push_back(std::numeric_limits<std::int64_t>::min() + i);
+    }
+    std::string filter = "\"kind of use\" <> 'x";
+    filter.append(kMaxFilterLength - filter.size() - 1, '%');
+    style["filter"] = filter + "'";
+    document["layers"]["layer_with_a_name_" + std::to_string(layer)] = style;
+  }
+  return document;
+}
+
+TEST(StyleBookTest, AFullStyleOfThirtyLayersCanBePosted) {
+  testing::SampleSite site;
+  const std::string body = full_style(30).dump();
+  EXPECT_GT(body.size(), 300'000u);
+  EXPECT_LT(body.size(), std::size_t{defaults::kBodyBytes});
+  const auto response = site.handle({"POST", "/styles", "maps.example", {}, body});
+  ASSERT_EQ(response.status, 201) << response.body->substr(0, 500);
+  const std::string id = nlohmann::json::parse(*response.body)["id"];
+  EXPECT_EQ(site.get("/tiles/rings/s/" + id + "/0/0/0.png").status, 200);
+  const auto again =
+      site.handle({"POST", "/styles", "maps.example", {}, *site.get("/styles/" + id).body});
+  EXPECT_EQ(nlohmann::json::parse(*again.body)["id"], id) << "it is read back as the same";
+}
+
+TEST(StyleBookTest, AStyleLargerThanTheShareOfAnAddressIsRefusedWithWords) {
+  testing::SampleSite site(true, {}, {.posted_styles = std::size_t{1} << 20});
+  const auto response = site.handle({"POST", "/styles", "maps.example", {}, full_style(10).dump()});
+  EXPECT_EQ(response.status, 403);
+  EXPECT_THAT(*response.body, HasSubstr("An eighth of the 1 MB"));
+}
+
+TEST(StyleDocumentTest, MoreMembersThanAnyStyleHasAreRefusedAtOnce) {
+  std::string many = "{";
+  for (int i = 0; i < 90'000; ++i) many += "\"a" + std::to_string(i) + "\": 1, ";
+  std::string deep(500'000, '[');
+  for (const std::string& text : {many + "\"b\": 1}", many, deep, "{\"a\": " + deep}) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto style = parse_style_document(text);
+    ASSERT_FALSE(style);
+    EXPECT_THAT(style.problem().detail, HasSubstr("at most 4096 members"));
+    if (!testing::kIsSanitized) {
+      EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+    }
+  }
 }
 
 std::string canonical(std::string_view json) {
@@ -199,7 +264,8 @@ TEST_F(StyleRoutesTest, NamedStylesAreServedAndListed) {
   EXPECT_EQ(site_.get("/tiles/rings/s/default/0/0/0.png").header("ETag"),
             site_.get("/tiles/rings/0/0/0.png").header("ETag"));
   EXPECT_THAT(*site_.get("/styles").body, HasSubstr("night"));
-  EXPECT_THAT(*site_.get("/tiles/rings.json?style=night").body, HasSubstr("fill=000080ff"));
+  EXPECT_THAT(*site_.get("/tiles/rings.json?style=night").body,
+              HasSubstr("/tiles/rings/s/night/{z}"));
   EXPECT_EQ(site_.get("/legend/rings.json?style=night").status, 200);
   EXPECT_THAT(*site_.get("/wmts.xml").body, HasSubstr("<ows:Identifier>night</ows:Identifier>"));
   const std::string get_tile =

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "tests/server/service/sample_site.h"
+
 namespace trapeze {
 namespace {
 
@@ -41,7 +43,34 @@ TEST(TileRequestTest, ReadsTheDescriptionOfTiles) {
       parse_tiles_target(split_target("/tiles/a,b.json?b.fill=red").value(), StyleBook());
   const auto& request = std::get<TileJsonRequest>(*parsed);
   EXPECT_THAT(request.layers, ElementsAre("a", "b"));
-  EXPECT_EQ(request.style.canonical_text(), "b.fill=ff0000ff");
+  EXPECT_EQ(request.style.query(), "b.fill=ff0000ff");
+  EXPECT_EQ(request.scale, 1);
+}
+
+TEST(TileRequestTest, DescriptionsHaveTheirScaleAndKeepTheNameOfTheStyle) {
+  const StyleBook book({{"night", testing::style_of("fill=navy&stroke=white")}});
+  for (const char* target :
+       {"/tiles/a,b@2x.json?style=night&b.fill=red", "/tiles/a,b/s/night@2x.json?b.fill=red"}) {
+    const auto parsed = parse_tiles_target(split_target(target).value(), book);
+    ASSERT_TRUE(parsed) << target;
+    const auto& request = std::get<TileJsonRequest>(*parsed);
+    EXPECT_THAT(request.layers, ElementsAre("a", "b"));
+    EXPECT_EQ(request.style.name, "night");
+    EXPECT_EQ(request.style.query(), "style=night&b.fill=ff0000ff");
+    EXPECT_EQ(request.scale, 2);
+  }
+  const auto status_of = [&book](const char* target) {
+    const auto parsed = parse_tiles_target(split_target(target).value(), book);
+    return parsed ? 200 : parsed.problem().status;
+  };
+  EXPECT_EQ(status_of("/tiles/a/s/night.json"), 200);
+  EXPECT_EQ(status_of("/tiles/a/s/default@4x.json"), 200);
+  EXPECT_EQ(status_of("/tiles/a/s/day.json"), 404);
+  EXPECT_EQ(status_of("/tiles/a/s/.json"), 404);
+  for (const char* target : {"/tiles/a@5x.json", "/tiles/a@.json", "/tiles/a@2x@2x.json",
+                             "/tiles/@2x.json", "/tiles/a@2x.json?fill=no"}) {
+    EXPECT_EQ(status_of(target), 400) << target;
+  }
 }
 
 TEST(TileRequestTest, TakesTheCornersOfTheMatrixAndNothingBeyond) {

@@ -1,0 +1,14 @@
+// Which part of a feature lies under a place: of a country with islands, the island.
+#pragma once
+
+#include "core/grid/grid.h"
+#include "core/grid/rings.h"
+
+namespace trapeze {
+
+/// The box of the outer ring of the part that holds the point; where none does (it was drawn there,
+/// simplified), of the part whose boundary is nearest. Rings are those of one feature, nested by
+/// even-odd and without crossings. Empty if there are no rings.
+Box part_at(const Rings& rings, Point point);
+
+}  // namespace trapeze

@@ -1,0 +1,26 @@
+// What is wrong with a request, in the words of OGC Web Services Common 1.1.
+#pragma once
+
+#include <string>
+
+#include "server/base/problem.h"
+
+namespace trapeze {
+
+/// The codes that requests are answered with besides those of all services.
+namespace ows {
+constexpr const char* kMissingParameterValue = "MissingParameterValue";
+constexpr const char* kInvalidParameterValue = "InvalidParameterValue";
+constexpr const char* kOperationNotSupported = "OperationNotSupported";
+constexpr const char* kVersionNegotiationFailed = "VersionNegotiationFailed";
+constexpr const char* kTileOutOfRange = "TileOutOfRange";
+constexpr const char* kPointIJOutOfRange = "PointIJOutOfRange";
+constexpr const char* kNoApplicableCode = "NoApplicableCode";
+}  // namespace ows
+
+/// An ows:ExceptionReport of one exception. Its code is that of the problem; where that has none,
+/// InvalidParameterValue if it names a parameter, else NoApplicableCode. Its locator is the
+/// parameter. Bytes of the request are escaped and cut as problem_json() does.
+std::string exception_report(const Problem& problem);
+
+}  // namespace trapeze

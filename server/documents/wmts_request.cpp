@@ -1,0 +1,447 @@
+#include "server/documents/wmts_request.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/grid/web_mercator.h"
+#include "render/mask/mask.h"
+#include "server/base/nearest_name.h"
+#include "server/data/layer_summary.h"
+#include "server/documents/ows_exception.h"
+
+namespace trapeze {
+namespace {
+
+// As the standard writes them. What else stands in a query is about style, or about nothing.
+constexpr std::array<std::string_view, 15> kKeys = {
+    "Service", "Request", "Version",       "AcceptVersions", "Sections", "Layer",
+    "Style",   "Format",  "TileMatrixSet", "TileMatrix",     "TileRow",  "TileCol",
+    "I",       "J",       "InfoFormat",
+};
+
+constexpr std::array kInfoFormats = {
+    WmtsInfoFormat{"application/geo+json", ".json", "application/geo+json", IdentifyFormat::json},
+    WmtsInfoFormat{"application/json", "", "application/json", IdentifyFormat::json},
+    WmtsInfoFormat{"text/plain", ".txt", "text/plain; charset=utf-8", IdentifyFormat::text},
+    WmtsInfoFormat{"text/html", ".html", "text/html; charset=utf-8", IdentifyFormat::html},
+};
+
+Problem wmts_problem(int status, const char* code, std::string_view key, std::string detail,
+                     std::string value = {}) {
+  Problem problem{status, std::move(detail), std::string(key), std::move(value), {}};
+  problem.code = code;
+  return problem;
+}
+
+Problem missing(std::string_view key, std::string_view takes) {
+  return wmts_problem(400, ows::kMissingParameterValue, key,
+                      fmt::format("{} is missing. It takes {}.", key, takes));
+}
+
+Problem invalid(std::string_view key, std::string_view takes, const std::string& value,
+                int status = 400) {
+  return wmts_problem(status, ows::kInvalidParameterValue, key,
+                      fmt::format("{} takes {}.", key, takes), value);
+}
+
+/// A query, divided.
+struct KeyValuePairs {
+  std::array<std::optional<std::string>, kKeys.size()> values;
+  std::vector<QueryPair> others;
+
+  const std::optional<std::string>& operator[](std::string_view key) const {
+    return values[static_cast<std::size_t>(std::ranges::find(kKeys, key) - kKeys.begin())];
+  }
+};
+
+bool is_like_a_style_parameter(const std::string& name) {
+  const std::string_view parameter = std::string_view(name).substr(name.rfind('.') + 1);
+  if (parameter == kFreeParameter) return true;
+  std::vector<std::string> known;
+  for (const StyleParameter& style : style_parameters()) known.emplace_back(style.name);
+  return nearest_name(parameter, known).has_value();
+}
+
+std::vector<QueryPair> style_pairs(std::span<const QueryPair> query) {
+  std::vector<QueryPair> pairs;
+  for (const QueryPair& pair : query) {
+    if (is_like_a_style_parameter(pair.first)) pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+Result<KeyValuePairs> divide(std::span<const QueryPair> query) {
+  KeyValuePairs pairs;
+  std::vector<QueryPair> others;
+  for (const auto& [name, value] : query) {
+    const std::string lower = in_lower_case(name);
+    const auto key = std::ranges::find_if(kKeys, [&lower](std::string_view known) {
+      return in_lower_case(std::string(known)) == lower;
+    });
+    if (key == kKeys.end()) {
+      others.emplace_back(name, value);
+      continue;
+    }
+    auto& place = pairs.values[static_cast<std::size_t>(key - kKeys.begin())];
+    if (place) return invalid(*key, "one value, once", value);
+    place = value;
+  }
+  pairs.others = style_pairs(others);
+  return pairs;
+}
+
+bool is_equal(std::string_view a, std::string_view b) {
+  return in_lower_case(a) == in_lower_case(b);
+}
+
+/// A key that takes one value only.
+std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
+                             std::string_view value) {
+  const auto& given = pairs[key];
+  if (!given || given->empty()) return missing(key, value);
+  if (!is_equal(*given, value)) return invalid(key, value, *given);
+  return std::nullopt;
+}
+
+std::vector<std::string_view> split_list(std::string_view list) {
+  std::vector<std::string_view> items;
+  while (!list.empty()) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    items.push_back(list.substr(0, comma));
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return items;
+}
+
+Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
+  if (const auto& versions = pairs["AcceptVersions"]; versions && !versions->empty()) {
+    const auto accepted = split_list(*versions);
+    if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
+      return wmts_problem(400, ows::kVersionNegotiationFailed, "AcceptVersions",
+                          fmt::format("This is WMTS {}, and no other version.", kWmtsVersion),
+                          *versions);
+    }
+  }
+  WmtsCapabilitiesRequest request;
+  const auto& sections = pairs["Sections"];
+  if (!sections || sections->empty()) return WmtsRequest(request);
+  request = {false, false, false};
+  for (const std::string_view section : split_list(*sections)) {
+    const bool is_all = is_equal(section, "All");
+    const bool is_identification = is_equal(section, "ServiceIdentification");
+    const bool is_operations = is_equal(section, "OperationsMetadata");
+    const bool is_contents = is_equal(section, "Contents");
+    // Of these there is nothing to tell.
+    const bool is_empty = is_equal(section, "ServiceProvider") || is_equal(section, "Themes");
+    if (!is_all && !is_identification && !is_operations && !is_contents && !is_empty) {
+      return invalid(
+          "Sections",
+          "some of ServiceIdentification, ServiceProvider, OperationsMetadata, Contents, "
+          "Themes, or All",
+          *sections);
+    }
+    request.identification |= is_all || is_identification;
+    request.operations |= is_all || is_operations;
+    request.contents |= is_all || is_contents;
+  }
+  return WmtsRequest(request);
+}
+
+/// The parts of a request about a tile, as text.
+struct TileParts {
+  std::string layer;
+  std::string style;
+  std::string matrix_set;
+  std::string matrix;
+  std::string row;
+  std::string column;
+  std::vector<QueryPair> others;
+};
+
+enum class NumberKind : std::uint8_t { number, outside, none };
+
+struct ParsedNumber {
+  NumberKind kind = NumberKind::none;
+  std::uint32_t value = 0;
+};
+
+/// An integer that is negative or too long is one, and outside of all that there is.
+ParsedNumber parse_number(std::string_view text) {
+  const bool is_negative = text.starts_with('-');
+  const std::string_view digits = text.substr(is_negative ? 1 : 0);
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (digits.empty() || !std::ranges::all_of(digits, is_digit)) return {};
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (is_negative || error != std::errc()) return {NumberKind::outside, 0};
+  return {NumberKind::number, value};
+}
+
+/// A number from `min` to `max`; the problem has the code of what is outside.
+Result<std::uint32_t> number_in(std::string_view key, const std::string& text, std::uint32_t min,
+                                std::uint32_t max, const char* code, int status) {
+  const std::string takes = fmt::format("an integer from {} to {} here", min, max);
+  const ParsedNumber number = parse_number(text);
+  if (number.kind == NumberKind::none) return invalid(key, takes, text);
+  if (number.kind == NumberKind::outside || number.value < min || number.value > max) {
+    return wmts_problem(status, code, key, fmt::format("{} takes {}.", key, takes), text);
+  }
+  return number.value;
+}
+
+Result<int> zoom_of(const std::string& matrix) {
+  const ParsedNumber number = parse_number(matrix);
+  if (number.kind != NumberKind::number || number.value > kMaxZoom) {
+    return invalid("TileMatrix", fmt::format("an integer from 0 to {}", kMaxZoom), matrix, 404);
+  }
+  return static_cast<int>(number.value);
+}
+
+Result<std::vector<std::string>> layers_of(const std::string& list, const Dataset& dataset) {
+  auto layers = parse_layer_list(list);
+  if (!layers) {
+    layers.problem().parameter = "Layer";
+    layers.problem().code = ows::kInvalidParameterValue;
+    return layers;
+  }
+  for (const std::string& name : *layers) {
+    if (dataset.find(name)) continue;
+    Problem problem = unknown_layer(name, dataset);
+    problem.parameter = "Layer";
+    problem.code = ows::kInvalidParameterValue;
+    return problem;
+  }
+  return layers;
+}
+
+bool is_drawn_at(const ServedLayer& layer, int zoom) {
+  return zoom >= layer.config.min_zoom && zoom <= layer.config.max_zoom;
+}
+
+/// Those of all layers together; nothing at zooms that none of them has.
+std::optional<TileLimits> limits_of(std::span<const std::string> layers, int zoom,
+                                    const Dataset& dataset) {
+  std::optional<TileLimits> all;
+  for (const std::string& name : layers) {
+    const ServedLayer& layer = dataset.layers()[*dataset.find(name)];
+    if (!is_drawn_at(layer, zoom)) continue;
+    const TileLimits limits = wmts_limits(layer, zoom);
+    if (!all) all = limits;
+    all->min_row = std::min(all->min_row, limits.min_row);
+    all->max_row = std::max(all->max_row, limits.max_row);
+    all->min_column = std::min(all->min_column, limits.min_column);
+    all->max_column = std::max(all->max_column, limits.max_column);
+  }
+  return all;
+}
+
+Result<TileId> tile_id_of(const TileParts& parts, std::span<const std::string> layers,
+                          const Dataset& dataset) {
+  if (!is_equal(parts.matrix_set, kTileMatrixSet)) {
+    return invalid("TileMatrixSet", kTileMatrixSet, parts.matrix_set, 404);
+  }
+  const auto zoom = zoom_of(parts.matrix);
+  if (!zoom) return zoom.problem();
+  const auto limits = limits_of(layers, *zoom, dataset);
+  if (!limits) {
+    return wmts_problem(404, ows::kTileOutOfRange, "TileMatrix",
+                        "The layer is not drawn at this TileMatrix.", parts.matrix);
+  }
+  const auto row =
+      number_in("TileRow", parts.row, limits->min_row, limits->max_row, ows::kTileOutOfRange, 404);
+  if (!row) return row.problem();
+  const auto column = number_in("TileCol", parts.column, limits->min_column, limits->max_column,
+                                ows::kTileOutOfRange, 404);
+  if (!column) return column.problem();
+  return TileId{*zoom, *column, *row};
+}
+
+Result<StyleQuery> style_of(const TileParts& parts, std::span<const std::string> layers,
+                            const StyleBook& styles) {
+  std::vector<QueryPair> query = parts.others;
+  if (!parts.style.empty()) query.emplace_back("style", parts.style);
+  const auto styled = styles.read(std::move(query));
+  if (!styled) {
+    Problem problem = styled.problem();
+    problem.status = 404;
+    problem.parameter = "Style";
+    problem.code = ows::kInvalidParameterValue;
+    return problem;
+  }
+  return styled->style_for(layers);
+}
+
+Result<TileRequest> tile_of(const TileParts& parts, const DocumentRequest& request) {
+  auto layers = layers_of(parts.layer, request.dataset);
+  if (!layers) return std::move(layers).problem();
+  const auto tile = tile_id_of(parts, *layers, request.dataset);
+  if (!tile) return tile.problem();
+  auto style = style_of(parts, *layers, request.styles);
+  if (!style) return std::move(style).problem();
+  return TileRequest{*std::move(layers), *tile, 1, *std::move(style)};
+}
+
+/// The cell in the middle of a pixel of a tile.
+Point place_in(TileId tile, std::uint32_t i, std::uint32_t j) {
+  const std::int64_t side = kGridSize >> tile.z;
+  const auto cell = [side](std::int64_t number, std::int64_t pixel) {
+    return static_cast<std::int32_t>(kGridMin + number * side +
+                                     (2 * pixel + 1) * side / (2 * kTilePixels));
+  };
+  return {cell(tile.x, i), cell(tile.y, j)};
+}
+
+Result<WmtsRequest> info_of(const TileParts& parts, const std::string& i, const std::string& j,
+                            const WmtsInfoFormat& format, const DocumentRequest& request) {
+  auto tile = tile_of(parts, request);
+  if (!tile) return std::move(tile).problem();
+  const auto column = number_in("I", i, 0, kTilePixels - 1, ows::kPointIJOutOfRange, 400);
+  if (!column) return column.problem();
+  const auto row = number_in("J", j, 0, kTilePixels - 1, ows::kPointIJOutOfRange, 400);
+  if (!row) return row.problem();
+  PlaceQuery query{std::move(tile->layers), place_in(tile->tile, *column, *row),
+                   static_cast<double>(tile->tile.z), std::move(tile->style)};
+  return WmtsRequest(
+      WmtsFeatureInfoRequest{std::move(query), format.format, std::string(format.content_type)});
+}
+
+Result<WmtsRequest> as_request(Result<TileRequest> tile) {
+  if (!tile) return std::move(tile).problem();
+  return WmtsRequest(*std::move(tile));
+}
+
+/// The parts that GetTile and GetFeatureInfo have in common.
+Result<TileParts> parts_of(const KeyValuePairs& pairs) {
+  if (auto problem = check(pairs, "Version", kWmtsVersion)) return std::move(*problem);
+  TileParts parts;
+  const std::initializer_list<std::pair<std::string_view, std::string*>> required = {
+      {"Layer", &parts.layer},
+      {"TileMatrixSet", &parts.matrix_set},
+      {"TileMatrix", &parts.matrix},
+      {"TileRow", &parts.row},
+      {"TileCol", &parts.column}};
+  if (const auto& layer = pairs["Layer"]; !layer || layer->empty()) {
+    return missing("Layer", "the identifier of a layer");
+  }
+  if (!pairs["Style"]) return missing("Style", "the identifier of a style; empty is the default");
+  if (auto problem = check(pairs, "Format", kWmtsFormat)) return std::move(*problem);
+  for (const auto& [key, value] : required) {
+    const auto& given = pairs[key];
+    if (!given || given->empty()) return missing(key, "what the capabilities name");
+    *value = *given;
+  }
+  parts.style = *pairs["Style"];
+  parts.others = pairs.others;
+  return parts;
+}
+
+Result<WmtsRequest> key_value_info(const KeyValuePairs& pairs, const DocumentRequest& request) {
+  auto parts = parts_of(pairs);
+  if (!parts) return std::move(parts).problem();
+  for (const std::string_view key : {"I", "J"}) {
+    const auto& given = pairs[key];
+    if (!given || given->empty()) return missing(key, "a pixel of the tile, from 0");
+  }
+  const std::string takes = "application/geo+json, application/json, text/plain or text/html";
+  const auto& name = pairs["InfoFormat"];
+  if (!name || name->empty()) return missing("InfoFormat", takes);
+  const auto format = std::ranges::find_if(
+      kInfoFormats, [&name](const WmtsInfoFormat& known) { return is_equal(known.name, *name); });
+  if (format == kInfoFormats.end()) return invalid("InfoFormat", takes, *name);
+  return info_of(*parts, *pairs["I"], *pairs["J"], *format, request);
+}
+
+Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
+  const auto divided = divide(request.query);
+  if (!divided) return divided.problem();
+  const KeyValuePairs& pairs = *divided;
+  if (auto problem = check(pairs, "Service", "WMTS")) return std::move(*problem);
+  const auto& operation = pairs["Request"];
+  if (!operation || operation->empty()) {
+    return missing("Request", "GetCapabilities, GetTile or GetFeatureInfo");
+  }
+  if (is_equal(*operation, "GetCapabilities")) return capabilities_of(pairs);
+  if (is_equal(*operation, "GetFeatureInfo")) return key_value_info(pairs, request);
+  if (is_equal(*operation, "GetTile")) {
+    const auto parts = parts_of(pairs);
+    if (!parts) return parts.problem();
+    return as_request(tile_of(*parts, request));
+  }
+  return wmts_problem(501, ows::kOperationNotSupported, *operation,
+                      "Request takes GetCapabilities, GetTile or GetFeatureInfo.", *operation);
+}
+
+Problem nothing_here() {
+  return {404, "There is nothing here. The capabilities are at /wmts.xml."};
+}
+
+TileParts parts_of_path(const DocumentRequest& request) {
+  const auto& path = request.path;
+  return {path[1], path[2], path[3], path[4], path[5], path[6], style_pairs(request.query)};
+}
+
+Result<WmtsRequest> parse_tile_path(const DocumentRequest& request) {
+  constexpr std::string_view kEnding = ".png";
+  TileParts parts = parts_of_path(request);
+  if (!parts.column.ends_with(kEnding)) return nothing_here();
+  parts.column.resize(parts.column.size() - kEnding.size());
+  return as_request(tile_of(parts, request));
+}
+
+Result<WmtsRequest> parse_info_path(const DocumentRequest& request) {
+  const std::string& file = request.path[8];
+  const std::size_t end = std::min(file.rfind('.'), file.size());
+  const std::string_view ending = std::string_view(file).substr(end);
+  const auto format = std::ranges::find_if(kInfoFormats, [ending](const WmtsInfoFormat& known) {
+    return !ending.empty() && known.ending == ending;
+  });
+  if (format == kInfoFormats.end()) return nothing_here();
+  return info_of(parts_of_path(request), file.substr(0, end), request.path[7], *format, request);
+}
+
+}  // namespace
+
+std::span<const WmtsInfoFormat> wmts_info_formats() {
+  return kInfoFormats;
+}
+
+TileLimits wmts_limits(const ServedLayer& layer, int zoom) {
+  const Box& bounds = layer.layer->bounds();
+  if (bounds.is_empty()) return tile_limits({kGridMin, kGridMin, kGridMax, kGridMax}, zoom);
+  // Half of the widest line, which is 32 of the 256 pixels wide.
+  const std::int64_t margin = (kGridSize >> zoom) / 16;
+  const auto moved = [](std::int64_t cell, std::int64_t by) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(cell + by, kGridMin, kGridMax));
+  };
+  return tile_limits({moved(bounds.min_x, -margin), moved(bounds.min_y, -margin),
+                      moved(bounds.max_x, margin), moved(bounds.max_y, margin)},
+                     zoom);
+}
+
+Result<WmtsRequest> parse_wmts_request(const DocumentRequest& request) {
+  const auto& path = request.path;
+  if (path.size() == 1) {
+    if (path[0] == "wmts") return parse_key_values(request);
+    return WmtsRequest(WmtsCapabilitiesRequest{});
+  }
+  if (path[0] != "wmts") return nothing_here();
+  if (path.size() == 3 && path[1] == kWmtsVersion && path[2] == "WMTSCapabilities.xml") {
+    return WmtsRequest(WmtsCapabilitiesRequest{});
+  }
+  if (path.size() == 7) return parse_tile_path(request);
+  if (path.size() == 9) return parse_info_path(request);
+  return nothing_here();
+}
+
+bool is_wmts_key_value_path(std::string_view path) {
+  return path == "/wmts";
+}
+
+}  // namespace trapeze

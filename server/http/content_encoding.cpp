@@ -1,0 +1,177 @@
+#include "server/http/content_encoding.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#ifdef TRAPEZE_HAS_BROTLI
+#include <brotli/encode.h>
+#endif
+
+namespace trapeze {
+namespace {
+
+constexpr int kGzipWindow = 15 + 16;  // the largest, with the header of gzip
+constexpr int kGzipMemory = 9;        // the most
+
+#ifdef TRAPEZE_HAS_BROTLI
+constexpr std::array kMade = {ContentEncoding::brotli, ContentEncoding::gzip};
+#else
+constexpr std::array kMade = {ContentEncoding::gzip};
+#endif
+
+std::string_view trim(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  const std::size_t end = text.find_last_not_of(" \t") + 1;
+  return begin < end ? text.substr(begin, end - begin) : std::string_view();
+}
+
+std::string_view take_until(char separator, std::string_view& text) {
+  const std::size_t end = std::min(text.find(separator), text.size());
+  const std::string_view taken = trim(text.substr(0, end));
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return taken;
+}
+
+bool is_same_word(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+/// Of ";q=0.5", in [0, 1]; 1 if there is none, 0 if it is nonsense.
+double weight_of(std::string_view parameters) {
+  while (!parameters.empty()) {
+    std::string_view value = take_until(';', parameters);
+    if (!is_same_word(take_until('=', value), "q")) continue;
+    double weight = 0;
+    const auto read = std::from_chars(value.data(), value.data() + value.size(), weight);
+    const bool is_number = read.ec == std::errc() && read.ptr == value.data() + value.size();
+    return is_number && weight >= 0 && weight <= 1 ? weight : 0;
+  }
+  return 1;
+}
+
+/// How much an encoding is wanted; 0: not at all.
+double weight_of(ContentEncoding encoding, std::string_view accept_encoding) {
+  double others = 0;
+  while (!accept_encoding.empty()) {
+    std::string_view parameters = take_until(',', accept_encoding);
+    const std::string_view name = take_until(';', parameters);
+    if (is_same_word(name, name_of(encoding))) return weight_of(parameters);
+    if (encoding == ContentEncoding::gzip && is_same_word(name, "x-gzip")) {
+      return weight_of(parameters);
+    }
+    if (name == "*") others = weight_of(parameters);
+  }
+  return others;
+}
+
+std::string gzip(std::string_view bytes, Effort effort) {
+  z_stream stream{};
+  const int level = effort == Effort::most ? Z_BEST_COMPRESSION : 5;
+  if (deflateInit2(&stream, level, Z_DEFLATED, kGzipWindow, kGzipMemory, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    throw std::bad_alloc();
+  }
+  std::string compressed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
+  stream.avail_out = static_cast<uInt>(compressed.size());
+  const int result = deflate(&stream, Z_FINISH);
+  compressed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (result != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
+  return compressed;
+}
+
+#ifdef TRAPEZE_HAS_BROTLI
+std::string brotli(std::string_view bytes, Effort effort) {
+  std::size_t size = BrotliEncoderMaxCompressedSize(bytes.size());
+  std::string compressed(size, '\0');
+  const int quality = effort == Effort::most ? BROTLI_MAX_QUALITY : 5;
+  if (BrotliEncoderCompress(quality, BROTLI_DEFAULT_WINDOW, BROTLI_MODE_TEXT, bytes.size(),
+                            reinterpret_cast<const std::uint8_t*>(bytes.data()), &size,
+                            reinterpret_cast<std::uint8_t*>(compressed.data())) == BROTLI_FALSE) {
+    throw std::bad_alloc();
+  }
+  compressed.resize(size);
+  return compressed;
+}
+#endif
+
+std::optional<std::string> compressed(std::string_view bytes, ContentEncoding encoding,
+                                      Effort effort) {
+  switch (encoding) {
+    case ContentEncoding::identity:
+      return std::nullopt;
+    case ContentEncoding::gzip:
+      return gzip(bytes, effort);
+    case ContentEncoding::brotli:
+#ifdef TRAPEZE_HAS_BROTLI
+      return brotli(bytes, effort);
+#else
+      return std::nullopt;
+#endif
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view name_of(ContentEncoding encoding) {
+  switch (encoding) {
+    case ContentEncoding::gzip:
+      return "gzip";
+    case ContentEncoding::brotli:
+      return "br";
+    case ContentEncoding::identity:
+      break;
+  }
+  return "identity";
+}
+
+std::span<const ContentEncoding> made_encodings() {
+  return kMade;
+}
+
+ContentEncoding best_encoding(std::string_view accept_encoding,
+                              std::span<const ContentEncoding> there) {
+  ContentEncoding best = ContentEncoding::identity;
+  double most = 0;
+  for (const ContentEncoding encoding : there) {
+    const double weight = weight_of(encoding, accept_encoding);
+    if (weight <= most) continue;
+    best = encoding;
+    most = weight;
+  }
+  return best;
+}
+
+bool is_worth_compressing(std::string_view content_type) {
+  const std::string_view type = take_until(';', content_type);
+  return type.starts_with("text/") || type.ends_with("json") || type.ends_with("xml") ||
+         type == "application/javascript";
+}
+
+std::optional<std::string> compress(std::string_view bytes, ContentEncoding encoding,
+                                    Effort effort) {
+  if (bytes.size() > std::numeric_limits<uInt>::max()) return std::nullopt;
+  auto smaller = compressed(bytes, encoding, effort);
+  if (smaller && smaller->size() >= bytes.size()) smaller.reset();
+  return smaller;
+}
+
+std::string encoded_tag(const std::string& entity_tag, ContentEncoding encoding) {
+  if (encoding == ContentEncoding::identity || !entity_tag.ends_with('"')) return entity_tag;
+  std::string tag = entity_tag;
+  tag.insert(tag.size() - 1, "-" + std::string(name_of(encoding)));
+  return tag;
+}
+
+}  // namespace trapeze
