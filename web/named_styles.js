@@ -12,18 +12,18 @@ export async function load_style_names(base) {
   return Array.isArray(told?.styles) ? told.styles.filter((name) => typeof name === "string") : [];
 }
 
-/** The document of a style; {} for no name, null if the server has none of that name. */
+/** The document of a style; {} for no name or no answer, null if the server has none of that name. */
 export async function load_style(base, name) {
   if (name === undefined) return {};
-  return ask(new URL(`styles/${encodeURIComponent(name)}`, base));
+  return ask(new URL(`styles/${encodeURIComponent(name)}`, base), {});
 }
 
-async function ask(url) {
+async function ask(url, otherwise = null) {
   try {
     const response = await fetch(url);
     return response.ok ? await response.json() : null;
   } catch {
-    return null;
+    return otherwise;
   }
 }
 

@@ -4,24 +4,29 @@
 
 import { attribution_nodes, link_to } from "./attribution.js";
 import { load_catalog } from "./catalog.js";
+import { CombinedTiles } from "./combined_tiles.js";
 import { Comparison } from "./comparison.js";
+import { Connection } from "./connection.js";
 import { DetailPanel, simplify_in_words } from "./detail_panel.js";
 import { choose } from "./elements.js";
 import { FeaturePanel, ask_features } from "./feature_panel.js";
 import { values_in_view, wrapped_longitude } from "./feature_samples.js";
 import { layer_row } from "./layer_panel.js";
 import { ask_legend, legend_section } from "./legend.js";
-import { MapLayer } from "./map_layer.js";
 import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
+import { Notices } from "./notices.js";
 import { format_hash, parse_hash } from "./place_hash.js";
+import { ProgressLine } from "./progress_line.js";
+import { SharePanel } from "./share_panel.js";
+import { shared_style } from "./share_style.js";
 import {
   divide_shared,
   has_fast_topology,
   parameters_of_layers,
   path_of_layers,
   query_part,
-  taken_by,
 } from "./tile_query.js";
+import { tile_requests } from "./tile_requests.js";
 import { watch_tiles } from "./tile_timing.js";
 
 const MAX_ZOOM = 22;
@@ -37,19 +42,11 @@ const $ = (id) => document.getElementById(id);
 
 // ---- what is said at the foot of the map
 
-function say(text) {
-  $("status").textContent = text;
-  $("status").hidden = text === "";
-}
+const notices = new Notices($("status"));
 
-const troubled_layers = new Set();
-
-function tell_trouble(name, is_missing_tiles) {
-  const before = troubled_layers.size;
-  if (is_missing_tiles) troubled_layers.add(name);
-  else troubled_layers.delete(name);
-  if (troubled_layers.size === before) return;
-  say(troubled_layers.size ? "Some tiles could not be loaded. Move the map to try again." : "");
+/** Said for a moment. */
+function mention(text) {
+  notices.say("message", text, { for_ms: MESSAGE_MS });
 }
 
 // ---- layers as the catalog gives them
@@ -57,6 +54,18 @@ function tell_trouble(name, is_missing_tiles) {
 /** Anything may stand in the catalog: only what has a name can be shown. */
 function usable_layers(catalog) {
   return catalog.layers.filter((layer) => typeof layer?.name === "string" && layer.name !== "");
+}
+
+function in_quotes(names) {
+  const some = names.slice(0, 3).map((name) => `"${name}"`).join(", ");
+  return names.length > 3 ? `${some} and ${names.length - 3} more` : some;
+}
+
+/** Why the server will not draw a tile, and what helps. */
+function refusal_in_words({ status, detail }) {
+  if (status === 404) return "Some tiles are not there any more. Load the page again.";
+  if (/drawing|draw/.test(detail)) return "There is too much to draw here. Zoom in, or simplify more.";
+  return `Some tiles cannot be drawn. ${detail}`;
 }
 
 /** Where all layers can be seen, or the world if they span most of it. */
@@ -157,7 +166,8 @@ function on_single_click(map, act) {
 
 /** Keeps panels, map and address the same, whichever of them changes. */
 class Viewer {
-  constructor(catalog) {
+  constructor(catalog, connection) {
+    this.connection_ = connection;
     this.layers_ = usable_layers(catalog);
     const view = parse_hash(location.hash);
     this.named_ = {};
@@ -180,18 +190,49 @@ class Viewer {
   make_map_layers_() {
     const simplified = make_pane(this.map_, "simplified");
     const full = make_pane(this.map_, "full");
-    const layers_in = (pane) => this.layers_.map((layer, i) =>
-      new MapLayer(this.map_, TILES, layer, {
-        z_index: i + 1,
-        pane,
-        on_trouble: (is_missing) => tell_trouble(`${layer.name} ${pane}`, is_missing),
-      }));
-    this.map_layers_ = layers_in("simplified");
-    this.compared_layers_ = layers_in("full");
+    const progress = new ProgressLine();
+    const tiles_in = (pane) => new CombinedTiles(this.map_, TILES, pane, {
+      failed: (url) => this.connection_.failed(url),
+      came: () => this.connection_.worked(),
+      refused_gone: () => this.tell_refused_(),
+      loading: (waiting) => progress.show(pane, waiting),
+    });
+    this.tiles_ = tiles_in("simplified");
+    this.compared_tiles_ = tiles_in("full");
     this.comparison_ = new Comparison(this.map_, simplified, full, (part) => {
       this.compare_ = part;
       this.write_address_();
     });
+  }
+
+  // ---- tiles that do not come
+
+  ask_again_(was_away) {
+    this.tiles_.retry();
+    this.compared_tiles_.retry();
+    if (was_away) this.tell_other_layers_();
+  }
+
+  /** A server that was away may have come back with other layers. */
+  async tell_other_layers_() {
+    const response = await fetch(new URL("catalog", BASE)).catch(() => null);
+    const catalog = response?.ok ? await response.json().catch(() => null) : null;
+    if (!Array.isArray(catalog?.layers)) return;
+    const names = usable_layers(catalog).map(({ name }) => name);
+    if (names.join() === this.layers_.map(({ name }) => name).join()) return;
+    notices.say("message", "The server has other layers now.",
+      { action: ["Load the page again", () => location.reload()] });
+  }
+
+  refuse_(url, problem) {
+    const panes = [this.tiles_, this.compared_tiles_];
+    if (panes.map((tiles) => tiles.give_way(url)).includes(false)) this.tell_refused_(problem);
+  }
+
+  tell_refused_(problem = null) {
+    const is_refused = this.tiles_?.has_refused() || this.compared_tiles_?.has_refused();
+    if (!is_refused) notices.say("refused", "");
+    else if (problem) notices.say("refused", refusal_in_words(problem));
   }
 
   make_panels_() {
@@ -213,6 +254,7 @@ class Viewer {
       close: () => this.close_features_(),
       title_of: (name) => this.title_of_(name),
     });
+    new SharePanel($("share-open"), new URL(".", BASE).href, () => this.what_is_shared_());
     on_single_click(this.map_, (place) => this.identify_(place));
     $("map").addEventListener("keydown", (event) => {
       if (event.target !== $("map")) return;
@@ -250,8 +292,16 @@ class Viewer {
     this.named_ = named;
     this.show_usual_();
     this.states_.forEach((_, i) => this.prove_style_(i));
+    this.tell_unknown_layers_(view);
     if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
     else this.features_.hide();
+  }
+
+  tell_unknown_layers_({ on, styles }) {
+    const known = new Set(this.layers_.map(({ name }) => name));
+    const unknown = [...new Set([...(on ?? []), ...styles.keys()])].filter((name) => !known.has(name));
+    if (unknown.length === 1) mention(`There is no layer "${unknown[0]}" here.`);
+    if (unknown.length > 1) mention(`There are no layers ${in_quotes(unknown)} here.`);
   }
 
   /** The panel, after what is usual may have changed. */
@@ -278,8 +328,7 @@ class Viewer {
   async load_named_style_(shared) {
     const named = await load_style(BASE, shared.get("style"));
     if (named) return named;
-    say(`There is no style "${shared.get("style")}".`);
-    setTimeout(() => say(""), MESSAGE_MS);
+    mention(`There is no style "${shared.get("style")}".`);
     shared.delete("style");
     return {};
   }
@@ -329,6 +378,9 @@ class Viewer {
     if (this.states_[i] !== state || state.style !== style) return;
     if (this.shared_.get("style") !== name) return;
     this.rows_[i].show_problem(problem);
+    if (problem && $("panel-body").hidden) {
+      mention(`${this.title_of_(this.layers_[i].name)}: ${problem.detail}`);
+    }
     if (!problem) Object.assign(state, { drawn: style, entries });
     else state.drawn ??= new Map();
     this.draw_();
@@ -338,15 +390,15 @@ class Viewer {
   draw_() {
     const is_apart = this.against_ === "apart";
     const compared = new Map([...this.shared_, is_apart ? ["topology", "fast"] : ["simplify", "0"]]);
-    let is_lowest = true;
-    this.states_.forEach(({ is_on, drawn }, i) => {
-      const is_shown = is_on && drawn !== null;
-      const query = (shared) => query_part([...drawn, ...taken_by(this.layers_[i], shared),
-        ...this.background_(is_lowest)]);
-      this.map_layers_[i].show(is_shown ? query(this.shared_) : null);
-      this.compared_layers_[i].show(is_shown && this.compare_ !== null ? query(compared) : null);
-      if (is_shown) is_lowest = false;
-    });
+    // What is not yet proved comes in a moment; the map waits for it, to ask once and for all.
+    const is_proved = this.states_.every(({ is_on, drawn }) => !is_on || drawn !== null);
+    if (is_proved) {
+      this.tiles_.show(this.tile_requests_(this.shared_));
+      this.compared_tiles_.show(this.compare_ === null ? [] : this.tile_requests_(compared));
+    }
+    this.tell_refused_();
+    const is_empty = this.layers_.length > 0 && this.states_.every(({ is_on }) => !is_on);
+    notices.say("empty", is_empty ? "All layers are off. Switch one on in the list." : "");
     const { pixels } = this.detail_;
     const words = simplify_in_words(pixels);
     this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`,
@@ -355,9 +407,13 @@ class Viewer {
     $("tile-url").value = this.tile_url_();
   }
 
-  /** That of a named style would hide what lies below: the lowest layer alone brings it along. */
-  background_(is_lowest) {
-    return this.named_.background && !is_lowest ? [["background", "0000"]] : [];
+  tile_requests_(shared) {
+    return tile_requests(this.drawn_layers_(), {
+      layers: this.layers_,
+      shared,
+      has_background: Boolean(this.named_.background),
+      folder: new URL(TILES).pathname,
+    });
   }
 
   show_legend_() {
@@ -382,6 +438,28 @@ class Viewer {
     const { styled, shared } = divide_shared(layers, this.layers_, this.shared_);
     const query = query_part(parameters_of_layers(styled, shared));
     return `${TILES}${path_of_layers(layers)}/{z}/{x}/{y}.png${query}`;
+  }
+
+  what_is_shared_() {
+    const drawn = this.drawn_layers_();
+    const layers = drawn.map(({ name }) => this.layers_.find((layer) => layer.name === name));
+    const zooms = (member, otherwise) =>
+      layers.map((layer) => (Number.isInteger(layer[member]) ? layer[member] : otherwise));
+    const { lat, lng } = this.map_.getCenter();
+    return {
+      names: drawn.map(({ name }) => name),
+      titles: layers.map(({ name }) => this.title_of_(name)),
+      attributions: layers.map(({ attribution }) => attribution).filter(Boolean),
+      style: shared_style(drawn, {
+        layers: this.layers_, shared: this.shared_, named: this.named_,
+      }),
+      place: {
+        lat: Number(lat.toFixed(5)), lon: Number(wrapped_longitude(lng).toFixed(5)),
+        zoom: this.map_.getZoom(),
+      },
+      min_zoom: Math.min(...zooms("minzoom", 0)),
+      max_zoom: Math.max(...zooms("maxzoom", MAX_ZOOM)),
+    };
   }
 
   // ---- features under a place
@@ -485,6 +563,14 @@ make_foldable($("panel-toggle"), $("panel-body"));
 make_foldable($("legend-toggle"), $("legend-body"));
 make_address_copyable();
 watch_tiles(TILES, (line) => ($("timing").textContent = line));
-const catalog = await load_catalog(new URL("catalog", BASE), say);
-if (usable_layers(catalog).length === 0) say("The server has no layers.");
-new Viewer(catalog);
+let viewer = null;
+const connection = new Connection(BASE, {
+  tell: (text, more) => notices.say("connection", text, more),
+  back: (was_away) => viewer?.ask_again_(was_away),
+  refused: (url, problem) => viewer?.refuse_(url, problem),
+});
+document.body.classList.add("is-starting");
+const catalog = await load_catalog(new URL("catalog", BASE), connection);
+document.body.classList.remove("is-starting");
+if (usable_layers(catalog).length === 0) notices.say("empty", "The server has no layers.");
+viewer = new Viewer(catalog, connection);

@@ -64,18 +64,25 @@ function on_screen({ lon, lat }) {
   };
 }
 
+/** The pixels of PNG files, each laid in its place on white, as the bytes of RGBA. */
+function pixels_of_pictures(page, size, pictures) {
+  return page.evaluate(async ([size, pictures]) => {
+    const context = new OffscreenCanvas(size, size).getContext("2d");
+    context.fillStyle = "white";
+    context.fillRect(0, 0, size, size);
+    for (const { base64, x, y } of pictures) {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      context.drawImage(await createImageBitmap(new Blob([bytes])), x, y);
+    }
+    return [...context.getImageData(0, 0, size, size).data];
+  }, [size, pictures]);
+}
+
 /** What stands on the screen, as the bytes of RGBA. */
-async function pixels_of_screen(page) {
+async function pixels_of_screen(page, scale = 1) {
   const picture = await page.screenshot();
-  const pixels = await page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    return [...context.getImageData(0, 0, bitmap.width, bitmap.height).data];
-  }, picture.toString("base64"));
-  assert.equal(pixels.length, 4 * SIZE * SIZE);
-  return pixels;
+  assert.equal(picture.readUInt32BE(16), SIZE * scale, "width of the picture");
+  return pixels_of_pictures(page, SIZE * scale, [{ base64: picture.toString("base64"), x: 0, y: 0 }]);
 }
 
 function is_colour(pixels, i, colour) {
@@ -116,7 +123,7 @@ function assert_map(pixels, lake) {
 const XYZ = [/\/tiles\/land,lake\/5\/16\/11\.png\?lake\.fill=ff0000/];
 const WMTS = [
   /\/wmts\?(?=.*layer=land&)(?=.*tilematrix=5&)(?=.*tilecol=16(&|$))(?=.*tilerow=11(&|$))/i,
-  /\/tiles\/lake\/s\/default\/5\/16\/11\.png$/,
+  /\/wmts\/lake\/default\/WebMercatorQuad\/5\/11\/16\.png$/,
 ];
 
 const CLIENTS = [
@@ -143,6 +150,66 @@ for (const [name, words, lake, middle_tiles] of CLIENTS) {
     for (const tile of middle_tiles) {
       assert.ok(seen.answers.some(({ url }) => tile.test(url)), `no ${tile} was asked for`);
     }
+    await page.context().close();
+  });
+}
+
+for (const [layer, place, colour] of [
+  ["land", { lon: 15, lat: 46 }, [0x40, 0x50, 0x60]],
+  ["lake", { lon: 3, lat: 41 }, [0x10, 0x20, 0x30]],
+]) {
+  test(`OpenLayers finds a style of WMTS by its name, for ${layer}`, async () => {
+    const { page, seen } = await new_page(browser, { viewport: { width: SIZE, height: SIZE } });
+    const query = new URLSearchParams({ server: server.base, layers: layer, style: "night" });
+    await page.goto(`http://127.0.0.1:${pages.address().port}/openlayers_wmts.html?${query}`);
+    await page.waitForFunction(() => window.is_drawn, null, { timeout: 60_000 });
+    await save_screenshot(page, `client-openlayers-style-${layer}`);
+    assert_colour_at(await pixels_of_screen(page), place, colour, layer);
+    const tiles = seen.answers.filter(({ url }) => /\/wmts[/?]/.test(url));
+    assert.ok(tiles.length > 0);
+    for (const { url, status } of tiles) {
+      assert.match(url, /\/night\/|style=night/i);
+      assert.equal(status, 200, url);
+    }
+    await page.context().close();
+  });
+}
+
+// Where four tiles of zoom 5 meet, so that pixels of tiles are pixels of the screen.
+const CORNER = { column: 17, row: 11 };
+const CORNER_PLACE = [
+  (CORNER.column / 2 ** ZOOM) * 360 - 180,
+  (Math.atan(Math.sinh(Math.PI * (1 - (2 * CORNER.row) / 2 ** ZOOM))) * 180) / Math.PI,
+];
+
+for (const [scale, suffix] of [[1, ""], [2, "@2x"]]) {
+  test(`MapLibre draws the tiles of a TileJSON${suffix} pixel by pixel where a pixel of CSS has ${scale}`, async () => {
+    const viewport = { width: SIZE, height: SIZE };
+    const { page, seen } = await new_page(browser, { viewport, deviceScaleFactor: scale });
+    const style = "style=night&lake.fill=ff0000";
+    const query = new URLSearchParams({
+      server: server.base, center: CORNER_PLACE.join(","), tilejson: `tiles/land,lake${suffix}.json?${style}`,
+    });
+    await page.goto(`http://127.0.0.1:${pages.address().port}/maplibre.html?${query}`);
+    await page.waitForFunction(() => window.is_drawn, null, { timeout: 60_000 });
+    await save_screenshot(page, `client-maplibre${suffix}-pixels`);
+    const tiles = [];
+    for (const [dx, dy] of [[0, 0], [1, 0], [0, 1], [1, 1]]) {
+      const tile = `5/${CORNER.column - 1 + dx}/${CORNER.row - 1 + dy}`;
+      const url = `${server.base}tiles/land,lake/s/night/${tile}${suffix}.png?lake.fill=ff0000ff`;
+      assert.ok(seen.answers.some((answer) => answer.url === url), `${url} was not asked for`);
+      const answer = await fetch(url);
+      const base64 = Buffer.from(await answer.arrayBuffer()).toString("base64");
+      tiles.push({ base64, x: dx * 256 * scale, y: dy * 256 * scale });
+    }
+    const expected = await pixels_of_pictures(page, SIZE * scale, tiles);
+    const shown = await pixels_of_screen(page, scale);
+    let differing = 0;
+    for (let i = 0; i < expected.length; i += 4) {
+      if (!is_colour(shown, i, expected.slice(i, i + 3))) differing++;
+    }
+    assert.ok(differing <= 0.0005 * expected.length / 4, `${differing} pixels differ`);
+    assert.deepEqual(seen.answers.filter(({ status }) => status >= 400), []);
     await page.context().close();
   });
 }

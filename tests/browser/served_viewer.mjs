@@ -98,25 +98,39 @@ async function start_server(more_config) {
   writeFileSync(config_file, config(web_root, more_config));
 
   const port = await free_port();
-  const child = spawn(binary, ["serve", "--config", config_file, "--port", String(port)], {
-    stdio: ["ignore", "pipe", "pipe"],
-  });
-  const server = { process: child, output: "", base: `http://127.0.0.1:${port}/` };
-  for (const stream of [child.stdout, child.stderr]) {
-    stream.on("data", (text) => (server.output += text));
-  }
-  child.on("error", (error) => (server.output += error.message));
-  const exited = new Promise((resolve) => child.on("exit", (code, signal) => resolve({ code, signal })));
+  const server = { output: "", base: `http://127.0.0.1:${port}/` };
+  let exited;
+  const launch = () => {
+    const child = spawn(binary, ["serve", "--config", config_file, "--port", String(port)], {
+      stdio: ["ignore", "pipe", "pipe"],
+    });
+    server.process = child;
+    for (const stream of [child.stdout, child.stderr]) {
+      stream.on("data", (text) => (server.output += text));
+    }
+    child.on("error", (error) => (server.output += error.message));
+    exited = new Promise((resolve) =>
+      child.on("exit", (code, signal) => resolve({ code, signal })));
+  };
+  server.stop = () => {
+    server.process.kill("SIGTERM");
+    return exited;
+  };
+  /** After stop(): the same once more, on the same port. */
+  server.start = async () => {
+    launch();
+    await wait_until_ready(server.base, server);
+  };
   server.close = async () => {
-    child.kill("SIGTERM");
-    const end = await exited;
+    const end = await server.stop();
     rmSync(folder, { recursive: true });
     return end;
   };
+  launch();
   try {
     await wait_until_ready(server.base, server);
   } catch (error) {
-    child.kill("SIGKILL");
+    server.process.kill("SIGKILL");
     throw error;
   }
   return server;
@@ -194,20 +208,34 @@ export function shown_tiles(page) {
     [...document.querySelectorAll("img.leaflet-tile")].map((tile) => tile.src).sort());
 }
 
-/** Those of one layer, or of several that are drawn together. */
+/** Those that show a layer, alone or together with others. */
 export function of_layer(tiles, name) {
-  return tiles.filter((url) => url.includes(`/tiles/${name}/`));
+  return tiles.filter((url) => layers_of(url).includes(name));
+}
+
+export function layers_of(tile_url) {
+  return /\/tiles\/([^/]+)\//.exec(tile_url)[1].split(",");
+}
+
+/** What a tile's address says of one of its layers: its own parameters, and those of all. */
+export function query_of(tile_url, name) {
+  const layers = layers_of(tile_url);
+  const parameters = [...new URL(tile_url).searchParams];
+  const of_others = (key) => layers.some((layer) => layer !== name && key.startsWith(`${layer}.`));
+  return Object.fromEntries(parameters.filter(([key]) => !of_others(key)).map(([key, value]) =>
+    [key.startsWith(`${name}.`) ? key.slice(name.length + 1) : key, value]));
 }
 
 export function hash_of(page) {
   return page.evaluate(() => location.hash);
 }
 
-/** How many pixels of the layer's tiles have this colour and are not transparent. */
+/** How many pixels of the tiles that show a layer have this colour and are not transparent. */
 export function pixels_of_colour(page, name, [r, g, b]) {
   return page.evaluate(([name, r, g, b]) => {
     let count = 0;
-    for (const tile of document.querySelectorAll(`img.leaflet-tile[src*="/tiles/${name}/"]`)) {
+    for (const tile of document.querySelectorAll("img.leaflet-tile")) {
+      if (!/\/tiles\/([^/]+)\//.exec(tile.src)[1].split(",").includes(name)) continue;
       const canvas = new OffscreenCanvas(tile.naturalWidth, tile.naturalHeight);
       const context = canvas.getContext("2d");
       context.drawImage(tile, 0, 0);

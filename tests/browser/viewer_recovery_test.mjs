@@ -1,0 +1,245 @@
+// What fails is told in a line, and comes by itself when it can: the server stops and starts again,
+// reads its layers, has too much to do, or will not draw.
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import {
+  DESKTOP, PHONE, new_page, of_layer, save_screenshot, shown_tiles, start_browser_and_server,
+  tiles_drawn,
+} from "./served_viewer.mjs";
+
+const FAILED_RESOURCE = /^Failed to load resource/; // said of every answer that is not 2xx
+
+const { browser, server } = await start_browser_and_server();
+
+async function open(hash, options = undefined) {
+  const { page, seen } = await new_page(browser, options);
+  await page.goto(server.base + hash);
+  await tiles_drawn(page);
+  return { page, seen, status: page.locator("#status") };
+}
+
+function pan(page) {
+  return page.evaluate(() => (location.hash = "#7/46.5/12"));
+}
+
+for (const [device, options] of [["desktop", DESKTOP], ["phone", PHONE]]) {
+  test(`${device}: a server that stops is told at once; back again, every tile comes by itself`,
+    async () => {
+      const { page, seen, status } = await open("#7/45.5/6.5", options);
+      await server.stop();
+      const stopped = Date.now();
+      await pan(page);
+      await status.getByText("The server cannot be reached.").waitFor({ timeout: 5000 });
+      assert.ok(Date.now() - stopped < 5000);
+      await status.getByText(/Trying again in \d+ s\./).waitFor();
+      await save_screenshot(page, `${device}-server-stopped`);
+      await page.waitForTimeout(2500);
+      const before = seen.requests.length;
+      await page.waitForTimeout(1000);
+      assert.ok(seen.requests.length - before <= 2, "the server is asked seldom");
+      const place = await page.evaluate(() => location.hash);
+      await server.start();
+      await tiles_drawn(page);
+      await status.waitFor({ state: "hidden" });
+      assert.equal(await page.evaluate(() => location.hash), place, "the map was not moved");
+      assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
+      await page.context().close();
+    });
+}
+
+test("pauses grow while the server is away, and end at once by hand, or when the network is back",
+  async () => {
+    const { page, seen, status } = await open("#7/45.5/6.5");
+    await server.stop();
+    try {
+      await pan(page);
+      const asked = () => seen.requests.filter((url) => url.endsWith("/ready")).length;
+      await page.waitForTimeout(9000);
+      const after_nine = asked(); // after 1, 3 and 7 s, or a little later
+      assert.ok(after_nine >= 2 && after_nine <= 4, `asked ${after_nine} times`);
+      await status.getByText(/Trying again in [4-9] s/).waitFor({ timeout: 10_000 });
+      const before_hand = asked();
+      await status.getByRole("button", { name: "Try now" }).click();
+      await page.waitForTimeout(300);
+      assert.equal(asked(), before_hand + 1);
+      await page.evaluate(() => window.dispatchEvent(new Event("online")));
+      await page.waitForTimeout(300);
+      assert.equal(asked(), before_hand + 2);
+    } finally {
+      await server.start();
+    }
+    await status.getByRole("button", { name: "Try now" }).click();
+    await tiles_drawn(page);
+    await status.waitFor({ state: "hidden" });
+    await page.context().close();
+  });
+
+test("a server that comes back with other layers says so, and the page can be loaded again", async () => {
+  const { page, status } = await open("#7/45.5/6.5");
+  await server.stop();
+  try {
+    await pan(page);
+    await status.getByText("The server cannot be reached.").waitFor();
+    await page.route("**/catalog", (route) => route.fulfill({ json: { layers: [{ name: "lake" }] } }));
+  } finally {
+    await server.start();
+  }
+  const again = status.getByRole("button", { name: "Load the page again" });
+  await again.waitFor({ timeout: 20_000 });
+  await save_screenshot(page, "desktop-other-layers");
+  await again.click();
+  await page.waitForFunction(() => document.querySelectorAll("#layers > li").length === 1);
+  await page.context().close();
+});
+
+test("a style that changes while the server is away is drawn when it is back", async () => {
+  const { page, status } = await open("#5/46/10");
+  await server.stop();
+  try {
+    await page.evaluate(() => (location.hash = "#5/46/10&lake.fill=ff0000"));
+    await status.getByText("The server cannot be reached.").waitFor();
+  } finally {
+    await server.start();
+  }
+  await page.waitForFunction(() => {
+    const tiles = [...document.querySelectorAll("img.leaflet-tile")];
+    return tiles.length && tiles.every(({ src, naturalWidth }) =>
+      src.includes("lake.fill=ff0000") && naturalWidth > 0);
+  }, null, { timeout: 30_000 });
+  await status.waitFor({ state: "hidden" });
+  await page.context().close();
+});
+
+for (const [device, options] of [["desktop", DESKTOP], ["phone", PHONE]]) {
+  test(`${device}: while layers are read the page says which and how far, and starts by itself`,
+    async () => {
+      const { page } = await new_page(browser, options);
+      const told = [
+        [{ name: "land", percent: 41.7 }, { name: "lake", percent: 0 }],
+        [{ name: "land", percent: 100 }, { name: "lake", percent: 63 }],
+      ];
+      let is_ready = false;
+      await page.route("**/catalog", (route) =>
+        (is_ready ? route.continue() : route.fulfill({ status: 503, headers: { "Retry-After": "1" } })));
+      await page.route("**/ready", (route) => {
+        const layers = told.length > 1 ? told.shift() : told[0];
+        return is_ready ? route.continue()
+          : route.fulfill({ status: 503, json: { status: "loading", layers } });
+      });
+      await page.goto(server.base);
+      const status = page.locator("#status");
+      await status.getByText("The server is still reading its layers.").waitFor();
+      await status.getByText("land 41 %, lake 0 %").waitFor({ state: "attached" });
+      assert.deepEqual(await status.locator(".bar").allInnerTexts(), ["land\n41 %", "lake\n0 %"]);
+      await save_screenshot(page, `${device}-loading`);
+      await status.getByText("lake 63 %").waitFor({ state: "attached" });
+      assert.deepEqual(await status.locator(".bar").allInnerTexts(), ["lake\n63 %"]);
+      is_ready = true;
+      await tiles_drawn(page);
+      await status.waitFor({ state: "hidden" });
+      await page.context().close();
+    });
+}
+
+test("tiles refused for a while (429) are told and come later, not sooner than was asked", async () => {
+  const { page, seen, status } = await open("#5/46/10");
+  let is_refusing = true;
+  await page.route("**/tiles/**", (route) => (is_refusing
+    ? route.fulfill({ status: 429, headers: { "Retry-After": "2" }, json: { detail: "Ask again." } })
+    : route.continue()));
+  await pan(page);
+  await status.getByText("You ask for more than the server gives at once.").waitFor();
+  await save_screenshot(page, "desktop-429");
+  is_refusing = false;
+  await tiles_drawn(page);
+  await status.waitFor({ state: "hidden" });
+  assert.deepEqual(seen.errors.filter((text) => !FAILED_RESOURCE.test(text)), []);
+  await page.context().close();
+});
+
+const TOO_DEAR = { detail: "This tile takes more drawing than the 5 units that one may take here." };
+
+test("tiles too dear for all layers at once are drawn layer by layer", async () => {
+  const { page } = await new_page(browser);
+  await page.route("**/tiles/land,lake/**", (route) =>
+    route.fulfill({ status: 400, json: TOO_DEAR }));
+  await page.goto(`${server.base}#5/46/10&style=night`);
+  await page.waitForFunction(() => document.querySelector('img[src*="/tiles/lake/"]'));
+  await tiles_drawn(page);
+  const tiles = await shown_tiles(page);
+  assert.equal(of_layer(tiles, "land").length, of_layer(tiles, "lake").length);
+  assert.ok(of_layer(tiles, "lake").every((url) => url.includes("background=0000")));
+  assert.ok(of_layer(tiles, "land").every((url) => !url.includes("background")));
+  assert.equal(await page.locator("#status").isVisible(), false);
+  await page.context().close();
+});
+
+test("a tile too dear by itself is told in a line until it is out of sight, and not asked for again",
+  async () => {
+    const { page, seen } = await new_page(browser);
+    await page.route("**/tiles/**/5/**", (route) => route.fulfill({ status: 400, json: TOO_DEAR }));
+    await page.goto(`${server.base}#5/46/10&on=land`);
+    const status = page.locator("#status");
+    await status.getByText("There is too much to draw here. Zoom in, or simplify more.").waitFor();
+    await save_screenshot(page, "desktop-too-dear");
+    await page.waitForTimeout(3000);
+    const before = seen.requests.length;
+    await page.waitForTimeout(2000);
+    assert.equal(seen.requests.length, before);
+    await page.evaluate(() => (location.hash = "#7/46/10&on=land"));
+    await tiles_drawn(page);
+    await status.waitFor({ state: "hidden" });
+    await page.context().close();
+  });
+
+test("all layers off, and layers that are not there, are said in a line", async () => {
+  const { page, status } = await open("#5/46/10&on=lake,nowhere");
+  await status.getByText('There is no layer "nowhere" here.').waitFor();
+  await save_screenshot(page, "desktop-unknown-layer");
+  await page.evaluate(() => (location.hash = "#5/46/10&on="));
+  await status.getByText("All layers are off. Switch one on in the list.").waitFor({ timeout: 10_000 });
+  await save_screenshot(page, "desktop-all-off");
+  await page.evaluate(() => (location.hash = "#5/46/10"));
+  await tiles_drawn(page);
+  await status.waitFor({ state: "hidden" });
+  await page.context().close();
+});
+
+test("a wrong filter in the address is told on a phone, whose panel is folded", async () => {
+  const { page, status } = await open("#5/46/10&land.filter=nobody%20%3D%201", PHONE);
+  await status.getByText("Land:").waitFor();
+  await save_screenshot(page, "phone-wrong-filter");
+  assert.ok((await shown_tiles(page)).every((url) => !url.includes("filter")));
+  await page.context().close();
+});
+
+test("a line at the top shows that tiles are on their way, and goes when they are there", async () => {
+  const { page } = await new_page(browser);
+  let let_go;
+  const held = new Promise((resolve) => (let_go = resolve));
+  let count = 0;
+  await page.route("**/tiles/**", async (route) => {
+    if (count++ > 3) await held;
+    await route.continue();
+  });
+  await page.goto(`${server.base}#5/46/10`);
+  await page.locator(".progress.shown").waitFor();
+  await page.waitForTimeout(400);
+  const width = () => page.locator(".progress").evaluate((line) => line.getBoundingClientRect().width);
+  assert.ok((await width()) > 100 && (await width()) < 1200);
+  await save_screenshot(page, "desktop-progress");
+  let_go();
+  await tiles_drawn(page);
+  await page.waitForFunction(() => !document.querySelector(".progress.shown"));
+  await page.context().close();
+});
+
+test("one request a tile draws all layers that are on, dense where the screen is", async () => {
+  const { page, seen } = await open("#5/46/10", PHONE);
+  const tiles = seen.requests.filter((url) => url.includes("/tiles/"));
+  assert.ok(tiles.length > 0);
+  assert.ok(tiles.every((url) => /\/tiles\/land,lake\/5\/\d+\/\d+@2x\.png$/.test(url)), tiles.join(" "));
+  assert.equal(new Set(tiles).size, tiles.length);
+  await page.context().close();
+});

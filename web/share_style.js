@@ -1,0 +1,60 @@
+// The style that is on the screen under a short address: its name, or the id under which the server
+// keeps it.
+
+import { over } from "./named_styles.js";
+import { divide_shared } from "./tile_query.js";
+
+// What was clicked is not part of a map that goes elsewhere.
+const SELECTION = ["highlight", "highlight-fill", "highlight-stroke"];
+
+/**
+ * @param drawn {name, style}, the lowest first
+ * @param settings {layers: of the catalog; shared: parameters of all layers; named: document of the
+ *   named style among them, else {}}
+ * @returns {name: of a style, or undefined; document: for POST /styles where something was changed by
+ *   hand, else null; styled, shared: the same as parameters of a request}
+ */
+export function shared_style(drawn, { layers, shared, named }) {
+  const plain = drawn.map(({ name, style }) => ({ name, style: without(style, SELECTION) }));
+  const name = shared.get("style");
+  const parts = divide_shared(plain, layers, shared);
+  const rest = without(new Map(parts.shared), ["style"]);
+  const is_changed = rest.size > 0 || parts.styled.some(({ style }) => new Map(style).size > 0);
+  return { name, document: is_changed ? document_of(parts.styled, rest, named) : null, ...parts };
+}
+
+/** `named` with what was changed over it. */
+function document_of(styled, shared, named) {
+  const { layers: of_layers = {}, ...of_all } = named;
+  const layers = {};
+  for (const [name, style] of Object.entries(of_layers)) {
+    layers[name] = Object.fromEntries(without(new Map(Object.entries(style)), [...shared.keys()]));
+  }
+  for (const { name, style } of styled) {
+    const own = over(new Map(Object.entries(layers[name] ?? {})), new Map(style));
+    if (own.size) layers[name] = Object.fromEntries(own);
+  }
+  return { ...of_all, ...Object.fromEntries(shared), layers };
+}
+
+function without(parameters, names) {
+  return new Map([...parameters].filter(([name]) => !names.includes(name)));
+}
+
+/** The id under which the server keeps `document`; throws an Error with words for people. */
+export async function keep_style(base, document) {
+  let response;
+  try {
+    response = await fetch(new URL("styles", base), {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(document),
+    });
+  } catch {
+    throw new Error("The server cannot be reached.");
+  }
+  const told = await response.json().catch(() => null);
+  if (response.ok && typeof told?.id === "string") return told.id;
+  throw new Error(typeof told?.detail === "string" ? told.detail
+    : `The server answered with status ${response.status}.`);
+}
