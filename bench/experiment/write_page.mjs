@@ -164,7 +164,7 @@ function growthSection() {
   const generalizeLarge = large.length > 1 ? slope(large.map(p => [p.vertices, p.generalize_ms])) : NaN
   return `## Growth
 
-One polygon, a coast with bays of all sizes (\`wiggly_star\` in [polygon_families.h](polygon_families.h)). Milliseconds.
+One polygon, a coast with bays of all sizes (\`wiggly_star\` in [polygon_families.h](core/polygon_families.h)). Milliseconds.
 *Generalization* makes all removals down to the last triangle, *undo* takes all of them back; *load*
 is everything from rings to a layer with all versions; *one view* selects and draws the whole polygon
 on 1600 x 1200 pixels.
