@@ -17,14 +17,16 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
-/// How often a trapezoid is cut at most by those that lie over it, on average. The features are
-/// those of the layer with the test of topology: the one without has no table of them.
-std::uint64_t cuts_of_trapezoid(const TilePlan& plan, const LayerPaint& paint) {
+/// Of that many trapezoids, by those that lie over them. The features are those of the layer with
+/// the test of topology: the one without has no table of them.
+std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
+                           const LayerPaint& paint) {
   const OverlapTable& overlaps = plan.layer_of(paint).overlaps();
   const std::size_t pairs =
       (is_plain(paint.style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
   if (pairs == 0) return 0;
-  return 1 + pairs / plan.dataset->layers()[paint.layer].layer->features().size();
+  const std::size_t features = plan.dataset->layers()[paint.layer].layer->features().size();
+  return trapezoids + trapezoids * pairs / features;
 }
 
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
@@ -36,7 +38,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t shapes = trapezoids + grains;
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
-  cost += trapezoids * cuts_of_trapezoid(plan, paint);
+  cost += cost_of_cuts(trapezoids, plan, paint);
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);

@@ -72,8 +72,10 @@ void remove_for_sure(const std::string& path) {
 
 }  // namespace
 
-Unfinished::Unfinished(std::string path) : path_(std::move(path)) {
+// Under the lock, so that no folder is made that remove_unfinished() does not know of.
+Unfinished::Unfinished(std::string path, Kind kind) : path_(std::move(path)) {
   const std::lock_guard lock(all_unfinished().mutex);
+  if (kind == Kind::folder) fs::create_directory(path_);
   all_unfinished().paths.insert(path_);
 }
 
@@ -85,15 +87,14 @@ Unfinished::~Unfinished() {
 }
 
 Unfinished Unfinished::file_beside(const std::string& output) {
-  return Unfinished(name_for_this_process(output + ".tmp."));
+  return Unfinished(name_for_this_process(output + ".tmp."), Kind::file);
 }
 
 Unfinished Unfinished::folder_beside(const std::string& output) {
   const fs::path path(output);
   const fs::path prefix = path.parent_path() / ("." + path.filename().string() + ".tmp.");
   const std::string folder = name_for_this_process(prefix);
-  fs::create_directory(folder);
-  return Unfinished(folder);
+  return Unfinished(folder, Kind::folder);
 }
 
 void Unfinished::give_name(const std::string& from, const std::string& to, std::error_code& error) {

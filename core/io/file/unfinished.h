@@ -28,7 +28,8 @@ class Unfinished {
   static void give_name(const std::string& from, const std::string& to, std::error_code& error);
 
  private:
-  explicit Unfinished(std::string path);
+  enum class Kind { file, folder };
+  Unfinished(std::string path, Kind kind);
 
   const std::string path_;
 };

@@ -193,7 +193,7 @@ TEST_F(HttpServerTest, AClientThatAsksMaySendItsBody) {
   client.send(style);
   EXPECT_EQ(client.receive().status, 201);
   // Too much is refused before it is sent.
-  client.send(header + "100000\r\n\r\n");
+  client.send(header + "2000000\r\n\r\n");
   EXPECT_EQ(client.receive().status, 413);
 }
 
@@ -218,13 +218,12 @@ TEST_F(HttpServerTest, RefusesWhatIsTooLongAndSaysSo) {
   }
   {
     RawClient client(port());
-    client.send("POST /health HTTP/1.1\r\nHost: a\r\nContent-Length: 100000\r\n\r\n" +
-                std::string(100000, 'x'));
+    client.send("POST /health HTTP/1.1\r\nHost: a\r\nContent-Length: 2000000\r\n\r\n");
     EXPECT_EQ(client.receive().status, 413);
   }
   RawClient client(port());
-  client.send("POST /health HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\nffff\r\n" +
-              std::string(0xffff, 'x') + "\r\n");
+  client.send("POST /health HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n1fffff\r\n" +
+              std::string(0x1fffff, 'x') + "\r\n");
   EXPECT_EQ(client.receive().status, 413);
 }
 
