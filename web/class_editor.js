@@ -1,31 +1,47 @@
 // Colours by attribute: the property, and a list of values with colours, or breaks with a ramp.
 
-import { CLASS_COLOURS, COLOUR_OF_OTHERS, rgb_of } from "./colours.js";
+import { WAYS } from "./class_breaks.js";
 import { format_classes, parse_classes } from "./class_list.js";
+import { CLASS_COLOURS, COLOUR_OF_OTHERS, rgb_of } from "./colours.js";
 import { button, choose, element, input, mark_wrong, select } from "./elements.js";
 
-// Those of ColorBrewer that lead from one end to another, and so have a colour for any count.
-const RAMPS = ["YlGnBu", "YlOrRd", "Blues", "Greens", "Oranges", "Purples", "Reds", "Greys", "BuGn",
-  "BuPu", "GnBu", "OrRd", "PuBu", "PuBuGn", "PuRd", "RdPu", "YlGn", "YlOrBr", "BrBG", "PiYG", "PRGn",
-  "PuOr", "RdBu", "RdGy", "RdYlBu", "RdYlGn", "Spectral"];
+// Those of ColorBrewer that lead from one end to another, and so have a colour for any count. All but
+// the last ones can be read by people who take red for green.
+const RAMPS = [
+  ["Light to dark", ["YlGnBu", "YlOrRd", "Blues", "Greens", "Oranges", "Purples", "Reds", "Greys",
+    "BuGn", "BuPu", "GnBu", "OrRd", "PuBu", "PuBuGn", "PuRd", "RdPu", "YlGn", "YlOrBr"]],
+  ["To both sides of a middle", ["BrBG", "PiYG", "PRGn", "PuOr", "RdBu", "RdYlBu"]],
+  ["Hard to tell for some eyes", ["RdGy", "RdYlGn", "Spectral"]],
+];
 const BY_VALUE = "values";
 const BY_RANGE = "ranges";
+const WAYS_IN_WORDS = [["quantiles", "quantiles"], ["equal", "equal steps"],
+  ["natural", "natural breaks"]];
+const COUNTS = [3, 4, 5, 6, 7, 8, 9];
+const USUAL_COUNT = 5;
+const FROM = [["view", "what is in view"], ["all", "all of the layer"]];
 
 export class ClassEditor {
   /**
    * @param fields of the layer: {name, type: "string"|"integer"|"number"}
-   * @param suggest async, of a field's name: values that stand in the view, the commonest first
+   * @param suggest async, of a field's name, and whether all of the layer is asked for and not only what
+   *   is in view: {values, quantiles} as ask_values() has them
    */
   constructor(fields, suggest, on_change) {
     this.fields_ = fields;
     this.suggest_ = suggest;
     this.on_change_ = on_change;
     this.classes_ = [];
-    this.property_ = select([["", "one colour"], ...fields.map(({ name }) => [name, name])]);
+    this.is_open_ = false;
+    this.property_ = select([["", "One colour"], ...fields.map(({ name }) => [name, name])]);
     this.way_ = select([[BY_RANGE, "by range"], [BY_VALUE, "by value"]],
       { "aria-label": "Classes by" });
     this.breaks_ = input("text", { placeholder: "10, 100, 1000", inputmode: "decimal" });
-    this.ramp_ = select(RAMPS.map((name) => [name, name]));
+    this.ramp_ = ramp_list();
+    this.part_by_ = select(WAYS_IN_WORDS);
+    this.count_ = select(COUNTS.map((count) => [String(count), String(count)]));
+    this.count_.value = String(USUAL_COUNT);
+    this.from_ = select(FROM);
     this.rows_ = element("ul", "classes");
     this.hint_ = element("p", "hint");
     this.hint_.setAttribute("role", "status");
@@ -51,10 +67,17 @@ export class ClassEditor {
   show(style) {
     choose(this.property_, style.get("color-by") ?? "");
     this.breaks_.value = style.get("breaks") ?? "";
-    choose(this.ramp_, style.get("ramp") ?? RAMPS[0]);
+    choose(this.ramp_, style.get("ramp") ?? this.ramp_.options[0].value);
     this.classes_ = parse_classes(style.get("classes") ?? "") ?? [];
     this.way_.value = style.has("classes") ? BY_VALUE : BY_RANGE;
     this.show_parts_();
+    this.show_rows_();
+  }
+
+  /** From now on it can be seen: before, hundreds of rows would be made in vain. */
+  open() {
+    if (this.is_open_) return;
+    this.is_open_ = true;
     this.show_rows_();
   }
 
@@ -75,13 +98,15 @@ export class ClassEditor {
 
   make_node_() {
     this.by_range_ = element("div", "part",
+      element("label", "row", "Part by", this.part_by_),
+      element("label", "row", "Classes", this.count_),
       element("label", "row tall", "Breaks", this.breaks_),
       element("label", "row", "Ramp", this.ramp_));
     this.add_ = button("Add a class");
     this.by_value_ = element("div", "part", this.rows_, this.add_);
-    this.suggest_button_ = button("Take them from the view");
+    this.suggest_button_ = button("Suggest from map");
     this.body_ = element("div", "part", this.way_, this.by_range_, this.by_value_,
-      this.suggest_button_, this.hint_);
+      element("label", "row", "From", this.from_), this.suggest_button_, this.hint_);
     return element("div", "", element("label", "row", "Colour by", this.property_), this.body_);
   }
 
@@ -93,7 +118,10 @@ export class ClassEditor {
     });
     this.breaks_.addEventListener("change", () => this.on_change_());
     this.ramp_.addEventListener("change", () => this.on_change_());
-    this.suggest_button_.addEventListener("click", () => this.take_from_view_());
+    for (const control of [this.part_by_, this.count_, this.from_]) {
+      control.addEventListener("change", () => this.suggest_classes_());
+    }
+    this.suggest_button_.addEventListener("click", () => this.suggest_classes_());
     this.add_.addEventListener("click", () => {
       const colour = CLASS_COLOURS[this.classes_.length % CLASS_COLOURS.length];
       this.classes_.push({ kind: "value", value: "", colour });
@@ -109,20 +137,25 @@ export class ClassEditor {
     this.show_parts_();
     this.show_rows_();
     if (this.property_.value === "") this.on_change_();
-    else this.take_from_view_();
+    else this.suggest_classes_();
   }
 
-  async take_from_view_() {
+  async suggest_classes_() {
     const property = this.property_.value;
     this.hint_.textContent = "Looking…";
-    const values = await this.suggest_(property);
+    const { values, quantiles } = await this.suggest_(property, this.from_.value === "all");
     if (this.property_.value !== property) return;
-    this.hint_.textContent = values.length ? "" : "There are no values in the view.";
+    this.hint_.textContent = values.length ? "" : "There are no values in view.";
     if (values.length === 0) return this.on_change_();
-    if (this.is_by_range_()) this.breaks_.value = quantiles(values.map(Number)).join(", ");
-    else this.classes_ = classes_of(values);
+    if (this.is_by_range_()) this.breaks_.value = this.breaks_of_(quantiles).join(", ");
+    else this.classes_ = classes_of(values.map(({ value }) => value));
     this.show_rows_();
     this.on_change_();
+  }
+
+  breaks_of_(quantiles) {
+    const breaks = WAYS[this.part_by_.value](quantiles, Number(this.count_.value));
+    return breaks.length ? breaks : quantiles.slice(0, 1); // all are equal
   }
 
   show_parts_() {
@@ -134,6 +167,7 @@ export class ClassEditor {
   }
 
   show_rows_() {
+    if (!this.is_open_) return;
     this.rows_.replaceChildren(...this.classes_.map((wanted, i) => this.row_of_(wanted, i)));
   }
 
@@ -169,10 +203,12 @@ function classes_of(values) {
   return [...classes, { kind: "others", value: "", colour: COLOUR_OF_OTHERS }];
 }
 
-/** Up to four numbers that part the values into groups of like size, each with few digits. */
-function quantiles(values) {
-  const sorted = [...values].sort((a, b) => a - b);
-  const breaks = [0.2, 0.4, 0.6, 0.8].map((part) =>
-    Number(sorted[Math.floor(part * sorted.length)].toPrecision(2)));
-  return [...new Set(breaks)].sort((a, b) => a - b);
+function ramp_list() {
+  const list = select([]);
+  for (const [label, names] of RAMPS) {
+    const group = element("optgroup", "", ...names.map((name) => new Option(name, name)));
+    group.label = label;
+    list.append(group);
+  }
+  return list;
 }

@@ -18,7 +18,8 @@ export class Comparison {
     this.left_label_ = element("span", "left");
     this.right_label_ = element("span", "right");
     this.line_ = element("div", "divider", this.left_label_, this.right_label_);
-    this.node_ = element("div", "comparison", this.line_, this.slider_);
+    this.node_ = element("section", "comparison", this.line_, this.slider_);
+    this.node_.setAttribute("aria-label", "Comparison");
     map.getContainer().after(this.node_);
     this.slider_.addEventListener("input", () => this.clip_());
     this.slider_.addEventListener("change", () => on_change(Number(this.slider_.value)));

@@ -3,7 +3,7 @@
 import { choose, element, input, select } from "./elements.js";
 
 const BUILTIN = [["simplify", "0.25"], ["topology", "strict"], ["small", "dust"], ["debug", ""]];
-const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
+export const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const SMALL = [["dust", "as a tint"], ["keep", "a pixel large"], ["drop", "left out"]];
 const COMPARISONS = [["full", "Compare with every vertex"],
   ["apart", "Compare with polygons apart"]];
@@ -46,7 +46,7 @@ export class DetailPanel {
       ...COMPARISONS.filter(([value]) => has_apart || value !== "apart").map(([, text], i) =>
         element("label", "check", this.comparisons_[i], text)),
       ...(has_fast ? [element("label", "check", this.strict_, "Borders never cross")] : []),
-      element("label", "row", "Too small", this.small_),
+      element("label", "row", "Tiny shapes", this.small_),
       ...DEBUG.map(([, text], i) => element("label", "check", this.debug_[i], text)));
   }
 

@@ -46,6 +46,7 @@ export class FeaturePanel {
   /** `features` of an answer, `chosen` one of them. */
   show(features, chosen) {
     const title = element("h2", "", this.name_of_(chosen));
+    if (chosen.title) title.append(element("span", "of", this.act_.title_of(chosen.layer)));
     const parts = [this.attributes_of_(chosen)];
     if (features.length > 1) parts.unshift(this.list_of_(features, chosen));
     const go = button("Go to it");
@@ -55,7 +56,7 @@ export class FeaturePanel {
   }
 
   focus() {
-    this.node_.querySelector("button")?.focus();
+    this.node_.querySelector("header button")?.focus();
   }
 
   fill_(title, parts) {
@@ -66,13 +67,14 @@ export class FeaturePanel {
   }
 
   name_of_(feature) {
-    return `${this.act_.title_of(feature.layer)} ${feature.id}`;
+    return String(feature.title || `${this.act_.title_of(feature.layer)} ${feature.id}`);
   }
 
   list_of_(features, chosen) {
     const items = features.map((feature) => {
       const choose = button(this.name_of_(feature),
         { "aria-pressed": String(feature === chosen) });
+      if (feature.title) choose.append(element("span", "of", this.act_.title_of(feature.layer)));
       choose.addEventListener("click", () => this.act_.choose(feature));
       return element("li", "", choose);
     });
@@ -81,8 +83,14 @@ export class FeaturePanel {
 
   attributes_of_(feature) {
     const rows = Object.entries(feature.properties ?? {}).flatMap(([name, value]) =>
-      [element("dt", "", name), element("dd", "", value === null ? "–" : String(value))]);
+      [element("dt", "", name), element("dd", "", in_words(value))]);
     if (rows.length === 0) return element("p", "hint", "It has no attributes.");
     return element("dl", "", ...rows);
   }
+}
+
+function in_words(value) {
+  if (value === null) return "–";
+  return typeof value === "number" && !Number.isInteger(value)
+    ? String(Number(value.toPrecision(7))) : String(value);
 }

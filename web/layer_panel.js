@@ -1,32 +1,55 @@
-// The list of layers: on or off, colour, and all that makes the style of each.
+// One row of the list of layers: on or off, colour, and all that makes the style.
 
-import { element, input } from "./elements.js";
+import { button, element, input } from "./elements.js";
+import { over } from "./named_styles.js";
 import { StyleForm } from "./style_form.js";
 
 /**
- * One row of the list for `layer`. `on_change` is called with {is_on, style} whenever the user
- * changes something; see StyleForm for the rest. Returns the element, and functions that show
- * another such state, with the `usual` style, and what the server finds wrong with the style.
+ * The row of `layer`. `on` is {change({is_on, style}), called whenever the user changes something;
+ * zoom_to()}; see StyleForm for the rest. Returns the element, its handle, the box that switches it on,
+ * and functions that show another such state, with the `usual` style, and what the server finds wrong
+ * with the style.
  */
-export function layer_row(layer, builtin_fill, suggest, on_change) {
+export function layer_row(layer, builtin_fill, suggest, on) {
   const title = String(layer.title || layer.name);
-  const is_on = input("checkbox");
-  const change = () => on_change({ is_on: is_on.checked, style: form.read() });
+  const box = input("checkbox");
+  // Features with colours by class have none in common.
+  let usual = new Map();
+  const show_colour = (style) => (colour.hidden = over(usual, style).has("color-by"));
+  const change = () => {
+    const style = form.read();
+    show_colour(style);
+    on.change({ is_on: box.checked, style });
+  };
   const form = new StyleForm({ ...layer, title }, builtin_fill, suggest, change);
-  is_on.addEventListener("change", change);
+  box.addEventListener("change", change);
 
+  const handle = button("", { class: "handle", "aria-label": `Move ${title}` });
+  const zoom = button("", { class: "zoom-to", "aria-label": `Zoom to ${title}`, title: "Zoom to it" });
+  zoom.addEventListener("click", on.zoom_to);
   const colour = form.fill.node.querySelector("input");
-  const summary = element("summary", "", "Style");
+  const summary = element("summary", "");
   summary.setAttribute("aria-label", `Style of ${title}`);
-  const details = element("details", "", summary, form.node);
-  const row = element("li", "",
-    element("label", "name", is_on, element("span", "", title)), colour, details);
+  summary.title = "Style";
+  const description = element("p", "hint", String(layer.description ?? ""));
+  const details = element("details", "", summary, description, form.node);
+  const row = element("li", "layer",
+    handle, element("label", "name", box, element("span", "", title)), zoom, colour, details);
   row.title = String(layer.description ?? "");
+  details.addEventListener("toggle", () => {
+    if (!details.open) return;
+    form.open();
+    if (details.getBoundingClientRect().bottom > row.parentElement.getBoundingClientRect().bottom) {
+      row.scrollIntoView({ block: "start" });
+    }
+  });
   return {
-    row,
+    row, handle, box, title,
     show: (state) => {
-      is_on.checked = state.is_on;
+      box.checked = state.is_on;
+      usual = state.usual;
       form.show(state.style, state.usual);
+      show_colour(state.style);
     },
     show_problem: (problem) => {
       form.show_problem(problem);

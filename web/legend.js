@@ -15,6 +15,9 @@ const PATTERNS = {
     "transparent 0) 0 0 / 8px 8px"],
 };
 
+const MOST_NAMED = 3; // in one row
+const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity"];
+
 /**
  * Asks for the legend of one layer in a style, which is also how a style is proved before tiles are
  * asked for. @returns {entries} or {problem: {detail, parameter}}; neither if there is no answer.
@@ -38,15 +41,45 @@ export async function ask_legend(base, name, style) {
   return {};
 }
 
-/** One layer of the legend: `entries` of the server, `style` for what they do not tell. */
-export function legend_section(title, entries, style) {
-  const items = entries.map((entry) => {
-    const label = entries.length > 1 ? entry.label : title;
-    return element("li", "", patch_of(entry, style), element("span", "", String(label)));
+/**
+ * One layer of the legend: `entries` of the server, those that look alike together; `style` for what
+ * they do not tell.
+ * @param layer {title, and title_attribute, where each value stands for one feature}
+ */
+export function legend_section({ title, title_attribute }, entries, style) {
+  if (entries.length <= 1) {
+    return element("ul", "", ...entries.map((entry) => row_of(entry, title, style)));
+  }
+  const are_names = title_attribute !== undefined && style.get("color-by") === title_attribute;
+  const noun = are_names ? title.toLowerCase() : "values";
+  const rows = alike(entries).map((group) => {
+    const names = group.map(({ label }) => String(label));
+    if (names.length <= MOST_NAMED) return row_of(group[0], names.join(", "), style);
+    return row_of(group[0], folded(`${names.length} ${noun}`, names.join(", ")), style);
   });
-  const list = element("ul", "", ...items);
-  if (entries.length <= 1) return list;
-  return element("section", "", element("h3", "", title), list);
+  return element("section", "", element("h2", "", title), element("ul", "", ...rows));
+}
+
+/** Entries in their order, each with those that look like it. */
+function alike(entries) {
+  const groups = new Map();
+  for (const entry of entries) {
+    const key = JSON.stringify(entry, LOOK);
+    groups.set(key, [...(groups.get(key) ?? []), entry]);
+  }
+  return [...groups.values()];
+}
+
+function folded(words, names) {
+  const summary = element("summary", "", words);
+  const details = element("details", "", summary, element("p", "hint", names));
+  details.title = names;
+  return details;
+}
+
+function row_of(entry, text, style) {
+  const shown = typeof text === "string" ? element("span", "", text) : text;
+  return element("li", "", patch_of(entry, style), shown);
 }
 
 function patch_of(entry, style) {

@@ -2,7 +2,7 @@
 
 import { button, element } from "./elements.js";
 
-const ORDER = ["connection", "refused", "message", "empty"];
+const ORDER = ["connection", "refused", "message", "empty", "detail"];
 
 export class Notices {
   constructor(node) {

@@ -7,7 +7,9 @@
 //   ...&style=night                             a style that the server knows by that name
 //   ...&compare=0.5                             full detail to the right of the middle
 //   ...&compare=0.5&against=apart               there, each polygon simplified by itself
+//   ...&order=water,countries                   from the lowest to the topmost (default: as served)
 //   ...&at=51.5,-0.12                           the place whose features are told
+//   ...&chosen=countries/12                     which of them is outlined
 //
 // Names and values are percent-encoded. Whatever cannot be understood is left out, never an error:
 // people shorten and mistype addresses. Values of a layer's parameters are for the server to judge.
@@ -32,7 +34,8 @@ const READ_SHARED = {
  * @typedef {{zoom: number, lat: number, lon: number}} Place
  * @typedef {Map<string, string>} Style  values of parameters by name
  * @typedef {{place: ?Place, on: ?string[], styles: Map<string, Style>, shared: Style,
- *   compare: ?number, against: ("apart"|undefined), at: ?{lat: number, lon: number}}} View
+ *   compare: ?number, against: ("apart"|undefined), order: ?string[], at: ?{lat: number, lon: number},
+ *   chosen: ?{layer: string, id: string}}} View
  */
 
 /** @returns {View} null, or empty, is what the hash does not say */
@@ -40,7 +43,7 @@ export function parse_hash(hash) {
   const [place, ...rest] = hash.replace(/^#/, "").split("&");
   const view = {
     place: parse_place(place), on: null, styles: new Map(), shared: new Map(), compare: null,
-    at: null,
+    order: null, at: null, chosen: null,
   };
   for (const part of rest) {
     const split = part.indexOf("=");
@@ -50,9 +53,12 @@ export function parse_hash(hash) {
 }
 
 /** The inverse of parse_hash, with the '#'. */
-export function format_hash({ place, on, styles, shared, compare, against, at }) {
+export function format_hash({
+  place, on, styles, shared, compare, against, order, at, chosen,
+}) {
   const parts = [place ? format_place(place) : ""];
-  if (on) parts.push("on=" + on.map(encode_name).join(","));
+  if (on) parts.push("on=" + format_names(on));
+  if (order) parts.push("order=" + format_names(order));
   for (const [layer, style] of styles) {
     for (const [name, value] of style) parts.push(`${encode_name(layer)}.${name}=${encode(value)}`);
   }
@@ -60,18 +66,23 @@ export function format_hash({ place, on, styles, shared, compare, against, at })
   if (compare !== null) parts.push(`compare=${Number(compare.toFixed(3))}`);
   if (compare !== null && against) parts.push(`against=${against}`);
   if (at) parts.push(`at=${Number(at.lat.toFixed(7))},${Number(at.lon.toFixed(7))}`);
+  if (at && chosen) parts.push(`chosen=${encode_name(chosen.layer)}/${chosen.id}`);
   return "#" + parts.join("&");
 }
 
 function read_part(view, key, value) {
   if (key === "on") {
-    view.on = value.split(",").map(decode).filter(Boolean);
+    view.on = parse_names(value);
+  } else if (key === "order") {
+    view.order = parse_names(value);
   } else if (key === "compare") {
     if (is_number(value, 0, 1)) view.compare = Number(value);
   } else if (key === "against") {
     if (value === "apart") view.against = value;
   } else if (key === "at") {
     view.at = parse_point(value);
+  } else if (key === "chosen") {
+    view.chosen = parse_feature(value);
   } else if (Object.hasOwn(READ_SHARED, key)) {
     if (READ_SHARED[key](decode(value))) view.shared.set(key, decode(value));
   } else {
@@ -105,6 +116,20 @@ function parse_point(text) {
   if (more.length || lon === undefined) return null;
   if (!is_number(lat, -MAX_LATITUDE, MAX_LATITUDE) || !is_number(lon, -180, 180)) return null;
   return { lat: Number(lat), lon: Number(lon) };
+}
+
+function parse_names(text) {
+  return text.split(",").map(decode).filter(Boolean);
+}
+
+function format_names(names) {
+  return names.map(encode_name).join(",");
+}
+
+function parse_feature(text) {
+  const [layer, id, ...more] = text.split("/");
+  if (more.length || !decode(layer) || !/^-?\d{1,20}$/.test(id ?? "")) return null;
+  return { layer: decode(layer), id };
 }
 
 function format_place({ zoom, lat, lon }) {

@@ -5,7 +5,7 @@ import { button, element, input } from "./elements.js";
 import {
   address, curl_command, image_tag, leaflet_page, maplibre_page, openlayers_page, qgis_connections,
 } from "./share_snippets.js";
-import { keep_style } from "./share_style.js";
+import { keep_style, shared_style } from "./share_style.js";
 import { parameters_of_layers, query_part } from "./tile_query.js";
 import { LONGEST, LONGEST_PLACE, MOST_LAYERS } from "./tile_requests.js";
 
@@ -27,17 +27,15 @@ const TABS = [
 
 export class SharePanel {
   /**
-   * @param opener the button that opens the panel
    * @param base address of the server's folder
    * @param look gives what is on the screen: {names and titles of layers, the lowest first;
-   *   attributions; style as shared_style() makes it; place, min_zoom, max_zoom}
+   *   attributions; drawn and settings for shared_style(); place, min_zoom, max_zoom}
    */
-  constructor(opener, base, look) {
+  constructor(base, look) {
     this.base_ = base;
     this.look_ = look;
     this.chosen_ = 0;
     this.make_();
-    opener.addEventListener("click", () => this.open());
   }
 
   make_() {
@@ -74,7 +72,8 @@ export class SharePanel {
   }
 
   async open() {
-    this.seen_ = this.look_();
+    const seen = this.look_();
+    this.seen_ = { ...seen, style: shared_style(seen.drawn, seen.settings) };
     this.id_ = null;
     this.problem_ = "";
     this.node_.showModal();

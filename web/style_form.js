@@ -22,7 +22,7 @@ export class StyleForm {
   /**
    * @param layer of the catalog: {name, title, fields}
    * @param builtin_fill colour where not even the layer has one
-   * @param suggest of the name of a property: values that stand in the view
+   * @param suggest of the name of a property: its values, see ClassEditor
    * @param on_change called without arguments when the user has changed something
    */
   constructor(layer, builtin_fill, suggest, on_change) {
@@ -70,6 +70,11 @@ export class StyleForm {
     const known = [...controls.map(({ parameter }) => parameter), ...CLASS_PARAMETERS];
     this.kept_ = new Map([...style].filter(([parameter]) => !known.includes(parameter)));
     this.show_problem(null);
+  }
+
+  /** From now on it can be seen. */
+  open() {
+    this.classes_.open();
   }
 
   /** What the server found wrong: {detail, parameter}, or null. */
@@ -158,7 +163,7 @@ export class StyleForm {
         .filter((control) => control && control !== this.fill);
       group.node = fieldset(group.name, ...shown.map(({ node }) => node));
     }
-    const reset = button("Back to the usual style");
+    const reset = button("Reset");
     reset.addEventListener("click", () => {
       this.show(new Map(), this.usual_);
       this.on_change_();

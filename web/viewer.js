@@ -1,24 +1,27 @@
 // The viewer: all layers of the server over each other, with the place and what was changed kept
 // in the address.
-/* global L */
 
-import { attribution_nodes, link_to } from "./attribution.js";
+import { ask_values } from "./attribute_values.js";
 import { load_catalog } from "./catalog.js";
+import { css_of } from "./colours.js";
 import { CombinedTiles } from "./combined_tiles.js";
 import { Comparison } from "./comparison.js";
 import { Connection } from "./connection.js";
+import { demonstrations } from "./demonstrations.js";
 import { DetailPanel, simplify_in_words } from "./detail_panel.js";
 import { choose } from "./elements.js";
-import { FeaturePanel, ask_features } from "./feature_panel.js";
-import { values_in_view, wrapped_longitude } from "./feature_samples.js";
+import { FeatureChoice } from "./feature_choice.js";
+import { LayerList } from "./layer_list.js";
 import { layer_row } from "./layer_panel.js";
 import { ask_legend, legend_section } from "./legend.js";
+import { all_looks } from "./looks.js";
+import {
+  MAX_ZOOM, make_map, make_pane, show_attribution, show_boxes, show_place_in_free_part,
+} from "./map_frame.js";
 import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
 import { Notices } from "./notices.js";
 import { format_hash, parse_hash } from "./place_hash.js";
 import { ProgressLine } from "./progress_line.js";
-import { SharePanel } from "./share_panel.js";
-import { shared_style } from "./share_style.js";
 import {
   divide_shared,
   has_fast_topology,
@@ -28,13 +31,14 @@ import {
 } from "./tile_query.js";
 import { tile_requests } from "./tile_requests.js";
 import { watch_tiles } from "./tile_timing.js";
+import { TryPanel } from "./try_panel.js";
+import { box_in_view, is_in_view, wrapped_longitude } from "./view_bounds.js";
 
-const MAX_ZOOM = 22;
-const MAX_LATITUDE = 85.0511287798066;
 const BUILTIN_FILL = "808080"; // of layers whose style the catalog does not tell
+const NARROW = "(max-width: 1100px)";
 const PHONE = "(max-width: 600px)";
-const DOUBLE_CLICK_MS = 250;
 const MESSAGE_MS = 6000;
+const LEAST_ZOOM_TO = 18; // a layer that does not say how true it is
 
 const BASE = document.baseURI;
 const TILES = new URL("tiles/", BASE).href;
@@ -68,76 +72,33 @@ function refusal_in_words({ status, detail }) {
   return `Some tiles cannot be drawn. ${detail}`;
 }
 
-/** Where all layers can be seen, or the world if they span most of it. */
-function show_everything(map, layers) {
-  const boxes = layers.map((layer) => layer.bounds).filter(is_box);
-  const all = L.latLngBounds(boxes.flatMap(([w, s, e, n]) => [[s, w], [n, e]]));
-  if (all.isValid() && all.getEast() - all.getWest() < 180) {
-    map.fitBounds(all);
-  } else {
-    // The smallest whole zoom at which the world is as high as the window.
-    map.setView([25, 10], Math.max(1, Math.ceil(Math.log2(map.getSize().y / 256))));
-  }
-}
-
-function is_box(bounds) {
-  return Array.isArray(bounds) && bounds.length === 4 && bounds.every(Number.isFinite) &&
-    bounds[0] <= bounds[2] && bounds[1] <= bounds[3];
-}
-
 // ---- the page
 
-function make_map() {
-  const map = L.map("map", {
-    attributionControl: false,
-    minZoom: 0,
-    maxZoom: MAX_ZOOM,
-    maxBounds: [[-MAX_LATITUDE, -1e6], [MAX_LATITUDE, 1e6]],
-    maxBoundsViscosity: 1,
-    worldCopyJump: true,
-    // Old tiles show through new ones that fade in, and where frames come late (a tile fades for
-    // 200 ms, Leaflet looks after 250) they never go.
-    fadeAnimation: false,
-    wheelPxPerZoomLevel: 120, // one notch of a mouse wheel is one zoom
-  });
-  L.control.scale({ position: "bottomleft", imperial: false }).addTo(map);
-  return map;
+/** The zoom beyond which a layer of the catalog has no more to show. */
+function zoom_of_detail(layer) {
+  return Number.isInteger(layer?.detail_zoom) ? layer.detail_zoom : LEAST_ZOOM_TO;
 }
 
-function make_pane(map, name) {
-  const pane = map.createPane(name);
-  pane.style.zIndex = 200; // where Leaflet has its own tiles
-  return pane;
-}
-
-/** Leaflet's own control takes markup; ours takes nodes, so that no text can become markup. */
-function show_attribution(map, layers) {
-  const control = L.control({ position: "bottomright" });
-  control.onAdd = () => {
-    const box = L.DomUtil.create("div", "leaflet-control-attribution");
-    box.append(link_to("https://leafletjs.com", "Leaflet"));
-    for (const line of new Set(layers.map((layer) => layer.attribution).filter(Boolean))) {
-      box.append(" | ", ...attribution_nodes(line));
-    }
-    return box;
-  };
-  control.addTo(map);
+function show_title(title) {
+  if (typeof title !== "string" || title === "") return;
+  document.title = title;
+  $("title").textContent = title;
 }
 
 function show_about(catalog, layers) {
   const features = layers.reduce((sum, layer) => sum + (Number(layer.features) || 0), 0);
-  const parts = [`${features.toLocaleString("en")} features`];
+  const parts = [`${String(features).replaceAll(/\B(?=(\d{3})+$)/g, ",")} features`];
   if (typeof catalog.renderer === "string") parts.push(`drawn by ${catalog.renderer}`);
   $("about").textContent = parts.join(", ");
 }
 
-function make_foldable(toggle, body) {
+function make_foldable(toggle, body, folded_where) {
   const open = (is_open) => {
     toggle.setAttribute("aria-expanded", String(is_open));
     body.hidden = !is_open;
   };
   toggle.addEventListener("click", () => open(body.hidden));
-  open(!window.matchMedia(PHONE).matches);
+  open(!window.matchMedia(folded_where).matches);
 }
 
 function make_address_copyable() {
@@ -154,31 +115,33 @@ function make_address_copyable() {
   });
 }
 
-/** Calls `act` with the place of a click that is not the first half of a double click. */
-function on_single_click(map, act) {
-  let waiting = null;
-  map.on("click", ({ latlng }) => {
-    clearTimeout(waiting);
-    waiting = setTimeout(() => act(latlng), DOUBLE_CLICK_MS);
-  });
-  map.on("dblclick", () => clearTimeout(waiting));
-}
-
 /** Keeps panels, map and address the same, whichever of them changes. */
 class Viewer {
   constructor(catalog, connection) {
     this.connection_ = connection;
     this.layers_ = usable_layers(catalog);
-    const view = parse_hash(location.hash);
+    this.start_ = typeof catalog.viewer?.start === "string" ? catalog.viewer.start : "";
+    const is_first_sight = location.hash.length < 2;
+    const view = this.view_of_(location.hash);
     this.named_ = {};
+    this.style_names_ = [];
+    this.order_ = this.layers_.map((_, i) => i);
     this.map_ = make_map();
-    this.go_to_(view.place);
     this.make_map_layers_();
     this.make_panels_();
+    show_title(catalog.viewer?.title);
     show_attribution(this.map_, this.layers_);
     show_about(catalog, this.layers_);
+    if (is_first_sight && this.layers_.length) this.try_.open();
+    if (is_first_sight && view.place) show_place_in_free_part(this.map_, view.place);
+    else this.go_to_(view.place);
 
-    this.map_.on("moveend", () => this.write_address_());
+    this.map_.on("moveend", () => {
+      this.write_address_();
+      this.show_legend_();
+      this.show_outline_();
+      this.tell_end_of_detail_();
+    });
     this.map_.on("zoomanim zoomend", ({ type }) => (this.is_zooming_ = type === "zoomanim"));
     // As it was typed: by now location may say again what write_address_ wrote.
     window.addEventListener("hashchange", ({ newURL }) => this.read_address_(new URL(newURL).hash));
@@ -190,6 +153,7 @@ class Viewer {
   make_map_layers_() {
     const simplified = make_pane(this.map_, "simplified");
     const full = make_pane(this.map_, "full");
+    make_pane(this.map_, "chosen");
     const progress = new ProgressLine();
     const tiles_in = (pane) => new CombinedTiles(this.map_, TILES, pane, {
       failed: (url) => this.connection_.failed(url),
@@ -199,6 +163,7 @@ class Viewer {
     });
     this.tiles_ = tiles_in("simplified");
     this.compared_tiles_ = tiles_in("full");
+    this.outline_tiles_ = tiles_in("chosen");
     this.comparison_ = new Comparison(this.map_, simplified, full, (part) => {
       this.compare_ = part;
       this.write_address_();
@@ -208,8 +173,7 @@ class Viewer {
   // ---- tiles that do not come
 
   ask_again_(was_away) {
-    this.tiles_.retry();
-    this.compared_tiles_.retry();
+    for (const tiles of this.all_tiles_()) tiles.retry();
     if (was_away) this.tell_other_layers_();
   }
 
@@ -225,42 +189,78 @@ class Viewer {
   }
 
   refuse_(url, problem) {
-    const panes = [this.tiles_, this.compared_tiles_];
-    if (panes.map((tiles) => tiles.give_way(url)).includes(false)) this.tell_refused_(problem);
+    const ways = this.all_tiles_().map((tiles) => tiles.give_way(url));
+    if (ways.includes(false)) this.tell_refused_(problem);
+  }
+
+  all_tiles_() {
+    return [this.tiles_, this.compared_tiles_, this.outline_tiles_].filter(Boolean);
   }
 
   tell_refused_(problem = null) {
-    const is_refused = this.tiles_?.has_refused() || this.compared_tiles_?.has_refused();
-    if (!is_refused) notices.say("refused", "");
+    if (!this.all_tiles_().some((tiles) => tiles.has_refused())) notices.say("refused", "");
     else if (problem) notices.say("refused", refusal_in_words(problem));
   }
 
   make_panels_() {
     this.rows_ = this.layers_.map((layer, i) => layer_row(layer, BUILTIN_FILL,
-      (property) => this.values_in_view_(layer.name, property), (state) => this.change_(i, state)));
-    // The list reads from top to bottom as the layers lie over each other.
-    $("layers").replaceChildren(...this.rows_.map(({ row }) => row).reverse());
+      (attribute, is_all) => this.ask_values_(i, attribute, is_all), {
+        change: (state) => this.change_(i, state),
+        zoom_to: () => this.zoom_to_([i]),
+      }));
+    this.list_ = new LayerList($("layer-tools"), $("layers"), this.layers_, this.rows_, {
+      switch_all: (numbers, is_on) => this.switch_all_(numbers, is_on),
+      zoom_to: (numbers) => this.zoom_to_(numbers),
+      reorder: (order) => this.reorder_(order),
+    });
     load_style_names(BASE).then((names) => this.show_style_names_(names));
     $("style").addEventListener("change", () => this.change_named_style_($("style").value));
     this.detail_ = new DetailPanel(() => this.change_detail_(), {
       has_fast: this.layers_.some(has_fast_topology),
-      has_apart: this.layers_.some((layer) => layer.coverages > 0 && has_fast_topology(layer)),
+      has_apart: this.has_apart_(),
     });
     $("detail").append(this.detail_.node);
-    this.features_ = new FeaturePanel($("features"), {
-      choose: (feature) => this.choose_(feature),
-      go_to: ({ bbox: [west, south, east, north] }) =>
-        this.map_.fitBounds([[south, west], [north, east]]),
-      close: () => this.close_features_(),
+    this.choice_ = new FeatureChoice(this.map_, $("features"), () => this.what_is_asked_(), {
+      change: () => this.show_choice_(),
+      go_to: (box, name) =>
+        show_boxes(this.map_, [box], zoom_of_detail(this.layers_.find((one) => one.name === name))),
       title_of: (name) => this.title_of_(name),
     });
-    new SharePanel($("share-open"), new URL(".", BASE).href, () => this.what_is_shared_());
-    on_single_click(this.map_, (place) => this.identify_(place));
-    $("map").addEventListener("keydown", (event) => {
-      if (event.target !== $("map")) return;
-      if (event.key === "Enter") this.identify_(this.map_.getCenter(), { is_by_key: true });
-      if (event.key === "Escape") this.close_features_();
+    $("share-open").addEventListener("click", () => this.open_share_panel_());
+    this.make_try_panel_();
+  }
+
+  make_try_panel_() {
+    const shown = demonstrations({
+      simplify: (pixels) => this.set_shared_("simplify", String(pixels)),
+      compare_apart: (pixels) => this.compare_apart_(pixels),
+      restyle: (look) => this.restyle_(look),
+      looks: () => this.looks_(),
+      is_shown: ({ name, styles }) => !styles.length && this.shared_.get("style") === name &&
+        this.states_.every(({ style }) => style.size === 0),
+      picture_of: (look) => this.picture_of_(look),
+    }, { has_apart: this.has_apart_() });
+    const groups = new Map();
+    this.layers_.forEach(({ group }, i) =>
+      group && groups.set(group, [...(groups.get(group) ?? []), i]));
+    const places = [...groups].map(([title, numbers]) =>
+      ({ title: String(title), go: () => this.zoom_to_(numbers) }));
+    this.try_ = new TryPanel($("try"), $("try-open"), shown, places.length > 1 ? places : [], {
+      started: () => (this.before_ = this.settings_()),
+      ended: () => this.take_settings_(this.before_),
     });
+  }
+
+  /** What a few open comes when they do. */
+  async open_share_panel_() {
+    const module = await import("./share_panel.js").catch(() => null);
+    if (!module) return mention("The server cannot be reached. Load the page again.");
+    this.share_ ??= new module.SharePanel(new URL(".", BASE).href, () => this.what_is_shared_());
+    return this.share_.open();
+  }
+
+  has_apart_() {
+    return this.layers_.some((layer) => layer.coverages > 0 && has_fast_topology(layer));
   }
 
   title_of_(name) {
@@ -269,13 +269,18 @@ class Viewer {
 
   // ---- what is shown
 
+  /** What `hash` says, or else what the server wants to be seen first. */
+  view_of_(hash) {
+    return parse_hash(hash.length > 1 ? hash : `#${this.start_}`);
+  }
+
   /** Everything but the place; nothing new is drawn before its named style has come. */
   async show_view_(view) {
     this.view_ = view;
     this.shared_ = view.shared;
     this.compare_ = view.compare;
     this.against_ = view.against ?? "full";
-    this.at_ = view.at;
+    this.order_ = this.order_of_(view.order ?? []);
     this.states_ = this.layers_.map(({ name }, i) => {
       const style = view.styles.get(name) ?? new Map();
       return {
@@ -287,14 +292,26 @@ class Viewer {
         usual: new Map(), // what holds where the style says nothing
       };
     });
+    this.list_.show_order(this.order_);
     const named = await this.load_named_style_(view.shared);
     if (this.view_ !== view) return;
     this.named_ = named;
     this.show_usual_();
-    this.states_.forEach((_, i) => this.prove_style_(i));
+    this.list_.show_groups();
+    this.prove_all_();
     this.tell_unknown_layers_(view);
-    if (this.at_) this.identify_({ lat: this.at_.lat, lng: this.at_.lon });
-    else this.features_.hide();
+    this.choice_.show(view);
+  }
+
+  prove_all_() {
+    this.states_.forEach((_, i) => this.prove_style_(i));
+  }
+
+  /** Numbers of all layers, the lowest first: the named ones in their order, and the others above. */
+  order_of_(names) {
+    const named = [...new Set(names.map((name) =>
+      this.layers_.findIndex((layer) => layer.name === name)))].filter((i) => i >= 0);
+    return [...named, ...this.layers_.keys()].filter((i, at, all) => all.indexOf(i) === at);
   }
 
   tell_unknown_layers_({ on, styles }) {
@@ -314,11 +331,14 @@ class Viewer {
     this.detail_.show({ shared: this.shared_, against }, usual_shared(this.named_));
     choose($("style"), this.shared_.get("style") ?? "");
     $("style-row").hidden = $("style").options.length < 2;
+    // Seen until tiles come, and in hair lines between them on some screens.
+    $("map").style.background = css_of(String(this.named_.background ?? "").replace(/^#/, ""));
   }
 
   show_style_names_(names) {
     const chosen = $("style").value;
-    $("style").replaceChildren(new Option("that of each layer", ""),
+    this.style_names_ = names;
+    $("style").replaceChildren(new Option("Default", ""),
       ...names.map((name) => new Option(name, name)));
     choose($("style"), chosen);
     $("style-row").hidden = $("style").options.length < 2;
@@ -341,18 +361,39 @@ class Viewer {
     this.shared_ = shared;
     this.named_ = named;
     this.show_usual_();
-    this.states_.forEach((_, i) => this.prove_style_(i));
+    this.prove_all_();
   }
 
   go_to_(place) {
     if (place) this.map_.setView([place.lat, place.lon], Math.min(place.zoom, MAX_ZOOM));
-    else show_everything(this.map_, this.layers_);
+    else show_boxes(this.map_, this.layers_.map(({ bounds }) => bounds));
+  }
+
+  zoom_to_(numbers) {
+    const layers = numbers.map((i) => this.layers_[i]);
+    show_boxes(this.map_, layers.map(({ bounds }) => bounds),
+      Math.max(...layers.map(zoom_of_detail)));
   }
 
   change_(i, { is_on, style }) {
     this.states_[i].is_on = is_on;
     this.states_[i].style = style;
+    this.list_.show_groups();
     this.prove_style_(i);
+  }
+
+  switch_all_(numbers, is_on) {
+    for (const i of numbers) {
+      this.states_[i].is_on = is_on;
+      this.rows_[i].box.checked = is_on;
+    }
+    this.list_.show_groups();
+    this.refresh_();
+  }
+
+  reorder_(order) {
+    this.order_ = order;
+    this.refresh_();
   }
 
   change_detail_() {
@@ -361,8 +402,64 @@ class Viewer {
     this.shared_ = new Map([...named, ...shared]);
     this.compare_ = against === null ? null : (this.compare_ ?? 0.5);
     this.against_ = against ?? this.against_;
-    this.draw_();
-    this.write_address_();
+    this.refresh_();
+  }
+
+  // ---- what is tried
+
+  /** All that a demonstration may change. */
+  settings_() {
+    return {
+      shared: new Map(this.shared_), compare: this.compare_, against: this.against_,
+      styles: this.states_.map(({ style }) => style),
+    };
+  }
+
+  async take_settings_({ shared, compare, against, styles }) {
+    this.shared_ = new Map(shared);
+    this.compare_ = compare;
+    this.against_ = against;
+    this.states_.forEach((state, i) => (state.style = styles[i]));
+    const named = await this.load_named_style_(this.shared_);
+    if (this.shared_.get("style") !== shared.get("style")) return;
+    this.named_ = named;
+    this.show_usual_();
+    this.prove_all_();
+  }
+
+  set_shared_(name, value) {
+    this.shared_.set(name, value);
+    this.show_usual_();
+    this.refresh_();
+  }
+
+  compare_apart_(pixels) {
+    this.compare_ = 0.5;
+    this.against_ = "apart";
+    this.set_shared_("simplify", String(pixels));
+  }
+
+  restyle_({ name, styles }) {
+    const { shared, ...rest } = this.settings_();
+    shared.delete("style");
+    if (name) shared.set("style", name);
+    this.take_settings_({ ...rest, shared, styles: this.layers_.map((_, i) => styles[i] ?? new Map()) });
+  }
+
+  looks_() {
+    return all_looks(this.style_names_, this.layers_.length, (i) => usual_style(this.layers_[i], {}));
+  }
+
+  /** The address of the tile in the middle of the map. */
+  picture_of_({ name, styles }) {
+    const layers = this.layers_on_().map((i) =>
+      ({ name: this.layers_[i].name, style: styles[i] ?? new Map() }));
+    const [lowest] = tile_requests(layers, this.request_settings_(new Map(name ? [["style", name]] : [])));
+    if (!lowest) return "";
+    const zoom = this.map_.getZoom();
+    const { x, y } = this.map_.project(this.map_.getCenter(), zoom).divideBy(256).floor();
+    const across = 2 ** zoom;
+    return `${TILES}${lowest.path}/${zoom}/${((x % across) + across) % across}/${y}.png${lowest.query}`;
   }
 
   /** The map keeps the last style that was right: the server judges before tiles are asked for. */
@@ -370,8 +467,7 @@ class Viewer {
     const state = this.states_[i];
     const { style } = state;
     if (style.size === 0) state.drawn = style;
-    this.draw_();
-    this.write_address_();
+    this.refresh_();
     const name = this.shared_.get("style");
     const { problem = null, entries = [] } = await ask_legend(BASE, this.layers_[i].name,
       name ? [...style, ["style", name]] : style);
@@ -383,8 +479,18 @@ class Viewer {
     }
     if (!problem) Object.assign(state, { drawn: style, entries });
     else state.drawn ??= new Map();
-    this.draw_();
-    this.write_address_();
+    this.refresh_();
+  }
+
+  /** Map and address, once for all that changes at a time. */
+  refresh_() {
+    if (this.is_stale_) return;
+    this.is_stale_ = true;
+    queueMicrotask(() => {
+      this.is_stale_ = false;
+      this.draw_();
+      this.write_address_();
+    });
   }
 
   draw_() {
@@ -396,40 +502,69 @@ class Viewer {
       this.tiles_.show(this.tile_requests_(this.shared_));
       this.compared_tiles_.show(this.compare_ === null ? [] : this.tile_requests_(compared));
     }
+    this.show_outline_();
     this.tell_refused_();
+    this.tell_end_of_detail_();
     const is_empty = this.layers_.length > 0 && this.states_.every(({ is_on }) => !is_on);
     notices.say("empty", is_empty ? "All layers are off. Switch one on in the list." : "");
     const { pixels } = this.detail_;
     const words = simplify_in_words(pixels);
-    this.comparison_.show(this.compare_, pixels === 0 ? words : `simplified to ${words}`,
+    const simplified = pixels === 0 ? words : `simplified to ${words}`;
+    this.comparison_.show(this.compare_, is_apart ? "borders in common" : simplified,
       is_apart ? "each polygon by itself" : "every vertex");
     this.show_legend_();
     $("tile-url").value = this.tile_url_();
   }
 
   tile_requests_(shared) {
-    return tile_requests(this.drawn_layers_(), {
+    return tile_requests(this.drawn_layers_(), this.request_settings_(shared));
+  }
+
+  request_settings_(shared) {
+    return {
       layers: this.layers_,
       shared,
       has_background: Boolean(this.named_.background),
       folder: new URL(TILES).pathname,
-    });
+    };
   }
 
+  /** Of the layers that are on and in view, the topmost first. */
   show_legend_() {
-    const sections = this.states_.flatMap(({ is_on, drawn, entries, usual }, i) =>
-      is_on && entries.length
-        ? [legend_section(this.title_of_(this.layers_[i].name), entries, over(usual, drawn))] : []);
+    const sections = this.layers_on_().flatMap((i) => {
+      const { drawn, entries, usual } = this.states_[i];
+      if (!drawn || entries.length === 0 || !is_in_view(this.map_, this.layers_[i].bounds)) return [];
+      const layer = { ...this.layers_[i], title: this.title_of_(this.layers_[i].name) };
+      return [legend_section(layer, entries, over(usual, drawn))];
+    });
     $("legend-body").replaceChildren(...sections.reverse());
     $("legend").hidden = sections.length === 0;
   }
 
+  /** Says where the data ends of all that is in view. */
+  tell_end_of_detail_() {
+    const zoom = this.map_.getZoom();
+    const ends = this.layers_on_().map((i) => this.layers_[i])
+      .filter(({ bounds }) => is_in_view(this.map_, bounds))
+      .map(({ detail_zoom }) => (Number.isInteger(detail_zoom) ? detail_zoom : Infinity));
+    const end = Math.max(...ends);
+    if (zoom > end && end >= 0) {
+      notices.say("detail", `There is no more detail here than at zoom ${end}.`,
+        { action: [`Back to zoom ${end}`, () => this.map_.setZoom(end)] });
+    } else {
+      notices.say("detail", "");
+    }
+  }
+
+  /** Numbers of the layers that are on, the lowest first. */
+  layers_on_() {
+    return this.order_.filter((i) => this.states_[i].is_on);
+  }
+
   /** Those that are on, the lowest first, in the style that is drawn. */
   drawn_layers_() {
-    return this.layers_.flatMap(({ name }, i) => {
-      const { is_on, drawn } = this.states_[i];
-      return is_on && drawn ? [{ name, style: drawn }] : [];
-    });
+    return this.layers_on_().filter((i) => this.states_[i].drawn)
+      .map((i) => ({ name: this.layers_[i].name, style: this.states_[i].drawn }));
   }
 
   tile_url_() {
@@ -450,9 +585,8 @@ class Viewer {
       names: drawn.map(({ name }) => name),
       titles: layers.map(({ name }) => this.title_of_(name)),
       attributions: layers.map(({ attribution }) => attribution).filter(Boolean),
-      style: shared_style(drawn, {
-        layers: this.layers_, shared: this.shared_, named: this.named_,
-      }),
+      drawn,
+      settings: { layers: this.layers_, shared: this.shared_, named: this.named_ },
       place: {
         lat: Number(lat.toFixed(5)), lon: Number(wrapped_longitude(lng).toFixed(5)),
         zoom: this.map_.getZoom(),
@@ -464,73 +598,37 @@ class Viewer {
 
   // ---- features under a place
 
-  async identify_({ lat, lng }, { is_by_key = false } = {}) {
-    const at = { lat, lon: wrapped_longitude(lng) };
-    this.at_ = at;
-    this.write_address_();
+  what_is_asked_() {
     // Of the address, and not yet proved, is as good as drawn here.
-    const layers = this.layers_.flatMap(({ name }, i) => {
-      const { is_on, drawn, style } = this.states_[i];
-      return is_on ? [{ name, style: drawn ?? style }] : [];
+    const layers = this.layers_on_().map((i) => {
+      const { drawn, style } = this.states_[i];
+      return { name: this.layers_[i].name, style: drawn ?? style };
     });
-    try {
-      if (layers.length === 0) throw new Error("No layer is shown.");
-      const found = await ask_features(BASE, layers, this.shared_, at, this.map_.getZoom());
-      if (this.at_ !== at) return;
-      this.found_ = found;
-      this.choose_(found.find((feature) => this.is_highlighted_(feature)) ?? found[0]);
-    } catch (error) {
-      if (this.at_ === at) this.features_.show_message(error.message);
-    }
-    if (is_by_key) this.features_.focus();
+    const shapes = new Map([...usual_shared(this.named_), ...this.shared_]);
+    return { base: BASE, layers, catalog: this.layers_, shared: this.shared_, shapes };
   }
 
-  /** `feature` of those found, or nothing. */
-  choose_(feature) {
-    this.states_.forEach((state, i) => {
-      const is_of_layer = feature?.layer === this.layers_[i].name;
-      this.highlight_(i, is_of_layer ? String(feature.id) : null);
-    });
-    if (feature) this.features_.show(this.found_, feature);
-    else this.features_.show_message("There is nothing here.");
-  }
-
-  close_features_() {
-    this.at_ = null;
-    this.features_.hide();
-    this.states_.forEach((_, i) => this.highlight_(i, null));
+  show_choice_() {
+    this.show_outline_();
     this.write_address_();
-    $("map").focus({ preventScroll: true });
   }
 
-  highlight_(i, ids) {
-    const state = this.states_[i];
-    if ((state.style.get("highlight") ?? null) === ids) return;
-    state.style = new Map(state.style);
-    if (ids === null) state.style.delete("highlight");
-    else state.style.set("highlight", ids);
-    this.rows_[i].show(state);
-    this.prove_style_(i);
+  show_outline_() {
+    this.outline_tiles_.show(this.choice_.requests());
   }
 
-  is_highlighted_({ layer, id }) {
-    const state = this.states_[this.layers_.findIndex(({ name }) => name === layer)];
-    return state?.style.get("highlight") === String(id);
-  }
-
-  values_in_view_(layer, property) {
-    const bounds = this.map_.getBounds();
-    const box = {
-      west: bounds.getWest(), south: bounds.getSouth(), east: bounds.getEast(),
-      north: bounds.getNorth(),
-    };
-    return values_in_view(BASE, layer, property, box, this.map_.getZoom());
+  /** How the values of an attribute are spread, in view or in all of the layer. */
+  ask_values_(i, attribute, is_all) {
+    const { drawn } = this.states_[i];
+    const filter = [...(drawn ?? [])].filter(([name]) => name === "filter");
+    return ask_values(BASE, this.layers_[i].name, attribute, is_all ? null : box_in_view(this.map_),
+      filter);
   }
 
   // ---- the address
 
   async read_address_(hash) {
-    const view = parse_hash(hash);
+    const view = this.view_of_(hash);
     await this.show_view_(view);
     if (!view.place) return;
     // Moving writes the address: of this view, unless another has come meanwhile.
@@ -543,7 +641,9 @@ class Viewer {
   /** Says only what differs from the defaults, and makes no step in the history. */
   write_address_() {
     const { lat, lng } = this.map_.getCenter();
+    const names = (numbers) => numbers.map((i) => this.layers_[i].name);
     const on = this.layers_.filter((_, i) => this.states_[i].is_on).map(({ name }) => name);
+    const is_as_served = this.order_.every((i, at) => i === at);
     const hash = format_hash({
       place: { zoom: this.map_.getZoom(), lat, lon: lng },
       on: on.length === this.layers_.length ? null : on,
@@ -553,14 +653,16 @@ class Viewer {
       shared: this.shared_,
       compare: this.compare_,
       against: this.against_ === "apart" ? "apart" : undefined,
-      at: this.at_,
+      order: is_as_served ? null : names(this.order_),
+      ...this.choice_.now,
     });
-    history.replaceState(null, "", hash);
+    // Browsers take their time for it, and some refuse it when it comes too often.
+    if (hash !== location.hash) history.replaceState(null, "", hash);
   }
 }
 
-make_foldable($("panel-toggle"), $("panel-body"));
-make_foldable($("legend-toggle"), $("legend-body"));
+make_foldable($("panel-toggle"), $("panel-body"), PHONE);
+make_foldable($("legend-toggle"), $("legend-body"), NARROW);
 make_address_copyable();
 watch_tiles(TILES, (line) => ($("timing").textContent = line));
 let viewer = null;

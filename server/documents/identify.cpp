@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
 #include "server/data/title_attribute.h"
+#include "server/documents/place_text.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_plan.h"
 #include "server/tiles/tile_request.h"
@@ -25,32 +25,8 @@ namespace {
 constexpr std::array<std::string_view, 1> kOwnParameters = {"z"};
 constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
 
-std::optional<double> parse_number(std::string_view text, double min, double max) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(number >= min && number <= max)) return std::nullopt;  // written so that NaN fails
-  return number;
-}
-
-/// The cell that holds the place; of those on the edge of the world the last.
-Point cell_of(LonLat place) {
-  const auto to_cell = [](double position) {
-    return static_cast<std::int32_t>(
-        std::clamp<double>(std::floor(position), kGridMin, kGridMax - 1));
-  };
-  const GridPosition position = grid_from_lonlat(place);
-  return {to_cell(position.x), to_cell(position.y)};
-}
-
-Result<Point> parse_place(const std::string& text) {
-  const std::size_t comma = text.find(',');
-  if (comma != std::string::npos) {
-    const std::string_view view = text;
-    const auto lon = parse_number(view.substr(0, comma), -180, 180);
-    const auto lat = parse_number(view.substr(comma + 1), -kMaxLatitude, kMaxLatitude);
-    if (lon && lat) return cell_of({*lon, *lat});
-  }
+Result<Point> place_in(const std::string& text) {
+  if (const auto place = parse_place(text)) return *place;
   const std::string takes = fmt::format(
       "longitude and latitude in degrees: -180 to 180, -{0:.5f} to {0:.5f}", kMaxLatitude);
   return Problem{400, fmt::format("The path ends with {}: {}.", takes, kPattern), "lon,lat", text,
@@ -71,7 +47,7 @@ Result<PlaceQuery> parse_request(const DocumentRequest& request) {
   }
   auto layers = parse_layer_list(request.path[1]);
   if (!layers) return std::move(layers).problem();
-  auto place = parse_place(request.path[2]);
+  auto place = place_in(request.path[2]);
   if (!place) return std::move(place).problem();
   auto zoom = parse_zoom(request);
   if (!zoom) return std::move(zoom).problem();

@@ -119,6 +119,17 @@ Json components_json() {
   }
   parameters["path-place"] = path_parameter(
       "place", "Longitude and latitude in degrees, with a comma between", {{"type", "string"}});
+  parameters["path-layer"] = path_parameter("layer", "Name of a layer", {{"type", "string"}});
+  parameters["path-attribute"] =
+      path_parameter("attribute", "Name of an attribute of the layer", {{"type", "string"}});
+  parameters["bbox"] = {
+      {"name", "bbox"},
+      {"in", "query"},
+      {"description", "West, south, east, north in degrees: only what lies there; without it: all"},
+      {"style", "form"},
+      {"explode", false},
+      {"schema",
+       {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
   parameters["z"] = {
       {"name", "z"},
       {"in", "query"},

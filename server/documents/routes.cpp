@@ -40,6 +40,8 @@ constexpr std::array kRoutes = {
           true},
     Route{RouteId::identify, "/identify/{layers}/{place}", "identify", "The features under a place",
           "application/geo+json", true, "z"},
+    Route{RouteId::values, "/values/{layer}/{attribute}", "getValues",
+          "The values of an attribute, and how they are spread", kJson, true, "bbox"},
     Route{RouteId::catalog, "/catalog", "getCatalog", "The layers and the parameters", kJson},
     Route{RouteId::wmts_capabilities, "/wmts.xml", "getWmtsCapabilities", "WMTS 1.0.0 capabilities",
           "application/xml"},
@@ -94,8 +96,8 @@ constexpr std::array kRoutes = {
 };
 
 constexpr std::array<std::string_view, kAreas> kAreaNames = {
-    "tiles", "legend", "identify", "catalog", "styles", "wmts",
-    "ogc",   "health", "ready",    "metrics", "other"};
+    "tiles", "legend", "identify", "values", "catalog", "styles",
+    "wmts",  "ogc",    "health",   "ready",  "metrics", "other"};
 
 /// Takes the first segment off a path, and the slash before it.
 constexpr std::string_view take_segment(std::string_view& path) {

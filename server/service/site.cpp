@@ -11,6 +11,7 @@
 #include "server/base/content_hash.h"
 #include "server/base/json_text.h"
 #include "server/base/url.h"
+#include "server/documents/attribute_values.h"
 #include "server/documents/catalog.h"
 #include "server/documents/document.h"
 #include "server/documents/identify.h"
@@ -241,6 +242,8 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
       return handle_document({legend_document}, target, request, respond);
     case Area::identify:
       return handle_document({identify_document}, target, request, respond);
+    case Area::values:
+      return handle_document({values_document}, target, request, respond);
     case Area::ogc:
       return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
     case Area::wmts:

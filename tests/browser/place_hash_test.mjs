@@ -5,7 +5,8 @@ import test from "node:test";
 import { format_hash, parse_hash } from "../../web/place_hash.js";
 
 const view_of = (view) => ({
-  place: null, on: null, styles: new Map(), shared: new Map(), compare: null, at: null, ...view,
+  place: null, on: null, styles: new Map(), shared: new Map(), compare: null, order: null, at: null,
+  chosen: null, ...view,
 });
 
 test("what is written is read back", () => {
@@ -19,7 +20,9 @@ test("what is written is read back", () => {
     shared: new Map([["style", "night-2"], ["simplify", "4"], ["debug", "faces,junctions,mesh,tile"],
       ["topology", "fast"], ["small", "drop"]]),
     compare: 0.25,
+    order: ["c/d&e=f", "a,b"],
     at: { lat: -12.3456789, lon: 179.5 },
+    chosen: { layer: "c/d&e=f", id: "-12345678901234567" },
   });
   const back = parse_hash(format_hash(view));
   assert.ok(Math.abs(back.place.lat - view.place.lat) < 1e-4);

@@ -1,4 +1,4 @@
-// What lies under a click is told and highlighted.
+// What lies under a click is told and outlined.
 import assert from "node:assert/strict";
 import test from "node:test";
 
@@ -7,7 +7,8 @@ import {
   start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
-const HIGHLIGHT = [0xff, 0xcc, 0x00];
+const OUTLINE = [0xc2, 0x18, 0x5b];
+const LAND = [0xd8, 0xc9, 0x9b];
 
 const { browser, server } = await start_browser_and_server();
 
@@ -18,45 +19,71 @@ async function open(hash, options = undefined) {
   return { page, seen, features: page.locator("#features") };
 }
 
-const highlighted = (page, layer) => pixels_of_colour(page, layer, HIGHLIGHT);
+const outlined = (page, layer) => pixels_of_colour(page, layer, OUTLINE);
 
-async function wait_for_highlight(page, layer) {
-  await page.waitForFunction((name) => {
-    const tiles = [...document.querySelectorAll("img.leaflet-tile")];
-    const is_highlighted = new RegExp(`/tiles/${name}/.*[?&]highlight=|[?&]${name}\\.highlight=`);
-    return tiles.length > 0 && tiles.every(({ src }) => is_highlighted.test(src));
-  }, layer);
+/** Until the feature is outlined, over a map that has stayed as it was. */
+async function wait_for_outline(page, layer, id) {
+  await page.waitForFunction((wanted) => {
+    const tiles = [...document.querySelectorAll(".leaflet-chosen-pane img.leaflet-tile")];
+    return tiles.length > 0 && tiles.every(({ src }) => src.includes(wanted));
+  }, `/tiles/${layer}/`);
+  await page.waitForFunction((wanted) =>
+    [...document.querySelectorAll(".leaflet-chosen-pane img.leaflet-tile")].every(({ src }) =>
+      new URL(src).searchParams.get("ids") === wanted), String(id));
   await tiles_drawn(page);
 }
 
-async function wait_for_no_highlight(page) {
-  await page.waitForFunction(() => !document.querySelector("img.leaflet-tile[src*='highlight=']"));
+async function wait_for_no_outline(page) {
+  await page.waitForFunction(() =>
+    !document.querySelector(".leaflet-chosen-pane img.leaflet-tile"));
   await tiles_drawn(page);
 }
 
-test("a click tells the attributes and highlights the feature; the address keeps it", async () => {
+/** Opaque colours of the outline's tiles other than that of the line. */
+function filled(page, layer) {
+  return page.evaluate(([layer, line]) => {
+    const found = new Set();
+    for (const tile of document.querySelectorAll(`.leaflet-chosen-pane img[src*="/${layer}/"]`)) {
+      const context = new OffscreenCanvas(256, 256).getContext("2d");
+      context.drawImage(tile, 0, 0);
+      const { data } = context.getImageData(0, 0, 256, 256);
+      for (let i = 0; i < data.length; i += 4) {
+        const colour = [...data.slice(i, i + 3)];
+        if (data[i + 3] > 250 && colour.some((part, c) => Math.abs(part - line[c]) > 40)) {
+          found.add(colour.join());
+        }
+      }
+    }
+    return [...found];
+  }, [layer, OUTLINE]);
+}
+
+test("a click tells the attributes under the title and outlines the feature; the address keeps it", async () => {
   const { page, seen, features } = await open("#5/46/10");
   await page.mouse.click(640, 400); // 46 north, 10 east: the mainland
-  await features.getByText("mainland with a bay and a lake").waitFor();
+  const heading = features.getByRole("heading", { name: "mainland with a bay and a lake" });
+  await heading.waitFor();
   assert.deepEqual(await features.locator("dt").allInnerTexts(), ["name", "people"]);
   assert.deepEqual(await features.locator("dd").allInnerTexts(),
     ["mainland with a bay and a lake", "50000"]);
-  await wait_for_highlight(page, "land");
-  assert.ok((await highlighted(page, "land")) > 1000);
+  await wait_for_outline(page, "land", 0);
+  assert.ok((await outlined(page, "land")) > 300);
+  assert.ok((await pixels_of_colour(page, "land", LAND)) > 10_000, "the map below is as it was");
+  assert.deepEqual(await filled(page, "land"), [], "no colour hides what is below");
   await save_screenshot(page, "desktop-feature");
 
   const hash = await hash_of(page);
-  assert.match(hash, /land\.highlight=\d+/);
+  assert.match(hash, /chosen=land\/0/);
   assert.match(hash, /at=46(\.\d+)?,10(\.\d+)?/);
   await page.reload();
-  await wait_for_highlight(page, "land");
-  await features.getByText("mainland with a bay and a lake").waitFor();
+  await wait_for_outline(page, "land", 0);
+  await heading.waitFor();
   assert.equal(await hash_of(page), hash);
 
   await features.getByRole("button", { name: "Close" }).click();
-  await wait_for_no_highlight(page);
+  await wait_for_no_outline(page);
   assert.equal(await features.isVisible(), false);
-  assert.doesNotMatch(await hash_of(page), /at=|highlight/);
+  assert.doesNotMatch(await hash_of(page), /at=|chosen/);
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
@@ -76,13 +103,14 @@ test("of several features one is chosen by button, and one is gone to", async ()
   await page.mouse.click(640, 400);
   const choices = features.locator(".found button");
   await choices.nth(1).click();
-  await features.getByText("<b>island</b>").waitFor();
+  await features.getByRole("definition").getByText("<b>island</b>").waitFor();
   assert.deepEqual(await features.locator("dd").allInnerTexts(), ["<b>island</b>", "–"]);
   assert.equal(await choices.nth(1).getAttribute("aria-pressed"), "true");
   assert.equal(await choices.nth(0).getAttribute("aria-pressed"), "false");
-  await page.waitForFunction(() => location.hash.includes("land.highlight=1&"));
+  await page.waitForFunction(() => location.hash.endsWith("&chosen=land/1"));
+  await wait_for_outline(page, "land", 1);
   await features.getByRole("button", { name: "Go to it" }).click();
-  await page.waitForFunction(() => /^#[789]\/4[56]\.\d+\/0\.\d+&/.test(location.hash));
+  await page.waitForFunction(() => /^#[789]\/4[4-7]\.\d+\/[01]\.\d+&/.test(location.hash));
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
@@ -91,12 +119,12 @@ test("the keyboard asks for the middle of the map and comes back to it", async (
   const { page, seen, features } = await open("#6/45.5/6.5");
   await page.focus("#map");
   await page.keyboard.press("Enter");
-  await features.getByText("the lake").waitFor();
-  await wait_for_highlight(page, "lake");
-  assert.ok((await highlighted(page, "lake")) > 1000);
+  await features.getByText("the lake").first().waitFor();
+  await wait_for_outline(page, "lake", 0);
+  assert.ok((await outlined(page, "lake")) > 300);
   assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), "Close");
   await page.keyboard.press("Escape");
-  await wait_for_no_highlight(page);
+  await wait_for_no_outline(page);
   assert.equal(await features.isVisible(), false);
   assert.equal(await page.evaluate(() => document.activeElement.id), "map");
   assert_nothing_went_wrong(server, seen);
@@ -137,13 +165,48 @@ test("an answer that never comes is told", async () => {
 test("a phone shows the feature below the map, and a tap closes it", async () => {
   const { page, seen, features } = await open("#5/46/10", PHONE);
   await page.touchscreen.tap(195, 422);
-  await features.getByText("mainland with a bay and a lake").waitFor();
-  await wait_for_highlight(page, "land");
+  await features.getByRole("heading", { name: "mainland" }).waitFor();
+  await wait_for_outline(page, "land", 0);
   const { y, height, width } = await features.boundingBox();
   assert.ok(y > 422 && y + height <= 844 && width <= 390);
   await save_screenshot(page, "phone-feature");
   await features.getByRole("button", { name: "Close" }).tap();
-  await wait_for_no_highlight(page);
+  await wait_for_no_outline(page);
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("of a feature in parts, it goes to the part under the click", async () => {
+  const { page, seen, features } = await open("#5/46/10&on=land");
+  await page.route("**/identify/**", async (route) => {
+    const response = await route.fetch();
+    const told = await response.json();
+    Object.assign(told.features[0], { bbox: [-170, -80, 170, 80], part_bbox: [0, 45, 1, 47] });
+    await route.fulfill({ response, json: told });
+  });
+  await page.mouse.click(640, 400);
+  await features.getByRole("button", { name: "Go to it" }).click();
+  await page.waitForFunction(() => /^#[789]\/4[4-7]\.\d+\/[01]\.\d+&/.test(location.hash));
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+/** What shows where the focus is on the map: its own line, and the mark in the middle. */
+function marks_of_focus(page) {
+  return page.evaluate(() => {
+    const map = document.querySelector("#map");
+    return [getComputedStyle(map).outlineStyle, getComputedStyle(map, "::after").content];
+  });
+}
+
+test("the map shows that it has the focus to who uses keys, and not to who uses a mouse", async () => {
+  const { page, seen, features } = await open("#5/46/10");
+  await page.mouse.click(640, 400);
+  await features.getByRole("button", { name: "Close" }).click();
+  assert.equal(await page.evaluate(() => document.activeElement.id), "map");
+  assert.deepEqual(await marks_of_focus(page), ["none", "none"]);
+  await page.keyboard.press("ArrowRight");
+  assert.deepEqual(await marks_of_focus(page), ["solid", '""']);
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });

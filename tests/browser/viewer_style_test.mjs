@@ -109,18 +109,19 @@ test("what is switched off takes its parts along, and the usual style asks for n
   await land.getByRole("combobox", { name: "Pattern" }).selectOption("none");
   await wait_for_query(page, "land", { "stroke-linejoin": "bevel" });
   assert.equal(await land.getByLabel("Width").isVisible(), false);
-  await land.getByRole("button", { name: "Back to the usual style" }).click();
+  await land.getByRole("button", { name: "Reset" }).click();
   await wait_for_query(page, "land", {});
   assert.equal(await hash_of(page), "#5/46.000/10.000");
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
 
-test("classes of a text are taken from the view, recoloured, added and removed", async () => {
+test("classes of a text are suggested from the map, recoloured, added and removed", async () => {
   const { page, seen, land } = await open();
   await land.getByLabel("Colour by").selectOption("name");
   const mainland = "mainland with a bay and a lake";
   await page.waitForFunction(() => location.hash.includes("land.color-by=name"));
+  await land.getByRole("button", { name: "Remove island" }).click();
   await land.getByLabel(`Colour of ${mainland}`).fill("#ff0000");
   await land.getByRole("button", { name: "Add a class" }).click();
   await page.keyboard.type("island");
@@ -149,7 +150,7 @@ test("classes of a number are ranges with a ramp, or values", async () => {
   const { page, seen, land } = await open();
   await land.getByLabel("Colour by").selectOption("people");
   await page.waitForFunction(() => location.hash.includes("land.breaks=50000"));
-  await land.getByLabel("Breaks").fill("10, 1000 20000");
+  await land.getByRole("textbox", { name: "Breaks" }).fill("10, 1000 20000");
   await land.getByLabel("Ramp").selectOption("Reds");
   await wait_for_query(page, "land", { "color-by": "people", breaks: "10,1000,20000", ramp: "Reds" });
   assert.equal(await page.locator("#legend li").count(), 6, "four classes, others, and the lake");
@@ -157,8 +158,8 @@ test("classes of a number are ranges with a ramp, or values", async () => {
 
   await page.getByLabel("Style of Land").click();
   await land.getByLabel("Classes by").selectOption("by value");
-  await land.getByRole("button", { name: "Take them from the view" }).click();
-  await page.waitForFunction(() => /land\.classes=50000:[0-9a-f]{6},\*:d9dde2/.test(location.hash));
+  await land.getByRole("button", { name: "Suggest from map" }).click();
+  await page.waitForFunction(() => /land\.classes=12:[0-9a-f]{6},50000:[0-9a-f]{6},\*:d9dde2/.test(location.hash));
   await page.waitForFunction(() => !location.hash.includes("breaks"));
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
@@ -267,7 +268,7 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   await slide(page.getByLabel("Simplify"), 6);
   assert.equal(await page.locator("#detail output").innerText(), "8 px");
   await page.getByLabel("Borders never cross").uncheck();
-  await page.getByLabel("Too small").selectOption("left out");
+  await page.getByLabel("Tiny shapes").selectOption("left out");
   await page.getByLabel("Trapezoids").check();
   await page.getByLabel("Borders of tiles").check();
   const wanted = { simplify: "8", small: "drop", debug: "mesh,tile" };
@@ -284,7 +285,7 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   await page.getByLabel("Borders of tiles").uncheck();
   await slide(page.getByLabel("Simplify"), 1);
   await page.getByLabel("Borders never cross").check();
-  await page.getByLabel("Too small").selectOption("as a tint");
+  await page.getByLabel("Tiny shapes").selectOption("as a tint");
   await wait_for_query(page, "land", {});
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
@@ -404,10 +405,12 @@ test("everything in the panel can be reached and used by keyboard", async () => 
     }));
   }
   for (const name of ["Style of Lake", "Colour of Land", "Style of Land", "Fill opacity", "Colour by",
-    "Pattern", "Filter", "Back to the usual style", "Detail", "Simplify", "Too small", "Tiles",
+    "Pattern", "Filter", "Reset", "Detail", "Simplify", "Tiny shapes", "Tiles",
     "Copy"]) {
     assert.ok(reached.has(name), `${name} among ${[...reached].join(", ")}`);
   }
+  const { y, height } = await page.locator("#share-open").boundingBox();
+  assert.ok(y + height <= 800, "the way out stays in reach");
   await land.getByLabel("Fill opacity").focus();
   await page.keyboard.press("ArrowLeft");
   await wait_for_query(page, "land", { "fill-opacity": "0.95" });

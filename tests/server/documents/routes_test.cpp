@@ -72,6 +72,8 @@ std::string filled_in(std::string path) {
                                                      {"y", "0"},
                                                      {"style", "default"},
                                                      {"place", "10,10"},
+                                                     {"layer", "rings"},
+                                                     {"attribute", "rank"},
                                                      {"collectionId", "rings"},
                                                      {"tileMatrixSetId", "WebMercatorQuad"},
                                                      {"tileMatrix", "0"},

@@ -217,6 +217,10 @@ const std::vector<std::string>& hostile_targets() {
       "/identify/rings/7.5,47.6?z=-1",
       "/identify/rings/7.5",
       "/identify/rings/7.5,47.6,1",
+      "/values/rings/rank?bbox=",
+      "/values/rings/rank?bbox=1",
+      "/values/rings/rank?bbox=nan,0,1e999,inf",
+      "/values/rings/" + std::string(3'000, 'a'),
       "/wmts?service=WMTS&request=GetTile&layer=rings&tilematrix=../0&tilerow=0&tilecol=0",
       "/wmts?SERVICE=%00",
       "/wmts?service=WMTS&request=GetTile&version=1.0.0&layer=rings&style=default&format=image/png"

@@ -1,0 +1,77 @@
+// The three things that this map can do and others cannot, to be tried by one click each.
+
+import { STEPS, simplify_in_words } from "./detail_panel.js";
+import { button, element, input } from "./elements.js";
+
+const FIRST_PIXELS = 4; // what is seen at once
+const PIXELS_APART = 8; // at which gaps are wide
+
+/**
+ * For the TryPanel. `act` is {simplify(pixels), compare_apart(pixels), restyle(look), looks(),
+ * is_shown(look), picture_of(look): the address of a tile}; `has_apart`: polygons that share borders are
+ * served apart, too.
+ */
+export function demonstrations(act, { has_apart }) {
+  return [simplify_by_slider(act), ...(has_apart ? [gapless_against_apart(act)] : []),
+    restyle_by_click(act)];
+}
+
+function simplify_by_slider({ simplify }) {
+  const slider = input("range", {
+    min: 0, max: STEPS.length - 1, step: 1, "aria-label": "Simplify by",
+  });
+  const told = document.createElement("output");
+  const tell = () => {
+    const words = simplify_in_words(STEPS[slider.value]);
+    told.textContent = words;
+    slider.setAttribute("aria-valuetext", words);
+  };
+  slider.addEventListener("input", () => {
+    tell();
+    simplify(STEPS[slider.value]);
+  });
+  return {
+    title: "Simplify by a slider",
+    words: "Borders lose detail as far as you like, and neighbours keep theirs in common.",
+    start: () => {
+      slider.value = STEPS.indexOf(FIRST_PIXELS);
+      tell();
+      simplify(FIRST_PIXELS);
+    },
+    control: element("label", "row slider", element("span", "", "every vertex"), slider, told),
+  };
+}
+
+function gapless_against_apart({ compare_apart }) {
+  return {
+    title: "Gapless against apart",
+    words: "Neighbours share their borders on the left. On the right, each is simplified by itself.",
+    start: () => compare_apart(PIXELS_APART),
+    control: element("p", "hint", "Drag the handle in the middle of the map."),
+  };
+}
+
+function restyle_by_click({ restyle, looks, is_shown, picture_of }) {
+  const list = element("div", "looks");
+  const choose = (look, chosen) => {
+    for (const other of list.children) other.setAttribute("aria-pressed", String(other === chosen));
+    restyle(look);
+  };
+  const show = () => {
+    list.replaceChildren(...looks().map((look) => {
+      const picture = element("img", "");
+      picture.alt = "";
+      picture.src = picture_of(look);
+      const control = button("", { "aria-pressed": String(is_shown(look)) });
+      control.append(picture, element("span", "", look.title));
+      control.addEventListener("click", () => choose(look, control));
+      return control;
+    }));
+  };
+  return {
+    title: "Restyle by click",
+    words: "Any style, for the whole map at once: every tile is drawn when it is asked for.",
+    start: show,
+    control: list,
+  };
+}

@@ -1,0 +1,146 @@
+// The place that was clicked, what lies there, and which of it is chosen: told in a panel, and outlined
+// on the map.
+
+import { FeaturePanel, ask_features } from "./feature_panel.js";
+import { path_of_layers, query_part, taken_by } from "./tile_query.js";
+import { pixels_across, wrapped_longitude } from "./view_bounds.js";
+
+const DOUBLE_CLICK_MS = 250;
+
+const OF_SHAPES = ["simplify", "topology"];
+// Over everything, whatever the style: a line that is seen on light and on dark, and a tint that hides
+// nothing.
+const TINT = "ffffff40";
+const LINE = "c2185b";
+const OUTLINE = [["highlight-stroke", LINE], ["stroke", LINE],
+  ["stroke-width", "2.5"], ["stroke-opacity", "1"], ["stroke-dasharray", "1,0"],
+  ["fill-opacity", "1"], ["opacity", "1"], ["pattern", "none"]];
+const SMALL = 32; // pixels; an outline fades with what is hardly larger than the line is wide
+// Of what is large, ponds and islets would only be specks of colour.
+const LARGE = 200; // pixels
+const PIXELS_IF_LARGE = 1; // to which its outline is simplified at least
+
+export class FeatureChoice {
+  /**
+   * @param map the Leaflet map
+   * @param node of the panel
+   * @param look gives {base; layers: those that are on, {name, style}, the lowest first; catalog; shared: what is
+   *   set for all; shapes: the same, with what the named style sets}
+   * @param on {change(), called after the place or the choice has changed; go_to(box in degrees, name
+   *   of a layer); title_of(name)}
+   */
+  constructor(map, node, look, on) {
+    this.map_ = map;
+    this.look_ = look;
+    this.on_ = on;
+    this.at_ = null;
+    this.chosen_ = null;
+    this.found_ = [];
+    this.panel_ = new FeaturePanel(node, {
+      choose: (feature) => this.choose_(feature),
+      go_to: ({ bbox, part_bbox, layer }) => on.go_to(part_bbox ?? bbox, layer),
+      close: () => this.close_(),
+      title_of: on.title_of,
+    });
+    on_single_click(map, (place) => this.ask_(place));
+    const container = map.getContainer();
+    container.addEventListener("keydown", (event) => {
+      if (event.target !== container) return;
+      if (event.key === "Enter") this.ask_(map.getCenter(), { is_by_key: true });
+      if (event.key === "Escape") this.close_();
+    });
+  }
+
+  /** {at, chosen} for the address. */
+  get now() {
+    return { at: this.at_, chosen: this.chosen_ };
+  }
+
+  /** What the address says; nothing is told where `at` is null. */
+  show({ at, chosen }) {
+    this.chosen_ = chosen;
+    if (at) {
+      this.ask_({ lat: at.lat, lng: at.lon });
+    } else {
+      this.at_ = null;
+      this.panel_.hide();
+    }
+  }
+
+  /** The tiles that outline what is chosen: none or one, see tile_requests(). */
+  requests() {
+    const { layers, catalog, shapes } = this.look_();
+    const { layer: name, id } = this.chosen_ ?? {};
+    const layer = catalog.find((one) => one.name === name);
+    if (!layer || !layers.some((one) => one.name === name)) return [];
+    const shape = new Map(taken_by(layer, shapes).filter(([key]) => OF_SHAPES.includes(key)));
+    const pixels = this.pixels_across_();
+    shape.set("small", "keep");
+    shape.set("highlight-fill", pixels < SMALL ? LINE : TINT);
+    if (pixels >= LARGE) {
+      const { simplify = 0 } = Object.fromEntries(shape);
+      shape.set("simplify", Math.max(PIXELS_IF_LARGE, Number(simplify)));
+      shape.set("small", "drop");
+    }
+    return [{
+      layers: [name],
+      path: path_of_layers([layer]),
+      query: query_part([["ids", id], ["highlight", id], ...OUTLINE, ...shape]),
+      min_zoom: 0, max_zoom: Infinity, parts: [],
+    }];
+  }
+
+  async ask_({ lat, lng }, { is_by_key = false } = {}) {
+    const at = { lat, lon: wrapped_longitude(lng) };
+    this.at_ = at;
+    const { base, layers, shared } = this.look_();
+    try {
+      if (layers.length === 0) throw new Error("No layer is shown.");
+      const found = await ask_features(base, layers, shared, at, this.map_.getZoom());
+      if (this.at_ !== at) return;
+      this.found_ = found;
+      this.choose_(found.find((feature) => this.is_chosen_(feature)) ?? found[0]);
+    } catch (error) {
+      if (this.at_ !== at) return;
+      this.found_ = [];
+      this.choose_(undefined, error.message);
+    }
+    if (is_by_key) this.panel_.focus();
+  }
+
+  /** How large on the screen it is that is chosen; as long as that is not known, large. */
+  pixels_across_() {
+    const found = this.found_.find((feature) => this.is_chosen_(feature));
+    return found ? pixels_across(this.map_, found.part_bbox ?? found.bbox) : LARGE;
+  }
+
+  /** `feature` of those found, or nothing. */
+  choose_(feature, otherwise = "There is nothing here.") {
+    this.chosen_ = feature ? { layer: feature.layer, id: String(feature.id) } : null;
+    if (feature) this.panel_.show(this.found_, feature);
+    else this.panel_.show_message(otherwise);
+    this.on_.change();
+  }
+
+  close_() {
+    this.at_ = null;
+    this.chosen_ = null;
+    this.panel_.hide();
+    this.on_.change();
+    this.map_.getContainer().focus({ preventScroll: true });
+  }
+
+  is_chosen_({ layer, id }) {
+    return this.chosen_?.layer === layer && this.chosen_.id === String(id);
+  }
+}
+
+/** Calls `act` with the place of a click that is not the first half of a double click. */
+function on_single_click(map, act) {
+  let waiting = null;
+  map.on("click", ({ latlng }) => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => act(latlng), DOUBLE_CLICK_MS);
+  });
+  map.on("dblclick", () => clearTimeout(waiting));
+}

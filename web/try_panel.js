@@ -1,0 +1,85 @@
+// What to try first: a few buttons, each with a sentence, that show what this map can do and others
+// cannot. While one of them runs, its control takes their place.
+
+import { button, element } from "./elements.js";
+
+export class TryPanel {
+  /**
+   * @param node the empty element of the panel
+   * @param opener the button that shows it again
+   * @param demonstrations {title, words, start(), control: a node}
+   * @param places to go to: {title, go()}
+   * @param on {started(), ended(): what was there before shall come back}
+   */
+  constructor(node, opener, demonstrations, places, on) {
+    this.node_ = node;
+    this.opener_ = opener;
+    this.on_ = on;
+    this.offer_ = this.make_offer_(demonstrations, places);
+    this.is_running_ = false;
+    opener.addEventListener("click", () => {
+      this.open();
+      node.querySelector("button").focus();
+    });
+    // What lies at the foot of the window makes room for it.
+    new ResizeObserver(() => document.documentElement.style.setProperty("--try",
+      `${node.offsetHeight}px`)).observe(node);
+  }
+
+  open() {
+    this.node_.replaceChildren(...this.offer_);
+    this.node_.hidden = false;
+    this.opener_.hidden = true;
+  }
+
+  close() {
+    this.end_();
+    this.node_.hidden = true;
+    this.opener_.hidden = false;
+  }
+
+  make_offer_(demonstrations, places) {
+    const close = button("×", { "aria-label": "Close", class: "close" });
+    close.addEventListener("click", () => {
+      this.close();
+      this.opener_.focus();
+    });
+    const choices = demonstrations.map((demonstration) => {
+      const choice = button("", { class: "choice" });
+      choice.append(element("b", "", demonstration.title), element("span", "", demonstration.words));
+      choice.addEventListener("click", () => this.run_(demonstration));
+      return choice;
+    });
+    const ways = places.map(({ title, go }) => {
+      const way = button(title);
+      way.addEventListener("click", go);
+      return way;
+    });
+    return [
+      element("header", "", element("h2", "", "Try it"),
+        ...(ways.length ? [element("p", "ways", "Go to", ...ways)] : []), close),
+      element("div", "choices", ...choices),
+    ];
+  }
+
+  run_({ title, words, start, control }) {
+    if (!this.is_running_) this.on_.started();
+    this.is_running_ = true;
+    const back = button("Back");
+    back.addEventListener("click", () => {
+      this.end_();
+      this.open();
+      this.node_.querySelector(".choice").focus();
+    });
+    this.node_.replaceChildren(
+      element("header", "", element("h2", "", title), back), element("p", "hint", words), control);
+    start();
+    (control.querySelector("input, button") ?? back).focus();
+  }
+
+  end_() {
+    if (!this.is_running_) return;
+    this.is_running_ = false;
+    this.on_.ended();
+  }
+}
