@@ -31,20 +31,20 @@ View middle_of(const View& view) {
   return middle;
 }
 
-void write(const Picture& picture, const std::filesystem::path& path) {
+void write(const RunPicture& picture, const std::filesystem::path& path) {
   const std::string png = PngEncoder().encode(picture);
   std::ofstream file(path, std::ios::binary);
   file.write(png.data(), static_cast<std::streamsize>(png.size()));
   if (!file.flush()) throw std::runtime_error(path.string() + " cannot be written");
 }
 
-Picture filled(const std::vector<Mask>& masks, std::span<const Rgba> fills) {
+RunPicture filled(const std::vector<Mask>& masks, std::span<const Rgba> fills) {
   std::vector<PaintedClass> layers;
   for (std::size_t i = 0; i < masks.size(); ++i) {
     layers.push_back({&masks[i], fills[i % fills.size()]});
   }
-  Picture picture;
-  Composer().compose(plain_layers(layers), kWidth, kHeight, kPaper, picture);
+  RunPicture picture;
+  Composer().compose(plain_layers(layers), kWidth, kHeight, kPaper, Quality::exact, picture);
   return picture;
 }
 
@@ -81,7 +81,7 @@ std::vector<std::string> draw_figures(const Map& map, const std::vector<ScaledVi
         layers[i]->select({view.box(), scaled.level, scaled.level, small}, ranges[i]);
       }
     };
-    const auto write_as = [&](const Picture& picture, const std::string& suffix) {
+    const auto write_as = [&](const RunPicture& picture, const std::string& suffix) {
       names.push_back(map.source.name + "-" + std::to_string(number) + suffix + ".png");
       write(picture, std::filesystem::path(folder) / names.back());
     };
@@ -89,13 +89,12 @@ std::vector<std::string> draw_figures(const Map& map, const std::vector<ScaledVi
     select(SmallPolygons::dust);
     screen.draw(meshes, ranges, view, masks);
     write_as(filled(masks, kFills), "");
-    Picture picture = filled(masks, kPaleFills);
-    spread_palette(picture);
+    Picture picture = to_pixels(filled(masks, kPaleFills));
     select(SmallPolygons::drop);
     for (std::size_t i = 0; i < layers.size(); ++i) {
       mark_mesh(meshes[i], ranges[i], view, kMeshColour, picture);
     }
-    write_as(picture, "-mesh");
+    write_as(to_runs(picture), "-mesh");
   }
   for (const MeshView& mesh : meshes) screen.forget(mesh.id);
   return names;

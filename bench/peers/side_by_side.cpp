@@ -92,7 +92,7 @@ void SideBySide::write(const std::string& path) const {
             static_cast<int>(i) * (kTilePixels + kGap), tile * (kTilePixels + kGap), sheet);
     }
   }
-  const std::string png = PngEncoder().encode(sheet);
+  const std::string png = PngEncoder().encode(to_runs(sheet));
   std::ofstream file(path, std::ios::binary);
   file << png;
   if (!file.flush()) throw std::runtime_error("cannot write " + path);

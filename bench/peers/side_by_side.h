@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/picture/compose.h"
+#include "render/picture/picture.h"
 
 namespace trapeze {
 

@@ -175,10 +175,10 @@ void compose_layers(benchmark::State& state) {
   const std::vector<PaintedClass> all{{&lower, {200, 30, 30, 255}}, {&upper, {30, 30, 200, 128}}};
   const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(0))));
   Composer composer;
-  Picture picture;
+  RunPicture picture;
   for (auto _ : state) {
-    composer.compose(layers, 256, 256, kTransparent, picture);
-    benchmark::DoNotOptimize(picture.indices.data());
+    composer.compose(layers, 256, 256, kTransparent, Quality::bounded, picture);
+    benchmark::DoNotOptimize(picture.runs.data());
   }
 }
 BENCHMARK(compose_layers)->ArgName("layers")->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
@@ -188,8 +188,8 @@ void encode(benchmark::State& state) {
   const Mask other = sample_mask(33);
   const std::vector<PaintedClass> all{{&mask, {200, 30, 30, 255}}, {&other, {30, 30, 200, 128}}};
   const auto layers = plain_layers(std::span(all).first(static_cast<std::size_t>(state.range(1))));
-  Picture picture;
-  Composer().compose(layers, 256, 256, kTransparent, picture);
+  RunPicture picture;
+  Composer().compose(layers, 256, 256, kTransparent, Quality::bounded, picture);
   PngEncoder encoder;
   std::size_t bytes = 0;
   for (auto _ : state) {

@@ -61,7 +61,7 @@ struct StagedTile {
   Layer::Selection selection;
   std::vector<TrapezoidRange> ranges;
   Mask mask;
-  Picture picture;
+  RunPicture picture;
 };
 
 std::size_t count_of(std::span<const TrapezoidRange> ranges) {
@@ -93,7 +93,8 @@ void compose_one(Composer& composer, StagedTile& tile) {
   const PaintedClass filled{&tile.mask, kFill};
   PaintedLayer layer;
   layer.classes = {&filled, 1};
-  composer.compose({&layer, 1}, tile.view.width, tile.view.height, kTransparent, tile.picture);
+  composer.compose({&layer, 1}, tile.view.width, tile.view.height, kTransparent, Quality::bounded,
+                   tile.picture);
 }
 
 /// Does the step for one tile after the other.
@@ -147,7 +148,7 @@ void resolve(benchmark::State& state, const std::string& layer) {
   Composer composer;
   go_round(state, tiles, [&](StagedTile& tile) {
     compose_one(composer, tile);
-    benchmark::DoNotOptimize(tile.picture.indices.data());
+    benchmark::DoNotOptimize(tile.picture.runs.data());
   });
 }
 

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
-#include <optional>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "render/mask/row_bits.h"
+#include "render/picture/number_table.h"
+
 namespace trapeze {
 namespace {
-
-constexpr std::size_t kValues = 256;
 
 // What one or several layers show of a pixel. Colours are premultiplied; all from 0 to 1.
 struct Paint {
@@ -135,375 +136,25 @@ Rgba to_rgba(const Paint& paint) {
   return {to_byte(paint.r * scale), to_byte(paint.g * scale), to_byte(paint.b * scale), a};
 }
 
-// The paint of one class at every value of its mask.
-std::array<Paint, kValues> paints_of(Rgba colour, float opacity = 1) {
-  std::array<Paint, kValues> paints;
-  for (std::size_t value = 0; value < kValues; ++value) {
-    paints[value] = to_paint(colour, static_cast<float>(value) / 255.0f, opacity);
+/// Which values of which masks a run of pixels shows, and how layers meet in it, as far as that
+/// fits into sixteen bytes.
+struct MixtureKey {
+  std::uint64_t low = 0;
+  std::uint64_t high = 0;
+
+  static constexpr std::size_t kBytes = 16;
+
+  /// Sets a byte that is 0.
+  void set(std::size_t byte, std::uint8_t value) { change(byte, 0, value); }
+  void change(std::size_t byte, std::uint8_t from, std::uint8_t to) {
+    const std::uint64_t bits = std::uint64_t{static_cast<std::uint8_t>(from ^ to)} << byte % 8 * 8;
+    (byte < 8 ? low : high) ^= bits;
   }
-  return paints;
-}
-
-std::uint32_t to_bits(Rgba colour) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &colour, sizeof bits);
-  return bits;
-}
-
-// Eight pixels at once: most of a tile is flat.
-constexpr std::size_t kBlock = 8;
-constexpr std::uint64_t kEachByte = 0x0101010101010101;
-
-std::uint64_t block_at(const std::uint8_t* values) {
-  std::uint64_t block = 0;
-  std::memcpy(&block, values, sizeof block);
-  return block;
-}
-
-// From keys to numbers, by open addressing.
-class NumberTable {
- public:
-  NumberTable() : slots_(512) {}
-
-  // The number of the key; 0, to be set, if it is new.
-  std::uint32_t& operator[](std::uint64_t key) {
-    if (count_ * 2 >= slots_.size()) grow();
-    Slot& slot = find(key);
-    if (slot.generation != generation_) {
-      slot = {key, 0, generation_};
-      ++count_;
-    }
-    return slot.number;
+  friend bool operator==(const MixtureKey&, const MixtureKey&) = default;
+  std::uint64_t hash() const {
+    return low * 0x9e3779b97f4a7c15 ^ std::rotl(high * 0xc2b2ae3d27d4eb4f, 29);
   }
-
-  // Forgets all keys.
-  void clear() {
-    count_ = 0;
-    if (++generation_ != 0) return;
-    std::fill(slots_.begin(), slots_.end(), Slot{});
-    generation_ = 1;
-  }
-
- private:
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t number = 0;
-    std::uint32_t generation = 0;  // it is empty if this is not the table's
-  };
-
-  Slot& find(std::uint64_t key) {
-    std::size_t i = (key * 0x9e3779b97f4a7c15) >> 40 & (slots_.size() - 1);
-    while (slots_[i].generation == generation_ && slots_[i].key != key) {
-      i = (i + 1) & (slots_.size() - 1);
-    }
-    return slots_[i];
-  }
-
-  void grow() {
-    std::vector<Slot> old(slots_.size() * 2);
-    old.swap(slots_);
-    for (const Slot& slot : old) {
-      if (slot.generation == generation_) find(slot.key) = slot;
-    }
-  }
-
-  std::vector<Slot> slots_;
-  std::size_t count_ = 0;
-  std::uint32_t generation_ = 1;
 };
-
-}  // namespace
-
-// A picture being painted. Pixels that have met the same paints at the same values share a mixture,
-// so that colours are computed once a mixture and not once a pixel; and a block of equal
-// pixels is treated as one.
-class Composer::Canvas {
- public:
-  void begin(int width, int height, Rgba background) {
-    width_ = width;
-    height_ = height;
-    size_ = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    background_ = to_paint(background, 1);
-    mixtures_.assign(1, Paint());
-    blocks_.assign((size_ + kBlock - 1) / kBlock, 0);
-    pixels_.resize(blocks_.size() * kBlock);
-  }
-
-  /// Changes every pixel, by mix(mixture, value). Nothing is changed where the value is 0.
-  template <typename Mix>
-  void paint(const Mask* mask, const Mix& mix) {
-    if (mask == nullptr) {
-      for (Paint& mixture : mixtures_) mixture = mix(mixture, std::uint8_t{255});
-      return;
-    }
-    mixed_.clear();
-    rows_.clear();
-    row_of_.assign(mixtures_.size(), kNoRow);
-    const std::uint8_t* values = mask->pixels().data();
-    const std::size_t whole_blocks = size_ / kBlock;
-    for (std::size_t i = 0; i < whole_blocks; ++i, values += kBlock) paint_block(i, values, mix);
-    if (whole_blocks < blocks_.size()) {
-      std::array<std::uint8_t, kBlock> rest{};
-      std::copy_n(values, size_ - whole_blocks * kBlock, rest.begin());
-      paint_block(whole_blocks, rest.data(), mix);
-    }
-    last_key_ = 0;  // what it stands for ends with the layer
-  }
-
-  /// Changes every pixel, by mix(mixture, value, value of the pattern). Nothing is changed where
-  /// the value is 0.
-  template <typename Mix>
-  void paint(const Mask* mask, const Mask& pattern, const Mix& mix) {
-    mixed_.clear();
-    last_key_ = 0;
-    const std::uint8_t* patterns = pattern.pixels().data();
-    const std::uint8_t* values = mask == nullptr ? nullptr : mask->pixels().data();
-    for (std::size_t i = 0; i < size_; i += kBlock) {
-      const std::size_t count = std::min(kBlock, size_ - i);
-      const bool is_empty = values != nullptr && count == kBlock && block_at(values + i) == 0;
-      if (is_empty) continue;
-      std::uint32_t& block = blocks_[i / kBlock];
-      if (block != kMixed) std::fill_n(pixels_.data() + i, kBlock, block);
-      block = kMixed;
-      for (std::size_t k = i; k < i + count; ++k) {
-        const std::uint8_t value = values == nullptr ? 255 : values[k];
-        if (value == 0) continue;
-        const std::uint32_t below = pixels_[k];
-        pixels_[k] = number_of(std::uint64_t{below} << 16 | std::uint64_t{value} << 8 | patterns[k],
-                               [&] { return mix(mixtures_[below], value, patterns[k]); });
-      }
-    }
-    last_key_ = 0;
-  }
-
-  /// Changes the mixtures themselves, by change(mixture).
-  template <typename Change>
-  void change_all(const Change& change) {
-    for (Paint& mixture : mixtures_) mixture = change(mixture);
-  }
-
-  /// Whether nothing has been painted yet.
-  bool is_blank() const {
-    return mixtures_.size() == 1 && mixtures_[0].a == 0 && mixtures_[0].covered == 0;
-  }
-
-  /// Becomes what paint_over() of this canvas would make of another one, which is blank.
-  void lie_over_blank(const Canvas& blank, float opacity) {
-    background_ = blank.background_;
-    change_all([opacity](const Paint& paint) { return over(faded(paint, opacity), {}); });
-  }
-
-  /// Paints another canvas of the same size over this one, with that opacity.
-  void paint_over(const Canvas& other, float opacity) {
-    mixed_.clear();
-    last_key_ = 0;
-    const auto mix_pixel = [&](std::uint32_t below, std::uint32_t above) {
-      // Counted from 1, so that no key is that of nothing.
-      return number_of(std::uint64_t{below} << 32 | (above + 1), [&] {
-        return over(faded(other.mixtures_[above], opacity), mixtures_[below]);
-      });
-    };
-    const bool begins_empty = other.mixtures_[0].a == 0;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const std::uint32_t above = other.blocks_[i];
-      if (above == 0 && begins_empty) continue;
-      if (above != kMixed && blocks_[i] != kMixed) {
-        blocks_[i] = mix_pixel(blocks_[i], above);
-        continue;
-      }
-      std::uint32_t* pixels = pixels_.data() + i * kBlock;
-      const std::uint32_t* others = other.pixels_.data() + i * kBlock;
-      if (blocks_[i] != kMixed) std::fill_n(pixels, kBlock, blocks_[i]);
-      blocks_[i] = kMixed;
-      for (std::size_t k = 0; k < kBlock; ++k) {
-        pixels[k] = mix_pixel(pixels[k], above == kMixed ? others[k] : above);
-      }
-    }
-    last_key_ = 0;
-  }
-
-  /// Notes what is there now in the pixels of meetings, for meet().
-  void note_below(std::span<const Meeting> meetings) {
-    below_.clear();
-    for (const Meeting& meeting : meetings) {
-      std::uint32_t& block = blocks_[meeting.pixel / kBlock];
-      std::uint32_t* const pixels = pixels_.data() + meeting.pixel / kBlock * kBlock;
-      if (block != kMixed) std::fill_n(pixels, kBlock, block);
-      block = kMixed;
-      below_.push_back(pixels[meeting.pixel % kBlock]);
-    }
-  }
-
-  /// Paints the pixels of these meetings anew, by mix(what was there, meeting); what
-  /// `number_above(meeting)` tells apart is less than 2^24.
-  template <typename NumberAbove, typename Mix>
-  void meet(std::span<const Meeting> meetings, const NumberAbove& number_above, const Mix& mix) {
-    if (meetings.empty()) return;
-    mixed_.clear();
-    last_key_ = 0;
-    for (std::size_t i = 0; i < meetings.size(); ++i) {
-      const Meeting& meeting = meetings[i];
-      // Counted from 1, so that no key is that of nothing.
-      const std::uint64_t key =
-          std::uint64_t{below_[i] + 1} << 40 | std::uint64_t{number_above(meeting)} << 16 |
-          std::uint64_t{static_cast<std::uint8_t>(meeting.relation)} << 8 | meeting.gap;
-      pixels_[meeting.pixel] = number_of(key, [&] { return mix(mixtures_[below_[i]], meeting); });
-    }
-    last_key_ = 0;
-  }
-
-  const Paint& mixture(std::uint32_t number) const { return mixtures_[number]; }
-  std::uint32_t mixture_at(std::uint32_t pixel) const {
-    const std::uint32_t block = blocks_[pixel / kBlock];
-    return block == kMixed ? pixels_[pixel] : block;
-  }
-
-  int width() const { return width_; }
-  int height() const { return height_; }
-
-  void finish(Picture& picture) {
-    picture.width = width_;
-    picture.height = height_;
-    picture.palette.clear();
-    picture.indices.clear();
-    picture.pixels.clear();
-    if (!to_indices(picture)) to_colours(picture);
-  }
-
- private:
-  static constexpr std::uint32_t kMixed = 0xffffffff;  // a block of several mixtures
-  static constexpr std::uint16_t kNoIndex = 0xffff;    // a mixture that was not met yet
-  static constexpr std::uint32_t kNoRow = 0xffffffff;
-  static constexpr std::size_t kMostRows = 1024;  // a megabyte
-
-  template <typename Mix>
-  void paint_block(std::size_t i, const std::uint8_t* values, const Mix& mix) {
-    const std::uint64_t block = block_at(values);
-    if (block == 0) return;
-    std::uint32_t& mixture = blocks_[i];
-    if (mixture != kMixed && block == (block & 0xff) * kEachByte) {
-      mixture = mixture_for(mixture, values[0], mix);
-      return;
-    }
-    std::uint32_t* pixels = pixels_.data() + i * kBlock;
-    if (mixture != kMixed) std::fill_n(pixels, kBlock, mixture);
-    mixture = kMixed;
-    for (std::size_t k = 0; k < kBlock; ++k) {
-      if (values[k] != 0) pixels[k] = mixture_for(pixels[k], values[k], mix);
-    }
-  }
-
-  // The mixture that results from painting over a mixture at that value.
-  template <typename Mix>
-  std::uint32_t mixture_for(std::uint32_t below, std::uint8_t value, const Mix& mix) {
-    std::uint32_t& row = row_of_[below];
-    if (row == kNoRow) {
-      if (rows_.size() == kMostRows * kValues) {
-        return number_of(std::uint64_t{below} << 8 | value,
-                         [&] { return mix(mixtures_[below], value); });
-      }
-      row = static_cast<std::uint32_t>(rows_.size());
-      rows_.resize(rows_.size() + kValues);
-    }
-    std::uint32_t& number = rows_[row + value];
-    if (number == 0) number = add(mix(mixtures_[below], value));
-    return number;
-  }
-
-  std::uint32_t add(const Paint& mixture) {
-    mixtures_.push_back(mixture);
-    return static_cast<std::uint32_t>(mixtures_.size() - 1);
-  }
-
-  // The mixture of that key, which make() makes if it is new.
-  template <typename Make>
-  std::uint32_t number_of(std::uint64_t key, const Make& make) {
-    if (key == last_key_) return last_mixture_;
-    std::uint32_t& number = mixed_[key];
-    if (number == 0) number = add(make());
-    last_key_ = key;
-    return last_mixture_ = number;
-  }
-
-  // Of the layers over the background.
-  Rgba colour_of(const Paint& mixture) const {
-    return to_rgba(mixed(mixture, 1, background_, 1.0f - mixture.covered + mixture.beneath));
-  }
-
-  // False if there are too many colours.
-  bool to_indices(Picture& picture) {
-    index_of_.assign(mixtures_.size(), kNoIndex);
-    indices_by_colour_.clear();
-    picture.indices.resize(pixels_.size());
-    const bool is_done = translate(picture.indices.data(), [&](std::uint32_t mixture) {
-      std::uint16_t& index = index_of_[mixture];
-      if (index == kNoIndex) index = index_of(colour_of(mixtures_[mixture]), picture.palette);
-      return index;
-    });
-    picture.indices.resize(is_done ? size_ : 0);
-    if (!is_done) picture.palette.clear();
-    return is_done;
-  }
-
-  void to_colours(Picture& picture) {
-    colours_.resize(mixtures_.size());
-    std::transform(mixtures_.begin(), mixtures_.end(), colours_.begin(),
-                   [this](const Paint& mixture) { return colour_of(mixture); });
-    picture.pixels.resize(pixels_.size());
-    translate(picture.pixels.data(), [&](std::uint32_t mixture) { return colours_[mixture]; });
-    picture.pixels.resize(size_);
-  }
-
-  // kValues if the palette is full.
-  std::uint16_t index_of(Rgba colour, std::vector<Rgba>& palette) {
-    std::uint32_t& number = indices_by_colour_[to_bits(colour)];  // counted from 1
-    if (number == 0) {
-      if (palette.size() == kValues) return kValues;
-      palette.push_back(colour);
-      number = static_cast<std::uint32_t>(palette.size());
-    }
-    return static_cast<std::uint16_t>(number - 1);
-  }
-
-  // Writes what `value_of` says of every pixel's mixture. Ends, false, when that is kValues.
-  template <typename T, typename ValueOf>
-  bool translate(T* out, ValueOf value_of) const {
-    for (std::size_t i = 0; i < blocks_.size(); ++i, out += kBlock) {
-      const std::uint32_t* pixels = pixels_.data() + i * kBlock;
-      const std::size_t count = blocks_[i] == kMixed ? kBlock : 1;
-      for (std::size_t k = 0; k < count; ++k) {
-        const auto value = value_of(count == 1 ? blocks_[i] : pixels[k]);
-        if constexpr (std::is_integral_v<T>) {
-          if (value == kValues) return false;
-        }
-        out[k] = static_cast<T>(value);
-      }
-      if (count == 1) std::fill_n(out + 1, kBlock - 1, out[0]);
-    }
-    return true;
-  }
-
-  int width_ = 0;
-  int height_ = 0;
-  std::size_t size_ = 0;  // in pixels
-  Paint background_;
-  std::vector<Paint> mixtures_;        // of number 0: what it begins with
-  std::vector<std::uint32_t> blocks_;  // the mixture of eight pixels, or kMixed
-  std::vector<std::uint32_t> pixels_;  // the mixtures of pixels in mixed blocks
-  // For the layer of now: what becomes of a mixture at each value, and where to look for that by
-  // mixture; of mixtures beyond the first so many, by mixture below and value.
-  std::vector<std::uint32_t> rows_;
-  std::vector<std::uint32_t> row_of_;
-  NumberTable mixed_;
-  std::uint64_t last_key_ = 0;
-  std::uint32_t last_mixture_ = 0;
-  std::vector<std::uint32_t> below_;     // the mixtures that note_below() found
-  std::vector<std::uint16_t> index_of_;  // by mixture
-  std::vector<Rgba> colours_;            // by mixture
-  NumberTable indices_by_colour_;
-};
-
-namespace {
 
 void require_size(const Mask* mask, int width, int height) {
   if (mask == nullptr) return;
@@ -512,47 +163,424 @@ void require_size(const Mask* mask, int width, int height) {
   }
 }
 
-void require_size(const PaintedLayer& layer, int width, int height) {
-  for (const PaintedClass& one : layer.classes) require_size(one.mask, width, height);
-  for (const PaintedClass& one : layer.lines) require_size(one.mask, width, height);
-  require_size(layer.pattern, width, height);
-}
-
-/// The function that lays a colour over a mixture.
-auto laid_over(Rgba colour, double opacity = 1) {
-  return [paints = paints_of(colour, static_cast<float>(opacity))](
-             const Paint& below, std::uint8_t value) { return over(paints[value], below); };
-}
-
-/// A colour with a layer's pattern on it, by the values of their masks.
-class PatternedPaints {
- public:
-  PatternedPaints(Rgba colour, const PaintedLayer& layer)
-      : fills_(paints_of(colour)),
-        patterns_(paints_of(layer.pattern_colour)),
-        opacity_(static_cast<float>(layer.opacity)) {}
-
-  Paint at(std::uint8_t value, std::uint8_t pattern_value) const {
-    return faded(within(patterns_[pattern_value], fills_[value]), opacity_);
-  }
-
- private:
-  std::array<Paint, kValues> fills_;
-  std::array<Paint, kValues> patterns_;
-  float opacity_;
-};
-
-std::uint8_t value_at(const Mask* mask, std::uint32_t pixel) {
-  return mask == nullptr ? std::uint8_t{255} : mask->pixels()[pixel];
-}
-
 }  // namespace
 
-Rgba Picture::at(int column, int row) const {
-  const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                        static_cast<std::size_t>(column);
-  return is_indexed() ? palette[indices[i]] : pixels[i];
-}
+// Goes through a picture run by run. A run ends where a mask changes.
+class Composer::Painter {
+ public:
+  /// Along edges, channels are at most so far from the exact ones; all are exact if that is 0.
+  void paint(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
+             int most_change, RunPicture& picture) {
+    picture.width = width;
+    picture.height = height;
+    picture.colours.clear();
+    picture.origins.clear();
+    picture.runs.clear();
+    picture.row_end.clear();
+    picture_ = &picture;
+    background_ = to_paint(background, 1);
+    columns_ = static_cast<std::size_t>(width);
+    numbers_.clear();
+    colours_.clear();
+    edges_.clear();
+    edge_numbers_.clear();
+    step_colours_.clear();
+    change_ = 0;
+    most_change_ = most_change;
+    begin(layers, height);
+    changes_.resize(words_for(columns_));
+    covered_.resize(words_for(columns_));
+    for (int row = 0; row < height; ++row) paint_row(row);
+  }
+
+  /// Of all channels of all pixels that were painted last, along edges.
+  double change() const { return change_; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr std::uint32_t kWhole = 0;  // the channel of what covers every pixel wholly
+
+  // A mask, and its values in the run at hand.
+  struct Channel {
+    const Mask* mask = nullptr;
+    const std::uint8_t* row = nullptr;
+    std::uint8_t value = 0;
+  };
+  // A class of a layer, or one of its lines.
+  struct Part {
+    Rgba colour;
+    bool is_beneath = false;
+    std::uint32_t channel = kWhole;
+  };
+  struct LayerParts {
+    const PaintedLayer* layer = nullptr;
+    std::vector<Part> classes;
+    std::vector<Part> lines;
+    std::uint32_t pattern = kWhole;
+    std::size_t next_meeting = 0;      // the first that is not in a row before
+    const Meeting* meeting = nullptr;  // in the run at hand; null: none
+  };
+
+  void begin(std::span<const PaintedLayer> layers, int height) {
+    channels_.assign(1, Channel{nullptr, nullptr, 255});
+    layer_count_ = layers.size();
+    if (layers_.size() < layer_count_) layers_.resize(layer_count_);
+    std::size_t meeting_layers = 0;
+    const auto channel_of = [&](const Mask* mask) {
+      if (mask == nullptr) return kWhole;
+      require_size(mask, static_cast<int>(columns_), height);
+      channels_.push_back({mask});
+      return static_cast<std::uint32_t>(channels_.size() - 1);
+    };
+    for (std::size_t k = 0; k < layer_count_; ++k) {
+      LayerParts& parts = layers_[k];
+      parts.layer = &layers[k];
+      parts.classes.clear();
+      parts.lines.clear();
+      parts.next_meeting = 0;
+      parts.meeting = nullptr;
+      for (const PaintedClass& one : layers[k].classes) {
+        parts.classes.push_back({one.colour, one.is_beneath, channel_of(one.mask)});
+      }
+      for (const PaintedClass& one : layers[k].lines) {
+        parts.lines.push_back({one.colour, false, channel_of(one.mask)});
+      }
+      parts.pattern = channel_of(layers[k].pattern);
+      meeting_layers += layers[k].meetings.empty() ? 0 : 1;
+    }
+    partial_.resize(channels_.size());
+    // The first channel never changes.
+    are_keys_short_ = channels_.size() - 1 + 2 * meeting_layers <= MixtureKey::kBytes;
+  }
+
+  void paint_row(int row) {
+    std::fill(changes_.begin(), changes_.end(), 0);
+    changes_[0] = 1;
+    there_.clear();
+    has_meetings_ = false;
+    for (std::size_t k = 0; k < layer_count_; ++k) mark_layer(layers_[k], row);
+    const std::size_t first_pixel = static_cast<std::size_t>(row) * columns_;
+    // The run that began last ends where the next one begins.
+    std::size_t begin = 0;
+    std::uint32_t colour = kNone;
+    const auto end_run = [&](std::size_t end) {
+      if (colour == kNone) return;
+      change_ += static_cast<double>(change_at_hand_) * static_cast<double>(end - begin);
+    };
+    for (std::size_t word = 0; word < changes_.size(); ++word) {
+      for (std::uint64_t bits = changes_[word]; bits != 0; bits &= bits - 1) {
+        const std::size_t column = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
+        end_run(column);
+        const std::uint32_t next = colour_at(column, first_pixel + column);
+        if (next != colour && colour != kNone) {
+          picture_->runs.push_back({static_cast<std::uint32_t>(column), colour});
+        }
+        begin = column;
+        colour = next;
+      }
+    }
+    end_run(columns_);
+    picture_->runs.push_back({static_cast<std::uint32_t>(columns_), colour});
+    picture_->row_end.push_back(static_cast<std::uint32_t>(picture_->runs.size()));
+  }
+
+  // Marks where the run at hand may end for what the layer shows in the row.
+  void mark_layer(LayerParts& parts, int row) {
+    for (const Part& part : parts.classes) mark(part.channel, row, changes_);
+    for (const Part& part : parts.lines) mark(part.channel, row, changes_);
+    if (parts.pattern != kWhole) mark_pattern(parts, row);
+    const auto meetings = parts.layer->meetings;
+    const std::size_t end = (static_cast<std::size_t>(row) + 1) * columns_;
+    const std::size_t begin = end - columns_;
+    std::size_t& next = parts.next_meeting;
+    while (next < meetings.size() && meetings[next].pixel < begin) ++next;
+    parts.meeting = nullptr;
+    for (std::size_t i = next; i < meetings.size() && meetings[i].pixel < end; ++i) {
+      has_meetings_ = true;
+      const std::size_t column = meetings[i].pixel - begin;
+      changes_[column / 64] |= std::uint64_t{1} << column % 64;
+      if (column + 1 < columns_) {
+        changes_[(column + 1) / 64] |= std::uint64_t{1} << (column + 1) % 64;
+      }
+    }
+  }
+
+  void mark(std::uint32_t number, int row, std::span<std::uint64_t> bits) {
+    Channel& channel = channels_[number];
+    if (number == kWhole) return;
+    channel.row = channel.mask->row_begin(row);
+    channel.value = 0;
+    const bool has_changes = mark_changes({channel.row, columns_}, bits);
+    if (has_changes || channel.row[0] != 0) there_.push_back(number);
+  }
+
+  // A pattern matters only where the layer covers something.
+  void mark_pattern(LayerParts& parts, int row) {
+    std::fill(covered_.begin(), covered_.end(), 0);
+    for (const Part& part : parts.classes) {
+      if (part.channel == kWhole) {
+        std::fill(covered_.begin(), covered_.end(), ~std::uint64_t{0});
+      } else {
+        mark_covered({channels_[part.channel].row, columns_}, covered_);
+      }
+    }
+    pattern_changes_.assign(changes_.size(), 0);
+    mark(parts.pattern, row, pattern_changes_);
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+      changes_[i] |= pattern_changes_[i] & covered_[i];
+    }
+  }
+
+  std::uint32_t colour_at(std::size_t column, std::size_t pixel) {
+    change_at_hand_ = 0;
+    partial_count_ = 0;
+    MixtureKey key;
+    for (const std::uint32_t number : there_) {
+      Channel& channel = channels_[number];
+      const std::uint8_t value = channel.row[column];
+      channel.value = value;
+      if (are_keys_short_) key.set(number - 1, value);
+      if (!is_whole(value)) partial_[partial_count_++] = number;
+    }
+    meeting_count_ = 0;
+    if (has_meetings_) meet(pixel, key);
+    if (!are_keys_short_) return add_colour();
+    if (most_change_ > 0 && partial_count_ > 0) {
+      const std::uint32_t along_edge = colour_along_edge(key);
+      if (along_edge != kNone) return along_edge;
+    }
+    std::uint32_t& known = numbers_[key];
+    if (known == NumberTable<MixtureKey>::kNone) known = add_colour();
+    return known;
+  }
+
+  static bool is_whole(std::uint8_t value) { return static_cast<std::uint8_t>(value + 1) <= 1; }
+
+  // Finds the meetings in the run at hand, which are a part of the key.
+  void meet(std::size_t pixel, MixtureKey& key) {
+    std::size_t byte = channels_.size() - 1;
+    for (std::size_t k = 0; k < layer_count_; ++k) {
+      LayerParts& parts = layers_[k];
+      if (parts.layer->meetings.empty()) continue;
+      parts.meeting = meeting_at(parts, pixel);
+      if (parts.meeting != nullptr) {
+        ++meeting_count_;
+        if (are_keys_short_) {
+          key.set(byte, static_cast<std::uint8_t>(parts.meeting->relation));
+          key.set(byte + 1, parts.meeting->gap);
+        }
+      }
+      byte += 2;
+    }
+  }
+
+  static const Meeting* meeting_at(LayerParts& parts, std::size_t pixel) {
+    const auto meetings = parts.layer->meetings;
+    std::size_t& next = parts.next_meeting;
+    while (next < meetings.size() && meetings[next].pixel < pixel) ++next;
+    return next < meetings.size() && meetings[next].pixel == pixel ? &meetings[next] : nullptr;
+  }
+
+  std::uint32_t add_colour() {
+    const bool is_flat = partial_count_ == 0 && meeting_count_ == 0;
+    return number_of(to_rgba(mixture_at_hand()), is_flat ? Origin::flat : Origin::mixed);
+  }
+
+  std::uint32_t number_of(Rgba colour, Origin origin) {
+    std::uint32_t& number = colours_[ColourKey(colour)];
+    if (number == NumberTable<ColourKey>::kNone) {
+      number = static_cast<std::uint32_t>(picture_->colours.size());
+      picture_->colours.push_back(colour);
+      picture_->origins.push_back(origin);
+    }
+    picture_->origins[number] = std::min(picture_->origins[number], origin);
+    return number;
+  }
+
+  // An edge is where one mask has a part of the pixel, or where two lie side by side and have all
+  // of it together. Whatever the others show, colours go in even steps from one side to the other.
+  struct Edge {
+    Paint from;
+    Paint to;
+    std::uint32_t steps = 0;       // 0: colours between them are not on a line
+    float step = 0;                // its share
+    std::uint32_t first_step = 0;  // index of its colour in step_colours_
+    float difference = 0;          // of both sides: the sum of the channels, of 255
+  };
+
+  bool is_edge_at_hand() const {
+    if (partial_count_ == 1) return meeting_count_ == 0;
+    if (partial_count_ != 2 || meeting_count_ > 1) return false;
+    const int both = channels_[partial_[0]].value + channels_[partial_[1]].value;
+    if (std::abs(both - 255) > 1) return false;
+    for (std::size_t k = 0; k < layer_count_ && meeting_count_ > 0; ++k) {
+      const Meeting* meeting = layers_[k].meeting;
+      if (meeting != nullptr && meeting->relation != Meeting::kSideBySide) return false;
+    }
+    return true;
+  }
+
+  // kNone if there is no edge at hand.
+  std::uint32_t colour_along_edge(MixtureKey key) {
+    if (!is_edge_at_hand()) return kNone;
+    const std::uint32_t value = channels_[partial_[0]].value;
+    // With values that no flat colour's key has.
+    for (std::size_t i = 0; i < partial_count_; ++i) {
+      key.change(partial_[i] - 1, channels_[partial_[i]].value, static_cast<std::uint8_t>(i + 1));
+    }
+    const Edge& edge = edge_of(key);
+    if (edge.steps == 0) return kNone;
+    const std::uint32_t step = (2 * value * edge.steps + 255) / 510;
+    const float share = static_cast<float>(step) * edge.step;
+    change_at_hand_ = edge.difference * std::abs(share - static_cast<float>(value) / 255);
+    std::uint32_t& colour = step_colours_[edge.first_step + step];
+    if (colour == kNone) {
+      const Paint mixture = mixed(edge.to, share, edge.from, 1 - share);
+      const bool is_side = step == 0 || step == edge.steps;
+      colour = number_of(to_rgba(mixture), is_side ? Origin::flat : Origin::edge);
+    }
+    return colour;
+  }
+
+  const Edge& edge_of(const MixtureKey& key) {
+    std::uint32_t& number = edge_numbers_[key];
+    if (number != NumberTable<MixtureKey>::kNone) return edges_[number];
+    number = static_cast<std::uint32_t>(edges_.size());
+    Edge edge{mixture_with({0, 255}), mixture_with({255, 0})};
+    const std::array apart{std::abs(edge.from.r - edge.to.r), std::abs(edge.from.g - edge.to.g),
+                           std::abs(edge.from.b - edge.to.b), std::abs(edge.from.a - edge.to.a)};
+    edge.difference = 255 * (apart[0] + apart[1] + apart[2] + apart[3]);
+    if (is_on_line(edge)) {
+      const float most = 255 * *std::ranges::max_element(apart);
+      const auto steps = static_cast<int>(std::ceil(most / static_cast<float>(2 * most_change_)));
+      edge.steps = static_cast<std::uint32_t>(std::max(1, steps));
+      edge.step = 1.0f / static_cast<float>(edge.steps);
+      edge.first_step = static_cast<std::uint32_t>(step_colours_.size());
+      step_colours_.resize(step_colours_.size() + edge.steps + 1, kNone);
+    }
+    return edges_.emplace_back(edge);
+  }
+
+  // Whether values between the two sides give the colours between them.
+  bool is_on_line(const Edge& edge) {
+    constexpr float kRounding = 0.1f / 255;
+    for (const std::uint8_t value : std::to_array<std::uint8_t>({51, 128, 204})) {
+      const Paint mixture = mixture_with({value, static_cast<std::uint8_t>(255 - value)});
+      const float share = static_cast<float>(value) / 255;
+      const Paint between = mixed(edge.to, share, edge.from, 1 - share);
+      const bool is_near = std::abs(mixture.r - between.r) < kRounding &&
+                           std::abs(mixture.g - between.g) < kRounding &&
+                           std::abs(mixture.b - between.b) < kRounding &&
+                           std::abs(mixture.a - between.a) < kRounding;
+      if (!is_near) return false;
+    }
+    return true;
+  }
+
+  using EdgeValues = std::array<std::uint8_t, 2>;
+
+  Paint mixture_with(EdgeValues values) {
+    const EdgeValues were = exchange_values(values);
+    const Paint mixture = mixture_at_hand();
+    exchange_values(were);
+    return mixture;
+  }
+
+  EdgeValues exchange_values(EdgeValues values) {
+    for (std::size_t i = 0; i < partial_count_; ++i) {
+      std::swap(channels_[partial_[i]].value, values[i]);
+    }
+    return values;
+  }
+
+  // Of the values and meetings at hand, over the background.
+  Paint mixture_at_hand() const {
+    Paint sum;
+    for (std::size_t k = 0; k < layer_count_; ++k) sum = with_layer(layers_[k], sum);
+    return mixed(sum, 1, background_, 1.0f - sum.covered + sum.beneath);
+  }
+
+  Paint with_layer(const LayerParts& parts, const Paint& below) const {
+    const auto opacity = static_cast<float>(parts.layer->opacity);
+    const bool is_separable = parts.lines.empty() || opacity == 1;
+    if (parts.classes.size() > 1 || !is_separable) {
+      const Paint together = faded(of_layer(parts), opacity);
+      return laid_over(together, below, parts.meeting);
+    }
+    Paint sum = below;
+    for (const Part& only : parts.classes) {
+      const float share = share_of(only.channel);
+      if (share == 0) continue;
+      if (parts.layer->pattern != nullptr) {
+        const Paint fill = to_paint(only.colour, share);
+        const Paint pattern = to_paint(parts.layer->pattern_colour, share_of(parts.pattern));
+        sum = laid_over(faded(within(pattern, fill), opacity), sum, parts.meeting);
+      } else if (only.colour.a > 0) {
+        sum = laid_over(to_paint(only.colour, share, opacity), sum, parts.meeting);
+      }
+    }
+    return with_lines(parts, sum);
+  }
+
+  // The layer by itself.
+  Paint of_layer(const LayerParts& parts) const {
+    Paint sum;
+    for (const Part& one : parts.classes) {
+      const float share = share_of(one.channel);
+      if (share == 0) continue;
+      const Paint paint = to_paint(one.colour, share);
+      sum = one.is_beneath ? added(paint, sum) : beside(paint, sum);
+    }
+    sum = settled(sum);
+    if (parts.layer->pattern != nullptr) {
+      const float share = share_of(parts.pattern);
+      if (share > 0) sum = within(to_paint(parts.layer->pattern_colour, share), sum);
+    }
+    return with_lines(parts, sum);
+  }
+
+  Paint with_lines(const LayerParts& parts, Paint sum) const {
+    for (const Part& line : parts.lines) {
+      const float share = share_of(line.channel);
+      if (share > 0) sum = over(to_paint(line.colour, share), sum);
+    }
+    return sum;
+  }
+
+  static Paint laid_over(const Paint& above, const Paint& below, const Meeting* meeting) {
+    return meeting == nullptr ? over(above, below) : over(above, below, *meeting);
+  }
+
+  float share_of(std::uint32_t channel) const {
+    return static_cast<float>(channels_[channel].value) / 255.0f;
+  }
+
+  RunPicture* picture_ = nullptr;
+  Paint background_;
+  std::size_t columns_ = 0;
+  std::vector<Channel> channels_;
+  std::vector<LayerParts> layers_;
+  std::size_t layer_count_ = 0;
+  bool are_keys_short_ = true;
+  std::vector<std::uint32_t> there_;  // channels that have a value in the row, besides the first
+  // By pixel of the row.
+  std::vector<std::uint64_t> changes_;
+  std::vector<std::uint64_t> pattern_changes_;
+  std::vector<std::uint64_t> covered_;
+  NumberTable<MixtureKey> numbers_;  // of colours
+  int most_change_ = 0;
+  NumberTable<MixtureKey> edge_numbers_;
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> step_colours_;  // of all edges; kNone: not met yet
+  // Of the run at hand.
+  std::vector<std::uint32_t> partial_;  // channels that have a part of the pixel
+  std::size_t partial_count_ = 0;
+  std::size_t meeting_count_ = 0;
+  float change_at_hand_ = 0;
+  bool has_meetings_ = false;  // in the row at hand
+  double change_ = 0;
+  NumberTable<ColourKey> colours_;
+};
 
 double covered_by(double below, double above, const Meeting& meeting) {
   const auto [covered, common] = shares_of(below, above, meeting);
@@ -565,96 +593,31 @@ std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes) {
   return layers;
 }
 
-Composer::Composer() : canvas_(std::make_unique<Canvas>()), layer_(std::make_unique<Canvas>()) {}
+Composer::Composer() : painter_(std::make_unique<Painter>()) {}
 Composer::~Composer() = default;
 Composer::Composer(Composer&&) noexcept = default;
 Composer& Composer::operator=(Composer&&) noexcept = default;
 
 void Composer::compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
-                       Picture& picture) {
-  canvas_->begin(width, height, background);
-  for (const PaintedLayer& layer : layers) {
-    require_size(layer, width, height);
-    paint(layer);
-  }
-  canvas_->finish(picture);
-}
-
-void Composer::paint(const PaintedLayer& layer) {
-  canvas_->note_below(layer.meetings);
-  const bool is_separable = layer.lines.empty() || layer.opacity == 1;
-  if (layer.classes.size() > 1 || !is_separable) return paint_together(layer);
-  for (const PaintedClass& only : layer.classes) {
-    if (layer.pattern != nullptr) {
-      paint_patterned(only, layer);
-    } else if (only.colour.a > 0) {
-      paint_only(only, layer);
-    }
-  }
-  for (const PaintedClass& line : layer.lines) {
-    canvas_->paint(line.mask, laid_over(line.colour));
-  }
-}
-
-void Composer::paint_only(const PaintedClass& only, const PaintedLayer& layer) {
-  const auto paints = paints_of(only.colour, static_cast<float>(layer.opacity));
-  canvas_->paint(only.mask, [&paints](const Paint& below, std::uint8_t value) {
-    return over(paints[value], below);
-  });
-  const auto value_of = [&](const Meeting& meeting) { return value_at(only.mask, meeting.pixel); };
-  canvas_->meet(layer.meetings, value_of, [&](const Paint& below, const Meeting& meeting) {
-    return over(paints[value_of(meeting)], below, meeting);
-  });
-}
-
-void Composer::paint_patterned(const PaintedClass& only, const PaintedLayer& layer) {
-  const PatternedPaints paints(only.colour, layer);
-  canvas_->paint(only.mask, *layer.pattern,
-                 [&paints](const Paint& below, std::uint8_t value, std::uint8_t pattern_value) {
-                   return over(paints.at(value, pattern_value), below);
-                 });
-  const auto values_of = [&](const Meeting& meeting) {
-    return std::pair(value_at(only.mask, meeting.pixel), value_at(layer.pattern, meeting.pixel));
+                       Quality quality, RunPicture& picture) {
+  const double most = 4 * kMostMeanChange * static_cast<double>(width) * height;
+  // The sum of all changes.
+  const auto paint = [&](int along_edges, int of_others, RunPicture& out) {
+    painter_->paint(layers, width, height, background, along_edges, out);
+    if (painter_->change() > most) return painter_->change();
+    return painter_->change() + static_cast<double>(reducer_.reduce(out, of_others));
   };
-  const auto number_of = [&](const Meeting& meeting) {
-    const auto [value, pattern_value] = values_of(meeting);
-    return std::uint32_t{value} << 8 | pattern_value;
-  };
-  canvas_->meet(layer.meetings, number_of, [&](const Paint& below, const Meeting& meeting) {
-    const auto [value, pattern_value] = values_of(meeting);
-    return over(paints.at(value, pattern_value), below, meeting);
-  });
-}
-
-void Composer::paint_together(const PaintedLayer& layer) {
-  layer_->begin(canvas_->width(), canvas_->height(), kTransparent);
-  for (const PaintedClass& one : layer.classes) {
-    layer_->paint(one.mask, [paints = paints_of(one.colour), is_beneath = one.is_beneath](
-                                const Paint& below, std::uint8_t value) {
-      return is_beneath ? added(paints[value], below) : beside(paints[value], below);
-    });
-  }
-  layer_->change_all(settled);
-  if (layer.pattern != nullptr) {
-    layer_->paint(layer.pattern, [paints = paints_of(layer.pattern_colour)](const Paint& below,
-                                                                            std::uint8_t value) {
-      return within(paints[value], below);
-    });
-  }
-  for (const PaintedClass& line : layer.lines) {
-    layer_->paint(line.mask, laid_over(line.colour));
-  }
-  const auto opacity = static_cast<float>(layer.opacity);
-  if (canvas_->is_blank()) {
-    layer_->lie_over_blank(*canvas_, opacity);
-    canvas_.swap(layer_);
+  if (quality == Quality::exact) {
+    paint(0, 0, picture);
     return;
   }
-  canvas_->paint_over(*layer_, opacity);
-  const auto number_of = [&](const Meeting& meeting) { return layer_->mixture_at(meeting.pixel); };
-  canvas_->meet(layer.meetings, number_of, [&](const Paint& below, const Meeting& meeting) {
-    return over(faded(layer_->mixture(number_of(meeting)), opacity), below, meeting);
-  });
+  int change = kMostChange;
+  while (paint(change, change, picture) > most) --change;
+  if (picture.colours.size() <= kPaletteColours) return;
+  // Steps along edges take much of a palette: colours that are close to each other in this picture
+  // may take less.
+  const bool is_within = paint(0, kMostChange, other_) <= most;
+  if (is_within && other_.colours.size() <= kPaletteColours) std::swap(picture, other_);
 }
 
 }  // namespace trapeze

@@ -16,21 +16,10 @@
 
 #include "render/mask/mask.h"
 #include "render/picture/colour.h"
+#include "render/picture/picture.h"
+#include "render/picture/reduce_colours.h"
 
 namespace trapeze {
-
-/// A picture in one of two forms: a palette with one index a pixel, or, where the palette is empty,
-/// one colour a pixel. Row 0 is the northernmost; colours are not premultiplied.
-struct Picture {
-  int width = 0;
-  int height = 0;
-  std::vector<Rgba> palette;          // at most 256; may hold colours that no pixel has
-  std::vector<std::uint8_t> indices;  // into the palette
-  std::vector<Rgba> pixels;
-
-  bool is_indexed() const { return !palette.empty(); }
-  Rgba at(int column, int row) const;
-};
 
 /// Polygons or lines of one colour. A view of the caller's memory.
 struct PaintedClass {
@@ -76,6 +65,9 @@ std::vector<PaintedLayer> plain_layers(std::span<const PaintedClass> classes);
 
 /// Paints pictures one after the other, with working memory for reuse.
 ///
+/// Colours are computed once for all runs of pixels that show the same values of the same masks, so
+/// the cost grows with the boundaries in a picture and hardly with its pixels.
+///
 /// Thread-safety: one thread at a time.
 class Composer {
  public:
@@ -85,20 +77,22 @@ class Composer {
   Composer& operator=(Composer&&) noexcept;
 
   /// Paints the layers over the background, the first one lowest (painter's order). The picture
-  /// becomes width x height pixels, both at least 1; it is indexed if it has at most 256 colours.
+  /// becomes width x height pixels, both at least 1, and every colour of it is of some pixel.
   /// Throws std::invalid_argument if a mask is not of that size.
+  ///
+  /// Of bounded quality, no channel is further than kMostChange from the exact picture, and all of
+  /// them not more than kMostMeanChange in the mean. Colours along edges are then even steps from
+  /// one side to the other, and so the same in all tiles that need no finer ones. For others see
+  /// ColourReducer.
   void compose(std::span<const PaintedLayer> layers, int width, int height, Rgba background,
-               Picture& picture);
+               Quality quality, RunPicture& picture);
 
  private:
-  class Canvas;
-  void paint(const PaintedLayer& layer);
-  void paint_only(const PaintedClass& only, const PaintedLayer& layer);
-  void paint_patterned(const PaintedClass& only, const PaintedLayer& layer);
-  void paint_together(const PaintedLayer& layer);
+  class Painter;
 
-  std::unique_ptr<Canvas> canvas_;
-  std::unique_ptr<Canvas> layer_;  // for a layer that is composed before it is painted
+  std::unique_ptr<Painter> painter_;
+  ColourReducer reducer_;
+  RunPicture other_;  // for its memory
 };
 
 }  // namespace trapeze

@@ -223,16 +223,6 @@ std::vector<std::uint32_t> junctions_of(const MeshView& mesh, Pairs features_by_
 
 }  // namespace
 
-void spread_palette(Picture& picture) {
-  if (!picture.is_indexed()) return;
-  picture.pixels.resize(picture.indices.size());
-  for (std::size_t i = 0; i < picture.indices.size(); ++i) {
-    picture.pixels[i] = picture.palette[picture.indices[i]];
-  }
-  picture.indices.clear();
-  picture.palette.clear();
-}
-
 void mark_mesh(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
                Rgba colour, Picture& picture) {
   for_each(ranges, mesh, [&](const MeshTrapezoid& t) {

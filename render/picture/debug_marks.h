@@ -8,15 +8,12 @@
 
 #include "core/mesh/trapezoid_mesh.h"
 #include "render/mask/mask.h"
-#include "render/picture/compose.h"
+#include "render/picture/picture.h"
 
 namespace trapeze {
 
-/// Gives the picture one colour a pixel, so that marks can be drawn on it.
-void spread_palette(Picture& picture);
-
-/// Draws thin lines along all sides of the trapezoids. `picture` is not indexed and of the view's
-/// size, here and below.
+/// Draws thin lines along all sides of the trapezoids. `picture` is of the view's size, here and
+/// below.
 void mark_mesh(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const View& view,
                Rgba colour, Picture& picture);
 

@@ -6,10 +6,12 @@
 #include <array>
 #include <csetjmp>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "render/mask/mask.h"
 #include "render/picture/deflater.h"
 
 namespace trapeze {
@@ -17,45 +19,22 @@ namespace {
 
 constexpr std::size_t kMaxColours = 256;
 
-// The palette as it is stored: only colours that pixels have, the translucent ones in front, so
-// that tRNS ends with the last of them.
+// The palette as it is stored: the translucent colours in front, so that tRNS ends with the last of
+// them.
 struct StoredPalette {
   std::vector<png_color> colours;
-  std::vector<png_byte> opacities;                   // of the first colours; the others are opaque
-  std::array<std::uint8_t, kMaxColours> index_of{};  // stored index of each index of the picture
-  int bits = 8;                                      // a pixel
+  std::vector<png_byte> opacities;     // of the first colours; the others are opaque
+  std::vector<std::uint8_t> index_of;  // stored index of each colour of the picture
+  int bits = 8;                        // a pixel
 };
 
-constexpr std::size_t kBlock = 8;  // pixels looked at together: most of a tile is flat
-constexpr std::uint64_t kEachByte = 0x0101010101010101;
-
-std::uint64_t block_at(const std::uint8_t* indices) {
-  std::uint64_t block = 0;
-  std::memcpy(&block, indices, sizeof block);
-  return block;
-}
-
-std::array<bool, kMaxColours> used_indices(std::span<const std::uint8_t> indices) {
-  std::array<bool, kMaxColours> is_used{};
-  std::uint64_t seen = indices.size() < kBlock ? 0 : ~block_at(indices.data());
-  std::size_t i = 0;
-  for (; i + kBlock <= indices.size(); i += kBlock) {
-    const std::uint64_t block = block_at(indices.data() + i);
-    if (block == seen) continue;
-    seen = block;
-    for (std::size_t k = i; k < i + kBlock; ++k) is_used[indices[k]] = true;
-  }
-  for (; i < indices.size(); ++i) is_used[indices[i]] = true;
-  return is_used;
-}
-
-StoredPalette pack_palette(const Picture& picture) {
-  const auto is_used = used_indices(picture.indices);
+StoredPalette pack_palette(const RunPicture& picture) {
   StoredPalette stored;
+  stored.index_of.resize(picture.colours.size());
   for (const bool opaque : {false, true}) {
-    for (std::size_t i = 0; i < picture.palette.size(); ++i) {
-      const Rgba colour = picture.palette[i];
-      if (!is_used[i] || (colour.a == 255) != opaque) continue;
+    for (std::size_t i = 0; i < picture.colours.size(); ++i) {
+      const Rgba colour = picture.colours[i];
+      if ((colour.a == 255) != opaque) continue;
       stored.index_of[i] = static_cast<std::uint8_t>(stored.colours.size());
       stored.colours.push_back({colour.r, colour.g, colour.b});
       if (!opaque) stored.opacities.push_back(colour.a);
@@ -66,43 +45,15 @@ StoredPalette pack_palette(const Picture& picture) {
   return stored;
 }
 
-// Writes indices as they are stored, `Bits` to each, the first pixel in the highest bits of a byte.
-template <int Bits>
-void pack_row(std::span<const std::uint8_t> indices, const StoredPalette& palette,
-              std::uint8_t* row) {
-  constexpr std::size_t kPerByte = 8 / Bits;
-  const auto pack_byte = [&](std::size_t first, std::size_t end) {
+// Packs indices of one byte each into fewer bits, the first pixel in the highest bits of a byte.
+void pack_bits(std::span<const std::uint8_t> indices, int bits, std::uint8_t* row) {
+  const std::size_t per_byte = 8 / static_cast<std::size_t>(bits);
+  for (std::size_t i = 0; i < indices.size(); i += per_byte) {
     unsigned byte = 0;
-    for (std::size_t i = first; i < first + kPerByte; ++i) {
-      byte = (byte << Bits) | (i < end ? palette.index_of[indices[i]] : 0u);
+    for (std::size_t k = i; k < i + per_byte; ++k) {
+      byte = byte << bits | (k < indices.size() ? indices[k] : 0u);
     }
-    return static_cast<std::uint8_t>(byte);
-  };
-  std::size_t i = 0;
-  for (; i + kBlock <= indices.size(); i += kBlock, row += kBlock / kPerByte) {
-    const std::uint64_t block = block_at(indices.data() + i);
-    if (block == (block & 0xff) * kEachByte) {
-      std::memset(row, pack_byte(i, i + kPerByte), kBlock / kPerByte);
-    } else {
-      for (std::size_t k = 0; k < kBlock / kPerByte; ++k) {
-        row[k] = pack_byte(i + k * kPerByte, indices.size());
-      }
-    }
-  }
-  for (; i < indices.size(); i += kPerByte) *row++ = pack_byte(i, indices.size());
-}
-
-void pack_row(std::span<const std::uint8_t> indices, const StoredPalette& palette,
-              std::uint8_t* row) {
-  switch (palette.bits) {
-    case 1:
-      return pack_row<1>(indices, palette, row);
-    case 2:
-      return pack_row<2>(indices, palette, row);
-    case 4:
-      return pack_row<4>(indices, palette, row);
-    default:
-      return pack_row<8>(indices, palette, row);
+    *row++ = static_cast<std::uint8_t>(byte);
   }
 }
 
@@ -131,43 +82,47 @@ template <typename Fill>
 void make_rows(PngJob& job, std::size_t row_bytes, Fill fill) {
   job.rows.resize((1 + row_bytes) * static_cast<std::size_t>(job.height));
   std::uint8_t* row = job.rows.data();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(job.height); ++i, row += 1 + row_bytes) {
+  for (int i = 0; i < job.height; ++i, row += 1 + row_bytes) {
     *row = PNG_FILTER_VALUE_NONE;
     fill(i, row + 1);
   }
 }
 
-void take_indices(const Picture& picture, PngJob& job) {
+void take_indices(const RunPicture& picture, PngJob& job) {
   job.palette = pack_palette(picture);
   job.bits = job.palette.bits;
   job.colour_type = PNG_COLOR_TYPE_PALETTE;
   const auto width = static_cast<std::size_t>(picture.width);
-  const std::span<const std::uint8_t> indices(picture.indices);
+  std::vector<std::uint8_t> unpacked(job.bits < 8 ? width : 0);
   make_rows(job, (width * static_cast<std::size_t>(job.bits) + 7) / 8,
-            [&](std::size_t row, std::uint8_t* out) {
-              pack_row(indices.subspan(row * width, width), job.palette, out);
+            [&](int row, std::uint8_t* out) {
+              std::uint8_t* const indices = unpacked.empty() ? out : unpacked.data();
+              std::uint32_t begin = 0;
+              for (const Run& run : picture.row(row)) {
+                std::memset(indices + begin, job.palette.index_of[run.colour], run.end - begin);
+                begin = run.end;
+              }
+              if (!unpacked.empty()) pack_bits(unpacked, job.bits, out);
             });
 }
 
-void take_colours(const Picture& picture, PngJob& job) {
-  static_assert(sizeof(Rgba) == 4, "a pixel is stored as four bytes");
-  const bool is_opaque = std::all_of(picture.pixels.begin(), picture.pixels.end(),
-                                     [](Rgba colour) { return colour.a == 255; });
+void take_colours(const RunPicture& picture, PngJob& job) {
+  const bool is_opaque =
+      std::ranges::all_of(picture.colours, [](Rgba colour) { return colour.a == 255; });
   job.bits = 8;
   job.colour_type = is_opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA;
-  const auto width = static_cast<std::size_t>(picture.width);
-  make_rows(job, width * (is_opaque ? 3 : 4), [&](std::size_t row, std::uint8_t* out) {
-    const Rgba* pixels = picture.pixels.data() + row * width;
-    if (!is_opaque) {
-      std::memcpy(out, pixels, width * sizeof(Rgba));
-      return;
-    }
-    for (std::size_t i = 0; i < width; ++i, out += 3) {
-      out[0] = pixels[i].r;
-      out[1] = pixels[i].g;
-      out[2] = pixels[i].b;
-    }
-  });
+  const std::size_t channels = is_opaque ? 3 : 4;
+  make_rows(job, static_cast<std::size_t>(picture.width) * channels,
+            [&](int row, std::uint8_t* out) {
+              std::uint32_t begin = 0;
+              for (const Run& run : picture.row(row)) {
+                const Rgba colour = picture.colours[run.colour];
+                const std::array bytes{colour.r, colour.g, colour.b, colour.a};
+                for (; begin < run.end; ++begin, out += channels) {
+                  std::memcpy(out, bytes.data(), channels);
+                }
+              }
+            });
 }
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
@@ -231,7 +186,7 @@ PngEncoder::~PngEncoder() = default;
 PngEncoder::PngEncoder(PngEncoder&&) noexcept = default;
 PngEncoder& PngEncoder::operator=(PngEncoder&&) noexcept = default;
 
-std::string PngEncoder::encode(const Picture& picture) {
+std::string PngEncoder::encode(const RunPicture& picture) {
   if (picture.width < 1 || picture.height < 1) {
     throw std::runtime_error("writing PNG failed: the picture has no pixels");
   }
@@ -239,7 +194,7 @@ std::string PngEncoder::encode(const Picture& picture) {
   job.width = picture.width;
   job.height = picture.height;
   job.bytes.clear();
-  if (picture.is_indexed()) {
+  if (picture.colours.size() <= kMaxColours) {
     take_indices(picture, job);
   } else {
     take_colours(picture, job);
@@ -264,7 +219,7 @@ Picture decode_png(std::string_view bytes) {
     png_image_free(&image);
     throw std::runtime_error("reading PNG failed: the picture is too large");
   }
-  Picture picture{static_cast<int>(image.width), static_cast<int>(image.height), {}, {}, {}};
+  Picture picture{static_cast<int>(image.width), static_cast<int>(image.height), {}};
   static_assert(sizeof(Rgba) == 4, "libpng writes four bytes a pixel");
   picture.pixels.resize(std::size_t{image.width} * image.height);
   if (png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr) == 0) fail();

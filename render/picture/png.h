@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "render/picture/compose.h"
+#include "render/picture/picture.h"
 
 namespace trapeze {
 
@@ -14,9 +14,10 @@ struct PngJob;
 
 /// Encodes pictures one after the other, with working memory for reuse.
 ///
-/// An indexed picture gets the smallest palette (1, 2, 4 or 8 bits a pixel, opacities in tRNS), any
-/// other is RGB if it is opaque and else RGBA. No pixel changes, except that wholly transparent
-/// ones may lose their hidden colour. Rows are not filtered: flat colours make runs as they are.
+/// A picture of at most 256 colours gets the smallest palette (1, 2, 4 or 8 bits a pixel, opacities
+/// in tRNS), any other is RGB if it is opaque and else RGBA. No pixel changes, except that wholly
+/// transparent ones may lose their hidden colour. Rows are not filtered: flat colours make runs as
+/// they are.
 ///
 /// Thread-safety: one thread at a time.
 class PngEncoder {
@@ -27,7 +28,7 @@ class PngEncoder {
   PngEncoder& operator=(PngEncoder&&) noexcept;
 
   /// Throws std::runtime_error if the picture has no pixels or libpng fails.
-  std::string encode(const Picture& picture);
+  std::string encode(const RunPicture& picture);
 
  private:
   std::unique_ptr<PngJob> job_;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "render/picture/compose.h"
+#include "render/picture/picture.h"
 
 namespace trapeze {
 
@@ -12,6 +12,6 @@ bool has_webp();
 
 /// No pixel changes, hidden colours included. Throws std::runtime_error if the picture has no
 /// pixels, has more than 16,383 a side, or libwebp fails. Thread-safe.
-std::string encode_webp(const Picture& picture);
+std::string encode_webp(const RunPicture& picture);
 
 }  // namespace trapeze

@@ -9,7 +9,7 @@ bool has_webp() {
   return false;
 }
 
-std::string encode_webp(const Picture&) {
+std::string encode_webp(const RunPicture&) {
   throw std::runtime_error("this program was built without libwebp");
 }
 

@@ -18,7 +18,7 @@
 #include <string>
 #include <string_view>
 
-#include "render/picture/compose.h"
+#include "render/picture/picture.h"
 
 namespace trapeze {
 

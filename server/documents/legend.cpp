@@ -176,7 +176,8 @@ class Swatch {
       draw_outline(stroke, inset);
       painted.lines = {&line, 1};
     }
-    composer_.compose({&painted, 1}, view_.width, view_.height, kPaper, picture_);
+    composer_.compose({&painted, 1}, view_.width, view_.height, kPaper, Quality::exact, runs_);
+    picture_ = to_pixels(runs_);
     if (layer.stroke.width == 0) draw_frame();
     return picture_;
   }
@@ -219,7 +220,6 @@ class Swatch {
 
   // Without an outline, pale colours would not stand out from the paper.
   void draw_frame() {
-    spread_palette(picture_);
     for (int y = 0; y < view_.height; ++y) {
       for (int x = 0; x < view_.width; ++x) {
         const bool is_inside =
@@ -241,6 +241,7 @@ class Swatch {
   Mask line_;
   Stroker stroker_;
   Composer composer_;
+  RunPicture runs_;
   Picture picture_;
 };
 
@@ -327,7 +328,8 @@ Result<Document> legend_as_png(std::string_view file, const DocumentRequest& req
                                "or ask for .json.",
                                kMaxHeight)};
   }
-  return Document{"image/png", PngEncoder().encode(draw_legend(rows, request.fonts, scale))};
+  return Document{"image/png",
+                  PngEncoder().encode(to_runs(draw_legend(rows, request.fonts, scale)))};
 }
 
 }  // namespace

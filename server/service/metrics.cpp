@@ -187,6 +187,12 @@ struct Metrics::Counted {
           .Name("trapeze_tiles_total")
           .Help("Tiles that were not in the cache, by what became of them")
           .Register(registry);
+  prometheus::Counter& full_colour_tiles =
+      prometheus::BuildCounter()
+          .Name("trapeze_tiles_in_full_colour_total")
+          .Help("Drawn tiles whose colours do not fit into a palette")
+          .Register(registry)
+          .Add({});
   prometheus::Family<prometheus::Histogram>& stage_times =
       prometheus::BuildHistogram()
           .Name("trapeze_tile_stage_seconds")
@@ -257,6 +263,7 @@ void Metrics::count(const Answered& answered) {
 void Metrics::count(const TileAnswer& tile) {
   counted_->tile_counters[static_cast<std::size_t>(tile.outcome)]->Increment();
   if (tile.outcome != TileOutcome::drawn) return;
+  if (!tile.tile.has_palette) counted_->full_colour_tiles.Increment();
   for (std::size_t i = 0; i < kPaintStages.size(); ++i) {
     counted_->stage_histograms[i]->Observe(tile.tile.times.*kPaintStages[i].milliseconds / 1000);
   }

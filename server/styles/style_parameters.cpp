@@ -11,6 +11,7 @@
 #include "core/layer/layer.h"
 #include "render/mask/stroke.h"
 #include "render/picture/pattern.h"
+#include "render/picture/reduce_colours.h"
 #include "server/base/nearest_name.h"
 #include "server/styles/colour_ramps.h"
 #include "server/styles/debug_marks.h"
@@ -146,6 +147,16 @@ constexpr std::array kParameters = {
                    .max = 64,
                    .default_text = "1; of stripes half the size; of dots a third",
                    .description = "width of the lines, diameter of the dots, in pixels"},
+    StyleParameter{.id = ParameterId::quality,
+                   .name = "quality",
+                   .type = Type::word,
+                   .words = kQualityNames.names(),
+                   .default_text = "bounded",
+                   .is_per_layer = false,
+                   .description =
+                       "bounded lets colours that nobody can tell apart become one, at most 4 of "
+                       "255 from the exact picture and 0.5 in the mean, so that tiles are smaller; "
+                       "exact changes none"},
     StyleParameter{.id = ParameterId::ramp,
                    .name = "ramp",
                    .type = Type::ramp,

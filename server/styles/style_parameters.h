@@ -38,6 +38,7 @@ enum class ParameterId : std::uint8_t {
   pattern_color,
   pattern_size,
   pattern_width,
+  quality,
   ramp,
   simplify,
   small,

@@ -163,11 +163,16 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
     }
     if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
     const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
-    composer_.compose(painted_, side, side, plan.background, picture_);
-    if (plan.debug.any()) mark(plan, view, picture_);
+    composer_.compose(painted_, side, side, plan.background, plan.quality, picture_);
+    if (plan.debug.any()) {
+      Picture marked = to_pixels(picture_);
+      mark(plan, view, marked);
+      picture_ = to_runs(marked);
+    }
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
-  if (picture_.palette.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
+  if (picture_.colours.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
+  tile.has_palette = picture_.colours.size() <= kPaletteColours;
   tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
                            : std::make_shared<const std::string>(encode(plan.format));
   return tile;
@@ -193,7 +198,7 @@ std::string TilePainter::encode(TileFormat format) {
 std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, TileFormat format) {
   auto& bytes = constants_[{to_hex(colour), side, format}];
   if (bytes != nullptr) return bytes;
-  composer_.compose({}, side, side, colour, picture_);
+  composer_.compose({}, side, side, colour, Quality::exact, picture_);
   auto made = std::make_shared<const std::string>(encode(format));
   bytes = made;
   if (constants_.size() > kMaxConstants) constants_.clear();
@@ -201,7 +206,6 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, 
 }
 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
-  spread_palette(picture);
   const View around = with_margin(view);  // of marks that reach into the picture
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = plan.layer_of(paint);

@@ -18,6 +18,7 @@
 #include "render/mask/mask.h"
 #include "render/picture/compose.h"
 #include "render/picture/layer_meetings.h"
+#include "render/picture/picture.h"
 #include "render/picture/png.h"
 #include "render/text/fonts.h"
 #include "server/styles/feature_classes.h"
@@ -48,6 +49,7 @@ struct PaintedTile {
   std::shared_ptr<const std::string> bytes;  // PNG or WebP
   TileHint hint = TileHint::none;
   PaintTimes times;
+  bool has_palette = true;  // or would have one, as PNG
 };
 
 class TilePainter {
@@ -112,7 +114,7 @@ class TilePainter {
   std::vector<double> tolerances_;  // by layer
   LayerMeetings meetings_;
   DrawingTools tools_;
-  Picture picture_;
+  RunPicture picture_;
 };
 
 }  // namespace trapeze

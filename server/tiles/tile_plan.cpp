@@ -45,6 +45,11 @@ DebugMarks debug_marks(const StyleQuery& query) {
   return marks;
 }
 
+Quality quality_of(const StyleQuery& query) {
+  const auto value = query.value_for({}, ParameterId::quality);
+  return value ? kQualityNames.find(std::get<std::string>(*value)).value() : Quality::bounded;
+}
+
 Problem no_fast_topology(const std::string& layer) {
   return {400,
           fmt::format("The layer \"{}\" is not served with topology=fast: its configuration does "
@@ -81,6 +86,7 @@ std::string TilePlan::key() const {
                        paint.style.key());
   }
   if (format == TileFormat::webp) key += " webp";
+  if (quality == Quality::exact) key += " exact";
   if (debug.any())
     key += fmt::format(" debug {:d}{:d}{:d}{:d}{:d}", debug.faces, debug.mesh, debug.vertices,
                        debug.junctions, debug.tile);
@@ -100,8 +106,14 @@ double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {
 }
 
 Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
-  TilePlan plan{std::move(dataset),         request.tile,  request.scale, kTransparent, {},
-                debug_marks(request.style), request.format};
+  TilePlan plan{std::move(dataset),
+                request.tile,
+                request.scale,
+                kTransparent,
+                {},
+                debug_marks(request.style),
+                request.format,
+                quality_of(request.style)};
   if (const auto background = request.style.value_for({}, ParameterId::background)) {
     const Rgba colour = std::get<Rgba>(*background);
     if (colour.a > 0) plan.background = colour;

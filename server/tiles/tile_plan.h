@@ -12,6 +12,7 @@
 #include "core/grid/web_mercator.h"
 #include "core/layer/layer.h"
 #include "render/picture/colour.h"
+#include "render/picture/reduce_colours.h"
 #include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/styles/debug_marks.h"
@@ -39,6 +40,7 @@ struct TilePlan {
   std::vector<LayerPaint> layers;  // bottom first
   DebugMarks debug = {};
   TileFormat format = TileFormat::png;
+  Quality quality = Quality::bounded;
 
   /// What the paint is for, made with or without the topological consistency test as it says.
   const Layer& layer_of(const LayerPaint& paint) const;

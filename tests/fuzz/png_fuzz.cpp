@@ -57,31 +57,21 @@ Picture picture_from(Bytes bytes, bool can_be_larger) {
   if (can_be_larger && (way & 8) != 0) picture.width *= kLarger;
   if (can_be_larger && (way & 16) != 0) picture.height *= kLarger;
   const std::size_t colours = 1u + bytes.next();
-  picture.palette.reserve(colours);
+  std::vector<Rgba> palette;
   for (std::size_t i = 0; i < colours; ++i) {
-    picture.palette.push_back(next_colour(bytes));
-    if ((way & 4) != 0) picture.palette.back().a = 255;
+    palette.push_back(next_colour(bytes));
+    if ((way & 4) != 0) palette.back().a = 255;
   }
   const auto count =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-  while (picture.indices.size() < count) {
+  // With more colours than a palette holds, if so chosen: those of a run shift from pixel to pixel.
+  while (picture.pixels.size() < count) {
     const std::size_t length = (way & 1) != 0 ? 1 : std::size_t{1} + bytes.next();
-    const auto index = static_cast<std::uint8_t>(bytes.next() % colours);
-    picture.indices.resize(std::min(count, picture.indices.size() + length), index);
+    Rgba colour = palette[bytes.next() % colours];
+    if ((way & 2) != 0) colour.g = static_cast<std::uint8_t>(colour.g + picture.pixels.size());
+    picture.pixels.resize(std::min(count, picture.pixels.size() + length), colour);
   }
-  if ((way & 2) == 0) return picture;
-  for (const std::uint8_t index : picture.indices) picture.pixels.push_back(picture.palette[index]);
-  picture.palette.clear();
-  picture.indices.clear();
   return picture;
-}
-
-std::vector<Rgba> pixels_of(const Picture& picture) {
-  if (!picture.is_indexed()) return picture.pixels;
-  std::vector<Rgba> pixels;
-  pixels.reserve(picture.indices.size());
-  for (const std::uint8_t index : picture.indices) pixels.push_back(picture.palette[index]);
-  return pixels;
 }
 
 bool are_same(Rgba a, Rgba b) {
@@ -93,19 +83,20 @@ void check(std::span<const std::uint8_t> input) {
   static PngEncoder encoder;
   const std::uint32_t hash = fuzzing::hash_of(input.data(), input.size());
   const Picture picture = picture_from(Bytes(input), hash % kInputsForLarger == 0);
-  const std::string bytes = encoder.encode(picture);
+  const RunPicture runs = to_runs(picture);
+  const std::string bytes = encoder.encode(runs);
   const Picture decoded = decode_png(bytes);
   require(decoded.width == picture.width && decoded.height == picture.height,
           "a picture comes back in another size");
-  require(std::ranges::equal(pixels_of(picture), decoded.pixels, are_same), "a pixel has changed");
+  require(std::ranges::equal(picture.pixels, decoded.pixels, are_same), "a pixel has changed");
   // What cannot be compressed is stored, with a few bytes a block; 1,100 bytes hold a palette.
   const auto pixels =
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   const std::size_t raw =
-      pixels * (picture.is_indexed() ? 1 : 4) + static_cast<std::size_t>(picture.height);
+      pixels * (runs.colours.size() <= 256 ? 1 : 4) + static_cast<std::size_t>(picture.height);
   require(bytes.size() <= raw + raw / 64 + 1500, "a picture has become larger than its pixels");
   if (hash / kInputsForLarger % kInputsForTwice != 0) return;
-  require(encoder.encode(picture) == bytes, "the same picture gives other bytes");
+  require(encoder.encode(runs) == bytes, "the same picture gives other bytes");
 }
 
 }  // namespace

@@ -11,11 +11,16 @@
 namespace trapeze {
 namespace {
 
+RunPicture composed(std::span<const PaintedClass> layers, int width, int height,
+                    Rgba background = kTransparent) {
+  RunPicture picture;
+  Composer().compose(plain_layers(layers), width, height, background, Quality::exact, picture);
+  return picture;
+}
+
 Picture compose(std::span<const PaintedClass> layers, int width, int height,
                 Rgba background = kTransparent) {
-  Picture picture;
-  Composer().compose(plain_layers(layers), width, height, background, picture);
-  return picture;
+  return to_pixels(composed(layers, width, height, background));
 }
 
 Mask mask_of(int width, int height, const std::vector<int>& values) {
@@ -61,7 +66,6 @@ TEST(ComposeTest, OneColourOverNothingHasTheValuesOfItsMaskAsOpacities) {
   const Mask mask = mask_of(3, 1, {0, 100, 255});
   const PaintedClass layer{&mask, {10, 20, 30, 255}};
   const Picture picture = compose({&layer, 1}, 3, 1);
-  EXPECT_TRUE(picture.is_indexed());
   EXPECT_EQ(picture.at(0, 0), kTransparent);
   EXPECT_EQ(picture.at(1, 0), (Rgba{10, 20, 30, 100}));
   EXPECT_EQ(picture.at(2, 0), (Rgba{10, 20, 30, 255}));
@@ -82,13 +86,13 @@ TEST(ComposeTest, LayersThatDoNotShowCostNothing) {
   const std::vector<PaintedClass> layers{
       {&empty, {1, 1, 1, 255}}, {&full, {9, 9, 9, 0}}, {&full, {4, 5, 6, 255}}};
   const Picture picture = compose(layers, 2, 1);
-  EXPECT_TRUE(picture.is_indexed());
   EXPECT_EQ(picture.at(0, 0), (Rgba{4, 5, 6, 255}));
 }
 
 TEST(ComposeTest, NoLayerIsTheBackground) {
-  const Picture picture = compose({}, 2, 2, {1, 2, 3, 4});
-  EXPECT_EQ(picture.palette.size(), 1u);
+  const RunPicture picture = composed({}, 2, 2, {1, 2, 3, 4});
+  EXPECT_EQ(picture.colours.size(), 1u);
+  EXPECT_EQ(picture.runs.size(), 2u);
   EXPECT_EQ(picture.at(1, 1), (Rgba{1, 2, 3, 4}));
 }
 
@@ -122,7 +126,7 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
   }
 }
 
-TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
+TEST(ComposeTest, RunsEndWhereColoursChange) {
   std::vector<int> left(64 * 64), right(64 * 64);
   for (std::size_t i = 0; i < left.size(); ++i) {
     left[i] = i % 64 < 30 ? 255 : 40;
@@ -131,18 +135,24 @@ TEST(ComposeTest, FewColoursOfSeveralLayersMakeAPalette) {
   const Mask a = mask_of(64, 64, left);
   const Mask b = mask_of(64, 64, right);
   const std::vector<PaintedClass> layers{{&a, {255, 0, 0, 255}}, {&b, {0, 0, 255, 255}}};
-  const Picture picture = compose(layers, 64, 64);
-  EXPECT_TRUE(picture.is_indexed());
-  EXPECT_EQ(picture.palette.size(), 3u);
+  const RunPicture picture = composed(layers, 64, 64);
+  EXPECT_EQ(picture.runs.size(), 3u * 64);
+  for (int row = 0; row < 64; ++row) {
+    const auto runs = picture.row(row);
+    ASSERT_EQ(runs.size(), 3u);
+    EXPECT_EQ(runs[0].end, 30u);
+    EXPECT_EQ(runs[1].end, 33u);
+    EXPECT_EQ(runs[2].end, 64u);
+  }
   EXPECT_EQ(picture.at(0, 5), (Rgba{255, 0, 0, 255}));
   EXPECT_EQ(picture.at(31, 5), (Rgba{255, 0, 0, 40}));
   EXPECT_EQ(picture.at(60, 5), (Rgba{0, 0, 255, 255}));
 }
 
 Picture compose(const PaintedLayer& layer, int width, int height, Rgba background = kTransparent) {
-  Picture picture;
-  Composer().compose({&layer, 1}, width, height, background, picture);
-  return picture;
+  RunPicture picture;
+  Composer().compose({&layer, 1}, width, height, background, Quality::exact, picture);
+  return to_pixels(picture);
 }
 
 TEST(ComposeTest, ClassesOfOneLayerLeaveNoLineBetweenThem) {
@@ -205,6 +215,58 @@ TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
   EXPECT_EQ(picture.at(0, 0), (Rgba{0, 200, 0, 255}));
   EXPECT_EQ(picture.at(4, 0), (Rgba{100, 0, 0, 255}));
   EXPECT_EQ(picture.at(8, 0), (Rgba{0, 200, 0, 255}));
+}
+
+// Along their border, colours go from one to the other in even steps; nothing of the background
+// shows.
+TEST(ComposeTest, ClassesThatMeetDoSoInFewColours) {
+  Mask west(256, 1);
+  Mask east(256, 1);
+  for (int i = 0; i < 256; ++i) {
+    west.row_begin(0)[i] = static_cast<std::uint8_t>(255 - i);
+    east.row_begin(0)[i] = static_cast<std::uint8_t>(i);
+  }
+  const std::vector<PaintedClass> classes{{&west, {250, 0, 90, 255}}, {&east, {10, 0, 90, 255}}};
+  const PaintedLayer layer{.classes = classes};
+  RunPicture picture;
+  Composer().compose({&layer, 1}, 256, 1, kTransparent, Quality::bounded, picture);
+  EXPECT_LE(picture.colours.size(), 32u) << "240 in steps of 8";
+  for (int i = 0; i < 256; ++i) {
+    const Rgba colour = picture.at(i, 0);
+    EXPECT_NEAR(colour.r, 250 - 240.0 * i / 255, kMostChange + 0.51);
+    EXPECT_EQ(colour.b, 90);
+    EXPECT_EQ(colour.a, 255);
+  }
+}
+
+// More masks than a key holds take another way.
+TEST(ComposeTest, ManyClassesAreMixedAsFewAre) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  constexpr int kClasses = 40;
+  std::vector<Mask> masks;
+  for (int i = 0; i < kClasses; ++i) {
+    std::vector<int> values(50 * 20, 0);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (static_cast<int>(k / 3) % kClasses == i) values[k] = static_cast<int>(random() % 256);
+    }
+    masks.push_back(mask_of(50, 20, values));
+  }
+  std::vector<PaintedClass> classes;
+  for (int i = 0; i < kClasses; ++i) {
+    classes.push_back(
+        {&masks[static_cast<std::size_t>(i)], {static_cast<std::uint8_t>(6 * i), 90, 30, 255}});
+  }
+  const Picture picture = compose(PaintedLayer{.classes = classes}, 50, 20, {255, 255, 255, 255});
+  for (int i = 0; i < kClasses; ++i) {
+    const PaintedLayer one{.classes = {&classes[static_cast<std::size_t>(i)], 1}};
+    const Picture alone = compose(one, 50, 20, {255, 255, 255, 255});
+    for (std::size_t k = 0; k < picture.pixels.size(); ++k) {
+      if (static_cast<int>(k / 3) % kClasses != i) continue;
+      EXPECT_EQ(picture.pixels[k], alone.pixels[k]);
+    }
+  }
 }
 
 TEST(ComposeTest, RefusesAMaskOfAnotherSize) {

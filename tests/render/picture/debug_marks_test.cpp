@@ -56,20 +56,6 @@ std::vector<std::string> drawing(const Picture& picture) {
 
 using Rows = std::vector<std::string>;
 
-TEST(DebugMarksTest, SpreadingAPaletteKeepsEveryColour) {
-  Picture picture;
-  picture.width = 3;
-  picture.height = 1;
-  picture.palette = {kTransparent, {1, 2, 3, 4}, kWhite};
-  picture.indices = {2, 1, 0};
-  spread_palette(picture);
-  EXPECT_FALSE(picture.is_indexed());
-  const std::vector<Rgba> colours = {kWhite, {1, 2, 3, 4}, kTransparent};
-  EXPECT_EQ(picture.pixels, colours);
-  spread_palette(picture);
-  EXPECT_EQ(picture.pixels, colours);
-}
-
 TEST(DebugMarksTest, TheSidesOfATrapezoidAreDrawn) {
   Picture picture = white_picture(8, 6);
   SampleMesh mesh;

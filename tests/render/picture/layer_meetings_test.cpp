@@ -57,9 +57,9 @@ class Map {
       tolerances.push_back(drawn.tolerance);
     }
     meetings_.find(painted, tolerances, kPixels, kPixels);
-    Picture picture;
-    Composer().compose(painted, kPixels, kPixels, background, picture);
-    return picture;
+    RunPicture picture;
+    Composer().compose(painted, kPixels, kPixels, background, Quality::exact, picture);
+    return to_pixels(picture);
   }
 
  private:
@@ -219,8 +219,8 @@ TEST(LayerMeetingsTest, WhatIsAlikeAllAroundIsMixedAsChanceHasIt) {
   LayerMeetings meetings;
   meetings.find(layers, tolerances, kPixels, kPixels);
   EXPECT_TRUE(layers[1].meetings.empty());
-  Picture picture;
-  Composer().compose(layers, kPixels, kPixels, kTransparent, picture);
+  RunPicture picture;
+  Composer().compose(layers, kPixels, kPixels, kTransparent, Quality::exact, picture);
   EXPECT_NEAR(picture.at(3, 3).a, 255 * (1 - 155.0 * 155 / 255 / 255), 0.51);
 }
 
@@ -237,8 +237,8 @@ TEST(LayerMeetingsTest, WhatFillsPixelsTogetherAllAroundIsSideBySide) {
   const std::vector<double> tolerances(2, 0);
   LayerMeetings meetings;
   meetings.find(layers, tolerances, kPixels, kPixels);
-  Picture picture;
-  Composer().compose(layers, kPixels, kPixels, kTransparent, picture);
+  RunPicture picture;
+  Composer().compose(layers, kPixels, kPixels, kTransparent, Quality::exact, picture);
   EXPECT_EQ(picture.at(3, 3), (Rgba{77, 178, 0, 255}));
 }
 

@@ -88,13 +88,17 @@ TEST(MetricsTest, TilesAreCountedByOutcomeAndTimedByStage) {
   drawn.tile.times.encode_ms = 4;
   metrics.count(drawn);
   metrics.count(TileAnswer{TileOutcome::late, {}});
+  TileAnswer colourful{TileOutcome::drawn, {}};
+  colourful.tile.has_palette = false;
+  metrics.count(colourful);
   const auto samples = samples_of(metrics.text({}));
-  EXPECT_EQ(samples.at(R"(trapeze_tiles_total{outcome="drawn"})"), 1);
+  EXPECT_EQ(samples.at(R"(trapeze_tiles_total{outcome="drawn"})"), 2);
+  EXPECT_EQ(samples.at("trapeze_tiles_in_full_colour_total"), 1);
   EXPECT_EQ(samples.at(R"(trapeze_tiles_total{outcome="late"})"), 1);
   EXPECT_EQ(samples.at(R"(trapeze_tiles_total{outcome="saturated"})"), 0);
-  EXPECT_EQ(samples.at(R"(trapeze_tile_stage_seconds_count{stage="encode"})"), 1);
+  EXPECT_EQ(samples.at(R"(trapeze_tile_stage_seconds_count{stage="encode"})"), 2);
   EXPECT_DOUBLE_EQ(samples.at(R"(trapeze_tile_stage_seconds_sum{stage="encode"})"), 0.004);
-  EXPECT_EQ(samples.at(R"(trapeze_tile_stage_seconds_count{stage="queue"})"), 1);
+  EXPECT_EQ(samples.at(R"(trapeze_tile_stage_seconds_count{stage="queue"})"), 2);
 }
 
 TEST(MetricsTest, TellsTheStateOfTheParts) {

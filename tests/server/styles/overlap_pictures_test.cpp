@@ -75,7 +75,7 @@ const std::string kHalfOpaque = "fill-opacity=0.5";
 class OverlapPicturesTest : public ::testing::Test {
  protected:
   Picture tile(const std::string& query) {
-    const std::string target = "/tiles/plots/0/0/0.png?" + query;
+    const std::string target = "/tiles/plots/0/0/0.png?quality=exact&" + query;
     const HttpResponse response = site_.get(target);
     EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
     return response.status == 200 ? decode_png(*response.body) : Picture();

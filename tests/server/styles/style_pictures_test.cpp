@@ -220,10 +220,10 @@ TEST_F(StylePicturesTest, OpacityIsOfTheLayerAsAWhole) {
 TEST_F(StylePicturesTest, DustHasTheColourOfItsClass) {
   const double area = 16 * 0.23 * 0.23;  // of the pixel
   const int level = static_cast<int>(area * 255);
-  expect_near(at("", 200, 40), {128, 128, 128, static_cast<std::uint8_t>(level)}, 4);
-  expect_near(at("color-by=kind&classes=speck:red", 200, 40),
+  expect_near(at("quality=exact", 200, 40), {128, 128, 128, static_cast<std::uint8_t>(level)}, 4);
+  expect_near(at("quality=exact&color-by=kind&classes=speck:red", 200, 40),
               {255, 0, 0, static_cast<std::uint8_t>(level)}, 4);
-  expect_near(at("ids=10,11,12,13,14,15,16,17", 200, 40),
+  expect_near(at("quality=exact&ids=10,11,12,13,14,15,16,17", 200, 40),
               {128, 128, 128, static_cast<std::uint8_t>(level / 2)}, 4);
   EXPECT_EQ(at("small=drop&color-by=kind&classes=speck:red", 200, 40), kTransparent);
   EXPECT_EQ(at("small=keep&color-by=kind&classes=speck:red", 200, 40), kRed);

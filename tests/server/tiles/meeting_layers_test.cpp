@@ -77,7 +77,8 @@ class MeetingLayersTest : public ::testing::Test {
   }
 
   Picture tile(const std::string& layers, const std::string& place, const std::string& query) {
-    const std::string target = fmt::format("/tiles/{}/{}.png?{}", layers, place, query);
+    const std::string target =
+        fmt::format("/tiles/{}/{}.png?quality=exact&{}", layers, place, query);
     const HttpResponse response = site_.get(target);
     EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
     return response.status == 200 ? decode_png(*response.body) : Picture();

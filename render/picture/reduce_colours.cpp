@@ -1,0 +1,221 @@
+#include "render/picture/reduce_colours.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <tuple>
+
+#include "render/picture/number_table.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffff;
+
+/// Cells of channels, the first of which has its middle at 0. Opacities of flat colours attract
+/// those close to them, so that what is as opaque everywhere remains so.
+class Lattice {
+ public:
+  Lattice(const RunPicture& picture, int most_change) : step_(2 * most_change + 1) {
+    // What is opaque remains so, and nothing else becomes so.
+    for (int a = 0; a < 255; ++a)
+      opacities_[static_cast<std::size_t>(a)] = std::min(middle(a), 254);
+    opacities_[255] = 255;
+    std::array<int, 256> distances;
+    distances.fill(most_change + 1);
+    for (std::size_t i = 0; i < picture.colours.size(); ++i) {
+      if (picture.origins[i] == Origin::flat) attract(picture.colours[i].a, distances);
+    }
+  }
+
+  /// The middle of its cell.
+  Channels middle_of(const Channels& channels) const {
+    const int a = opacities_[static_cast<std::size_t>(channels.a)];
+    return {std::min(middle(channels.r), a), std::min(middle(channels.g), a),
+            std::min(middle(channels.b), a), a};
+  }
+
+ private:
+  int middle(int value) const { return divided(value, step_) * step_; }
+
+  void attract(int opacity, std::array<int, 256>& distances) {
+    if (opacity == 255) return;
+    for (int a = std::max(0, opacity - step_ / 2); a <= std::min(254, opacity + step_ / 2); ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      if (std::abs(a - opacity) >= distances[i]) continue;
+      distances[i] = std::abs(a - opacity);
+      opacities_[i] = opacity;
+    }
+  }
+
+  int step_;
+  std::array<int, 256> opacities_{};
+};
+
+}  // namespace
+
+/// Around colours that may become one.
+class ColourReducer::Box {
+ public:
+  Box(const Channels& first, int most_side) : least_(first), most_(first), most_side_(most_side) {}
+
+  /// False if the box would be too wide with the colour in it.
+  bool take(const Channels& c) {
+    if ((c.a == 255) != (most_.a == 255)) return false;
+    const Channels least{std::min(least_.r, c.r), std::min(least_.g, c.g), std::min(least_.b, c.b),
+                         std::min(least_.a, c.a)};
+    const Channels most{std::max(most_.r, c.r), std::max(most_.g, c.g), std::max(most_.b, c.b),
+                        std::max(most_.a, c.a)};
+    if (difference(least, most).most > most_side_) return false;
+    least_ = least;
+    most_ = most;
+    return true;
+  }
+
+  Channels middle() const {
+    const auto between = [](int a, int b) { return (a + b) / 2; };
+    return {between(least_.r, most_.r), between(least_.g, most_.g), between(least_.b, most_.b),
+            between(least_.a, most_.a)};
+  }
+
+ private:
+  Channels least_;
+  Channels most_;
+  int most_side_;
+};
+
+/// The new colours while they are found, each once.
+class ColourReducer::NewColours {
+ public:
+  explicit NewColours(ColourReducer& reducer) : reducer_(reducer) {
+    reducer_.colours_.clear();
+    reducer_.new_channels_.clear();
+  }
+
+  std::uint32_t number_of(Rgba colour) {
+    std::uint32_t& number = numbers_[ColourKey(colour)];
+    if (number == NumberTable<ColourKey>::kNone) {
+      number = static_cast<std::uint32_t>(reducer_.colours_.size());
+      reducer_.colours_.push_back(colour);
+      reducer_.new_channels_.push_back(channels_of(colour));
+    }
+    return number;
+  }
+
+ private:
+  ColourReducer& reducer_;
+  NumberTable<ColourKey> numbers_;
+};
+
+std::uint64_t ColourReducer::reduce(RunPicture& picture, int most_change) {
+  count_pixels(picture);
+  put_into_lattice(picture, most_change);
+  if (most_change > 0 && colours_.size() > kPaletteColours && !gather(picture, most_change)) {
+    put_into_lattice(picture, most_change);
+  }
+  apply(picture);
+  return change();
+}
+
+void ColourReducer::count_pixels(const RunPicture& picture) {
+  channels_.clear();
+  for (const Rgba colour : picture.colours) channels_.push_back(channels_of(colour));
+  pixels_.assign(picture.colours.size(), 0);
+  std::uint32_t begin = 0;
+  for (const Run& run : picture.runs) {
+    pixels_[run.colour] += run.end - begin;
+    begin = run.end == static_cast<std::uint32_t>(picture.width) ? 0 : run.end;
+  }
+}
+
+void ColourReducer::keep_all_but_mixed(const RunPicture& picture, NewColours& made) {
+  becomes_.assign(picture.colours.size(), kNone);
+  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+    if (pixels_[i] == 0 || picture.origins[i] == Origin::mixed) continue;
+    becomes_[i] = made.number_of(picture.colours[i]);
+  }
+}
+
+void ColourReducer::put_into_lattice(const RunPicture& picture, int most_change) {
+  NewColours made(*this);
+  keep_all_but_mixed(picture, made);
+  const Lattice lattice(picture, most_change);
+  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+    if (pixels_[i] == 0 || becomes_[i] != kNone) continue;
+    becomes_[i] = made.number_of(most_change == 0 ? picture.colours[i]
+                                                  : straight(lattice.middle_of(channels_[i])));
+  }
+}
+
+// Boxes are begun with the colour that most pixels have among those that are left. False if there
+// are too many.
+bool ColourReducer::gather(const RunPicture& picture, int most_change) {
+  NewColours made(*this);
+  keep_all_but_mixed(picture, made);
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
+    if (pixels_[i] == 0 || becomes_[i] != kNone) continue;
+    becomes_[i] = nearest(channels_[i], most_change);
+    if (becomes_[i] == kNone) left.push_back(i);
+  }
+  std::ranges::sort(left, {}, [&](std::uint32_t i) {
+    return std::tuple(~pixels_[i], ColourKey(picture.colours[i]).bits);
+  });
+  while (!left.empty()) {
+    if (colours_.size() >= kPaletteColours) return false;
+    Box box(channels_[left.front()], 2 * most_change);
+    const auto members = std::stable_partition(
+        left.begin(), left.end(), [&](std::uint32_t i) { return !box.take(channels_[i]); });
+    const std::uint32_t colour = made.number_of(straight(box.middle()));
+    for (auto i = members; i != left.end(); ++i) becomes_[*i] = colour;
+    left.erase(members, left.end());
+  }
+  return true;
+}
+
+/// Of the new colours; kNone if all are too far.
+std::uint32_t ColourReducer::nearest(const Channels& channels, int most_change) const {
+  std::uint32_t nearest = kNone;
+  Difference least{most_change + 1, 0};
+  for (std::uint32_t k = 0; k < new_channels_.size(); ++k) {
+    const bool are_opaque_alike = (new_channels_[k].a == 255) == (channels.a == 255);
+    const Difference apart = difference(new_channels_[k], channels);
+    const bool is_nearer = std::tuple(apart.most, apart.sum) < std::tuple(least.most, least.sum);
+    if (!are_opaque_alike || !is_nearer) continue;
+    least = apart;
+    nearest = k;
+  }
+  return nearest;
+}
+
+std::uint64_t ColourReducer::change() const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+    if (pixels_[i] == 0) continue;
+    const Difference change = difference(new_channels_[becomes_[i]], channels_[i]);
+    sum += std::uint64_t{pixels_[i]} * static_cast<std::uint64_t>(change.sum);
+  }
+  return sum;
+}
+
+void ColourReducer::apply(RunPicture& picture) const {
+  std::size_t kept = 0;
+  std::size_t i = 0;
+  for (std::uint32_t& row_end : picture.row_end) {
+    const std::size_t first = kept;
+    for (; i < row_end; ++i) {
+      const Run run{picture.runs[i].end, becomes_[picture.runs[i].colour]};
+      if (kept > first && picture.runs[kept - 1].colour == run.colour) {
+        picture.runs[kept - 1].end = run.end;
+      } else {
+        picture.runs[kept++] = run;
+      }
+    }
+    row_end = static_cast<std::uint32_t>(kept);
+  }
+  picture.runs.resize(kept);
+  picture.colours = colours_;
+  picture.origins.assign(colours_.size(), Origin::flat);
+}
+
+}  // namespace trapeze

@@ -1,0 +1,250 @@
+#include "render/picture/reduce_colours.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "render/picture/compose.h"
+
+namespace trapeze {
+namespace {
+
+constexpr int kSide = 96;
+
+// Premultiplied.
+std::vector<double> exact_channels_of(Rgba colour) {
+  const double share = colour.a / 255.0;
+  return {colour.r * share, colour.g * share, colour.b * share, static_cast<double>(colour.a)};
+}
+
+struct Change {
+  double most = 0;
+  double mean = 0;
+};
+
+Change change_between(const RunPicture& a, const RunPicture& b) {
+  const Picture before = to_pixels(a);
+  const Picture after = to_pixels(b);
+  Change change;
+  for (std::size_t i = 0; i < before.pixels.size(); ++i) {
+    const auto from = exact_channels_of(before.pixels[i]);
+    const auto to = exact_channels_of(after.pixels[i]);
+    for (std::size_t c = 0; c < from.size(); ++c) {
+      change.most = std::max(change.most, std::abs(from[c] - to[c]));
+      change.mean += std::abs(from[c] - to[c]);
+    }
+  }
+  change.mean /= 4.0 * static_cast<double>(before.pixels.size());
+  return change;
+}
+
+// A disc with soft edges around a random place.
+Mask disc(std::mt19937& random) {
+  std::uniform_real_distribution<double> place(0, kSide);
+  const double x = place(random);
+  const double y = place(random);
+  const double radius = 4 + place(random) / 3;
+  Mask mask(kSide, kSide);
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const double inside = radius - std::hypot(column - x, row - y) + 0.5;
+      mask.row_begin(row)[column] =
+          static_cast<std::uint8_t>(std::clamp(inside, 0.0, 1.0) * 255 + 0.5);
+    }
+  }
+  return mask;
+}
+
+Rgba random_colour(std::mt19937& random, bool is_opaque) {
+  const auto byte = [&random] { return static_cast<std::uint8_t>(random() % 256); };
+  return {byte(), byte(), byte(), is_opaque ? std::uint8_t{255} : byte()};
+}
+
+struct Discs {
+  std::vector<Mask> masks;
+  std::vector<PaintedClass> classes;
+  Rgba background;
+
+  Discs(int count, Rgba below, bool are_opaque, std::mt19937& random) : background(below) {
+    for (int i = 0; i < count; ++i) masks.push_back(disc(random));
+    for (const Mask& mask : masks) classes.push_back({&mask, random_colour(random, are_opaque)});
+  }
+  RunPicture picture(Quality quality) const {
+    RunPicture picture;
+    Composer().compose(plain_layers(classes), kSide, kSide, background, quality, picture);
+    return picture;
+  }
+};
+
+TEST(ReduceColoursTest, PicturesKeepWithinTheBounds) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  int indexed = 0;
+  for (int round = 0; round < 60; ++round) {
+    const bool is_opaque = round % 2 == 0;
+    const Rgba background = round % 3 == 0 ? kTransparent : random_colour(random, is_opaque);
+    const Discs discs(1 + round % 7, background, is_opaque, random);
+    const RunPicture exact = discs.picture(Quality::exact);
+    const RunPicture bounded = discs.picture(Quality::bounded);
+    EXPECT_LE(bounded.colours.size(), exact.colours.size());
+    indexed += bounded.colours.size() <= kPaletteColours ? 1 : 0;
+    const Change change = change_between(exact, bounded);
+    EXPECT_LE(change.most, kMostChange + 1) << "both have been rounded";
+    EXPECT_LE(change.mean, kMostMeanChange + 0.1);
+  }
+  EXPECT_GT(indexed, 40);
+}
+
+// All pixels are between two colours: steps that are right for edges would be too coarse.
+TEST(ReduceColoursTest, AGreyPictureKeepsWithinTheMean) {
+  std::mt19937 random(9);
+  Mask grey(kSide, kSide);
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      grey.row_begin(row)[column] = static_cast<std::uint8_t>(1 + random() % 254);
+    }
+  }
+  const PaintedClass black{&grey, {0, 0, 0, 255}};
+  RunPicture exact;
+  RunPicture bounded;
+  const Rgba white{255, 255, 255, 255};
+  Composer().compose(plain_layers({&black, 1}), kSide, kSide, white, Quality::exact, exact);
+  Composer().compose(plain_layers({&black, 1}), kSide, kSide, white, Quality::bounded, bounded);
+  EXPECT_LE(change_between(exact, bounded).mean, kMostMeanChange);
+  EXPECT_LT(bounded.colours.size(), exact.colours.size());
+}
+
+TEST(ReduceColoursTest, FlatColoursAreExact) {
+  std::mt19937 random(7);
+  const Discs discs(5, {250, 249, 248, 255}, true, random);
+  const RunPicture exact = discs.picture(Quality::exact);
+  const Picture before = to_pixels(exact);
+  const Picture after = to_pixels(discs.picture(Quality::bounded));
+  int flat = 0;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const bool is_flat = std::ranges::all_of(discs.masks, [&](const Mask& mask) {
+        return mask.at(column, row) == 0 || mask.at(column, row) == 255;
+      });
+      if (!is_flat) continue;
+      ++flat;
+      EXPECT_EQ(after.at(column, row), before.at(column, row));
+    }
+  }
+  EXPECT_GT(flat, 1000);
+}
+
+// So that no seam shows: a tile takes the same colours, whatever else there is in its picture.
+TEST(ReduceColoursTest, AnEdgeHasTheSameColoursInEveryPicture) {
+  constexpr int kRows = 32;
+  const auto in_row = [](int row, const auto& value_of) {
+    Mask mask(256, kRows);
+    mask.fill(0);
+    for (int i = 0; i < 256; ++i) mask.row_begin(row)[i] = static_cast<std::uint8_t>(value_of(i));
+    return mask;
+  };
+  const Mask edge = in_row(0, [](int i) { return i; });
+  const Mask other = in_row(1, [](int i) { return i < 128 ? 255 : 40; });
+  const std::vector<PaintedClass> two{{&edge, {200, 210, 250, 255}}, {&other, {200, 30, 10, 255}}};
+  const Rgba white{255, 255, 255, 255};
+  const auto compose = [&](std::size_t classes) {
+    RunPicture picture;
+    const auto layers = plain_layers(std::span(two).first(classes));
+    Composer().compose(layers, 256, kRows, white, Quality::bounded, picture);
+    return picture;
+  };
+  const RunPicture one = compose(1);
+  const RunPicture more = compose(2);
+  EXPECT_LE(one.row(0).size(), 8u) << "in steps of 8 at most, from white to 200";
+  for (int column = 0; column < 256; ++column) EXPECT_EQ(one.at(column, 0), more.at(column, 0));
+}
+
+TEST(ReduceColoursTest, WhatIsAsOpaqueEverywhereRemainsSo) {
+  std::mt19937 random(8);
+  Picture picture{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    Rgba colour = random_colour(random, false);
+    colour.a = static_cast<std::uint8_t>(125 + random() % 5);
+    picture.pixels.push_back(i == 0 ? Rgba{9, 9, 9, 127} : colour);
+  }
+  RunPicture runs = to_runs(picture);
+  std::fill(runs.origins.begin() + 1, runs.origins.end(), Origin::mixed);
+  ColourReducer().reduce(runs, kMostChange);
+  for (const Rgba colour : runs.colours) EXPECT_EQ(colour.a, 127);
+}
+
+RunPicture noise(bool are_opaque) {
+  std::mt19937 random(3);
+  Picture noise{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) noise.pixels.push_back(random_colour(random, are_opaque));
+  RunPicture picture = to_runs(noise);
+  std::ranges::fill(picture.origins, Origin::mixed);
+  return picture;
+}
+
+TEST(ReduceColoursTest, WhatHasTooManyColoursKeepsWithinTheBounds) {
+  const RunPicture exact = noise(false);
+  RunPicture picture = exact;
+  ColourReducer().reduce(picture, kMostChange);
+  EXPECT_GT(picture.colours.size(), kPaletteColours);
+  EXPECT_LE(change_between(exact, picture).most, kMostChange + 1);
+}
+
+TEST(ReduceColoursTest, TellsTheSumOfTheChanges) {
+  const RunPicture exact = noise(true);
+  RunPicture picture = exact;
+  const auto sum = static_cast<double>(ColourReducer().reduce(picture, 3));
+  EXPECT_NEAR(sum / 4 / (64 * 64), change_between(exact, picture).mean, 1e-9);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(ReduceColoursTest, WhatIsOpaqueRemainsSo) {
+  RunPicture picture = noise(true);
+  ColourReducer().reduce(picture, kMostChange);
+  for (const Rgba colour : picture.colours) EXPECT_EQ(colour.a, 255);
+}
+
+TEST(ReduceColoursTest, FlatColoursDoNotChange) {
+  RunPicture picture = noise(true);
+  const Picture before = to_pixels(picture);
+  std::ranges::fill(picture.origins, Origin::flat);
+  EXPECT_EQ(ColourReducer().reduce(picture, kMostChange), 0u);
+  EXPECT_EQ(to_pixels(picture).pixels, before.pixels);
+}
+
+// Colours around a few places, none of which lies well in the lattice.
+TEST(ReduceColoursTest, ColoursCloseToEachOtherFitIntoAPalette) {
+  std::mt19937 random(4);
+  Picture clusters{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    const auto near = [&](int place) { return static_cast<std::uint8_t>(place + random() % 7); };
+    const int cluster = static_cast<int>(random() % 150);
+    clusters.pixels.push_back({near(4 + cluster), near(13 + cluster / 2), near(22), 255});
+  }
+  const RunPicture exact = to_runs(clusters);
+  RunPicture picture = exact;
+  std::ranges::fill(picture.origins, Origin::mixed);
+  ColourReducer().reduce(picture, kMostChange);
+  EXPECT_LE(picture.colours.size(), kPaletteColours);
+  EXPECT_LE(change_between(exact, picture).most, kMostChange);
+}
+
+TEST(ReduceColoursTest, EveryColourIsOfSomePixel) {
+  std::mt19937 random(5);
+  const Discs discs(4, kTransparent, true, random);
+  for (const Quality quality : {Quality::bounded, Quality::exact}) {
+    const RunPicture picture = discs.picture(quality);
+    std::set<std::uint32_t> used;
+    for (const auto& run : picture.runs) used.insert(run.colour);
+    EXPECT_EQ(used.size(), picture.colours.size());
+  }
+}
+
+}  // namespace
+}  // namespace trapeze
