@@ -464,17 +464,15 @@ class Composer::Painter {
   // Whether values between the two sides give the colours between them.
   bool is_on_line(const Edge& edge) {
     constexpr float kRounding = 0.1f / 255;
-    for (const std::uint8_t value : std::to_array<std::uint8_t>({51, 128, 204})) {
+    const auto is_near = [](float a, float b) { return std::abs(a - b) < kRounding; };
+    constexpr std::array<std::uint8_t, 3> kValues{51, 128, 204};
+    return std::ranges::all_of(kValues, [&](std::uint8_t value) {
       const Paint mixture = mixture_with({value, static_cast<std::uint8_t>(255 - value)});
       const float share = static_cast<float>(value) / 255;
       const Paint between = mixed(edge.to, share, edge.from, 1 - share);
-      const bool is_near = std::abs(mixture.r - between.r) < kRounding &&
-                           std::abs(mixture.g - between.g) < kRounding &&
-                           std::abs(mixture.b - between.b) < kRounding &&
-                           std::abs(mixture.a - between.a) < kRounding;
-      if (!is_near) return false;
-    }
-    return true;
+      return is_near(mixture.r, between.r) && is_near(mixture.g, between.g) &&
+             is_near(mixture.b, between.b) && is_near(mixture.a, between.a);
+    });
   }
 
   using EdgeValues = std::array<std::uint8_t, 2>;

@@ -87,14 +87,14 @@ Unfinished::~Unfinished() {
 }
 
 Unfinished Unfinished::file_beside(const std::string& output) {
-  return Unfinished(name_for_this_process(output + ".tmp."), Kind::file);
+  return {name_for_this_process(output + ".tmp."), Kind::file};
 }
 
 Unfinished Unfinished::folder_beside(const std::string& output) {
   const fs::path path(output);
   const fs::path prefix = path.parent_path() / ("." + path.filename().string() + ".tmp.");
   const std::string folder = name_for_this_process(prefix);
-  return Unfinished(folder, Kind::folder);
+  return {folder, Kind::folder};
 }
 
 void Unfinished::give_name(const std::string& from, const std::string& to, std::error_code& error) {
