@@ -36,7 +36,8 @@ class Service {
   /// log of requests again). Call before run().
   void act_on_signals();
 
-  /// Reads the layers, and serves until stop() is called. Throws what went wrong if the layers cannot be read.
+  /// Reads the layers, and serves until stop() is called. Throws what went wrong if the layers
+  /// cannot be read.
   void run();
   /// From any thread.
   void stop() { server_->stop(); }
