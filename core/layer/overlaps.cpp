@@ -258,7 +258,8 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
   const EdgeLine s_right(input_.mesh, s.right);
   const EdgeLine t_left(input_.mesh, t.left);
   const EdgeLine t_right(input_.mesh, t.right);
-  const double step = (static_cast<double>(bottom) - top) / (kHeights - 1);
+  const double height = static_cast<double>(bottom) - top;
+  const double step = height / (kHeights - 1);
   std::array<double, kHeights> from;
   std::array<double, kHeights> to;
   for (int i = 0; i < kHeights; ++i) {
@@ -270,7 +271,7 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
   const auto add_sides = [&](const EdgeLine& side, const EdgeLine& other) {
     const bool are_near = std::abs(side.x_at(top) - other.x_at(top)) <= kAlong &&
                           std::abs(side.x_at(bottom) - other.x_at(bottom)) <= kAlong;
-    if (are_near) common.along += std::hypot(bottom - top, side.x_at(bottom) - side.x_at(top));
+    if (are_near) common.along += std::hypot(height, side.x_at(bottom) - side.x_at(top));
   };
   add_sides(s_left, t_left);
   add_sides(s_right, t_right);
