@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "render/mask/mask.h"
-#include "render/picture/deflater.h"
+#include "render/picture/run_deflater.h"
 
 namespace trapeze {
 namespace {
@@ -67,8 +67,8 @@ struct PngJob {
   int bits = 8;
   int colour_type = PNG_COLOR_TYPE_PALETTE;
   StoredPalette palette;
-  std::vector<std::uint8_t> rows;  // each begins with the number of its filter
-  Deflater deflater;
+  RunDeflater deflater;
+  std::vector<PixelRun> row;                 // for the deflater
   std::span<const std::uint8_t> compressed;  // of the deflater
 
   std::string bytes;  // the result
@@ -77,52 +77,68 @@ struct PngJob {
 
 namespace {
 
-/// Calls `fill` with each row's number and place, once the row has its filter: none.
-template <typename Fill>
-void make_rows(PngJob& job, std::size_t row_bytes, Fill fill) {
-  job.rows.resize((1 + row_bytes) * static_cast<std::size_t>(job.height));
-  std::uint8_t* row = job.rows.data();
-  for (int i = 0; i < job.height; ++i, row += 1 + row_bytes) {
-    *row = PNG_FILTER_VALUE_NONE;
-    fill(i, row + 1);
+/// Bytes of a row in runs of equal ones.
+void append_byte_runs(std::span<const std::uint8_t> bytes, std::vector<PixelRun>& runs) {
+  for (std::uint32_t i = 0; i < bytes.size(); ++i) {
+    if (!runs.empty() && runs.back().pixel == bytes[i]) {
+      runs.back().end = i + 1;
+    } else {
+      runs.push_back({i + 1, bytes[i]});
+    }
   }
 }
 
-void take_indices(const RunPicture& picture, PngJob& job) {
+/// Gives the deflater the rows of the picture, in pixels that pixel_of makes of its colours.
+template <typename PixelOf>
+void deflate_rows(const RunPicture& picture, std::uint32_t bytes_per_pixel, PngJob& job,
+                  const PixelOf& pixel_of) {
+  job.deflater.begin(static_cast<std::uint32_t>(picture.width), bytes_per_pixel);
+  for (int row = 0; row < picture.height; ++row) {
+    job.row.clear();
+    for (const Run& run : picture.row(row)) job.row.push_back({run.end, pixel_of(run.colour)});
+    job.deflater.add_row(job.row);
+  }
+}
+
+/// The same, of indices that share bytes.
+void deflate_packed_rows(const RunPicture& picture, PngJob& job) {
+  const auto width = static_cast<std::size_t>(picture.width);
+  std::vector<std::uint8_t> indices(width);
+  std::vector<std::uint8_t> packed((width * static_cast<std::size_t>(job.bits) + 7) / 8);
+  job.deflater.begin(static_cast<std::uint32_t>(packed.size()), 1);
+  for (int row = 0; row < picture.height; ++row) {
+    std::uint32_t begin = 0;
+    for (const Run& run : picture.row(row)) {
+      std::memset(indices.data() + begin, job.palette.index_of[run.colour], run.end - begin);
+      begin = run.end;
+    }
+    pack_bits(indices, job.bits, packed.data());
+    job.row.clear();
+    append_byte_runs(packed, job.row);
+    job.deflater.add_row(job.row);
+  }
+}
+
+void deflate_indices(const RunPicture& picture, PngJob& job) {
   job.palette = pack_palette(picture);
   job.bits = job.palette.bits;
   job.colour_type = PNG_COLOR_TYPE_PALETTE;
-  const auto width = static_cast<std::size_t>(picture.width);
-  std::vector<std::uint8_t> unpacked(job.bits < 8 ? width : 0);
-  make_rows(job, (width * static_cast<std::size_t>(job.bits) + 7) / 8,
-            [&](int row, std::uint8_t* out) {
-              std::uint8_t* const indices = unpacked.empty() ? out : unpacked.data();
-              std::uint32_t begin = 0;
-              for (const Run& run : picture.row(row)) {
-                std::memset(indices + begin, job.palette.index_of[run.colour], run.end - begin);
-                begin = run.end;
-              }
-              if (!unpacked.empty()) pack_bits(unpacked, job.bits, out);
-            });
+  if (job.bits < 8) return deflate_packed_rows(picture, job);
+  deflate_rows(picture, 1, job, [&job](std::uint32_t colour) -> std::uint32_t {
+    return job.palette.index_of[colour];
+  });
 }
 
-void take_colours(const RunPicture& picture, PngJob& job) {
+void deflate_colours(const RunPicture& picture, PngJob& job) {
   const bool is_opaque =
       std::ranges::all_of(picture.colours, [](Rgba colour) { return colour.a == 255; });
   job.bits = 8;
   job.colour_type = is_opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA;
-  const std::size_t channels = is_opaque ? 3 : 4;
-  make_rows(job, static_cast<std::size_t>(picture.width) * channels,
-            [&](int row, std::uint8_t* out) {
-              std::uint32_t begin = 0;
-              for (const Run& run : picture.row(row)) {
-                const Rgba colour = picture.colours[run.colour];
-                const std::array bytes{colour.r, colour.g, colour.b, colour.a};
-                for (; begin < run.end; ++begin, out += channels) {
-                  std::memcpy(out, bytes.data(), channels);
-                }
-              }
-            });
+  deflate_rows(picture, is_opaque ? 3 : 4, job, [&picture](std::uint32_t number) {
+    const Rgba colour = picture.colours[number];
+    return std::uint32_t{colour.r} | std::uint32_t{colour.g} << 8 | std::uint32_t{colour.b} << 16 |
+           std::uint32_t{colour.a} << 24;
+  });
 }
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
@@ -195,11 +211,11 @@ std::string PngEncoder::encode(const RunPicture& picture) {
   job.height = picture.height;
   job.bytes.clear();
   if (picture.colours.size() <= kMaxColours) {
-    take_indices(picture, job);
+    deflate_indices(picture, job);
   } else {
-    take_colours(picture, job);
+    deflate_colours(picture, job);
   }
-  job.compressed = job.deflater.compress(job.rows);
+  job.compressed = job.deflater.finish();
   run(job);
   return std::move(job.bytes);
 }

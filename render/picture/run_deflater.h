@@ -1,0 +1,104 @@
+// Deflate (RFC 1951) of pictures that are runs of equal pixels.
+//
+// In such pictures nearly all that repeats is within a run, or is what lies right above: no search
+// for matches is needed, and the sum over the bytes of a run has a closed form. So compressing
+// takes a time that grows with the runs and not with the pixels.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace trapeze {
+
+/// Equal pixels of a row.
+struct PixelRun {
+  std::uint32_t end = 0;    // the column after the last of them
+  std::uint32_t pixel = 0;  // its bytes, the first of them lowest
+};
+
+/// Compresses one picture after the other, with working memory that it keeps. One thread at a time
+/// may use it.
+class RunDeflater {
+ public:
+  /// Begins a picture of so many columns, with pixels of 1, 3 or 4 bytes.
+  void begin(std::uint32_t columns, std::uint32_t bytes_per_pixel);
+  /// Adds a row after those that were added: a byte 0, which is the filter that PNG has before each
+  /// row, and its pixels. Precondition: the runs follow one another and fill all columns.
+  void add_row(std::span<const PixelRun> runs);
+  /// A zlib stream (RFC 1950) of all rows, which lasts until the next picture begins. It depends on
+  /// the rows only.
+  std::span<const std::uint8_t> finish();
+
+ private:
+  /// How a symbol, or a token, is written.
+  struct Code {
+    std::uint64_t bits = 0;
+    int length = 0;  // 0: it does not occur
+  };
+  static constexpr std::size_t kLiterals = 286;  // and lengths, and the end of a block
+  static constexpr std::size_t kDistances = 30;
+  static constexpr std::size_t kMostMatch = 258;
+  // Tokens: literals; then, by their length, matches with the pixel before, and with the row above.
+  static constexpr std::uint32_t kRepeat = 256;
+  static constexpr std::uint32_t kAbove = kRepeat + kMostMatch + 1;
+  static constexpr std::size_t kTokens = kAbove + kMostMatch + 1;
+
+  /// Where in a row.
+  struct Place {
+    std::uint32_t column = 0;
+    const PixelRun* run = nullptr;    // of the row, which does not end before
+    const PixelRun* above = nullptr;  // of the row above
+    std::uint32_t begin = 0;          // of the run
+  };
+  /// What is the same in the row above.
+  struct Same {
+    std::uint32_t pixels = 0;
+    std::uint32_t bits = 0;  // that it takes to write them, about
+  };
+
+  Same same_as_above(const Place& place) const;
+  bool is_worth_it(const Same& same) const;
+  void make_room(std::size_t tokens);
+  template <std::uint32_t size>
+  void add_pixels(std::span<const PixelRun> runs);
+  template <std::uint32_t size>
+  void add_rest_of_run(const Place& place);
+  void add_pixel(std::uint32_t pixel);
+  void add_token(std::uint32_t token);
+  void add_match(std::uint32_t kind, std::uint32_t length);
+  void end_match_above();
+  void add_to_checksum(std::span<const PixelRun> runs);
+
+  void begin_block();
+  void end_block(bool is_last);
+  void write_tokens();
+  void write_code_lengths(std::span<const Code, kLiterals> literals,
+                          std::span<const Code, kDistances> distances);
+  template <std::size_t size>
+  static std::array<Code, size> make_codes(const std::array<std::uint32_t, size>& counts,
+                                           int most_bits);
+  void write(Code code);
+  void write(std::uint32_t bits, int count) { write(Code{bits, count}); }
+
+  std::uint32_t columns_ = 0;
+  std::uint32_t bytes_per_pixel_ = 1;
+  std::uint32_t stride_ = 1;           // bytes of a row
+  std::vector<PixelRun> above_;        // the runs of the row before; empty: there is none
+  std::vector<std::uint16_t> tokens_;  // with room for more
+  std::size_t token_count_ = 0;
+  std::array<std::uint32_t, kTokens> counts_{};
+  std::array<Code, kTokens> codes_{};
+  std::uint32_t length_above_ = 0;  // of a match with the row above that may go on
+  // Adler-32.
+  std::uint64_t sum_ = 1;
+  std::uint64_t sum_of_sums_ = 0;
+  // What is written.
+  std::vector<std::uint8_t> output_;
+  std::uint64_t bits_ = 0;
+  int bit_count_ = 0;
+};
+
+}  // namespace trapeze

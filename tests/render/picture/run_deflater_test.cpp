@@ -1,0 +1,165 @@
+#include "render/picture/run_deflater.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace trapeze {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Row = std::vector<PixelRun>;
+
+struct Pixels {
+  std::uint32_t columns = 1;
+  std::uint32_t bytes_per_pixel = 1;
+  std::vector<Row> rows;
+};
+
+Bytes bytes_of(const Pixels& pixels) {
+  Bytes bytes;
+  for (const Row& row : pixels.rows) {
+    bytes.push_back(0);
+    std::uint32_t column = 0;
+    for (const PixelRun& run : row) {
+      for (; column < run.end; ++column) {
+        for (std::uint32_t i = 0; i < pixels.bytes_per_pixel; ++i) {
+          bytes.push_back(static_cast<std::uint8_t>(run.pixel >> 8 * i));
+        }
+      }
+    }
+  }
+  return bytes;
+}
+
+Bytes compressed(RunDeflater& deflater, const Pixels& pixels) {
+  deflater.begin(pixels.columns, pixels.bytes_per_pixel);
+  for (const Row& row : pixels.rows) deflater.add_row(row);
+  const auto output = deflater.finish();
+  return {output.begin(), output.end()};
+}
+
+// Of zlib, which looks at the checksum, too. Empty if it finds something wrong.
+Bytes decompressed(const Bytes& compressed, std::size_t size) {
+  Bytes bytes(size + 1);
+  uLongf length = bytes.size();
+  if (uncompress(bytes.data(), &length, compressed.data(), compressed.size()) != Z_OK) return {};
+  bytes.resize(length);
+  return bytes;
+}
+
+class RandomPixels {
+ public:
+  explicit RandomPixels(unsigned seed) : random_(seed) {}
+
+  std::uint32_t number(std::uint32_t least, std::uint32_t most) {
+    return std::uniform_int_distribution<std::uint32_t>(least, most)(random_);
+  }
+
+  Row row(std::uint32_t columns, std::uint32_t longest, std::uint32_t colours) {
+    Row row;
+    std::uint32_t end = 0;
+    while (end < columns) {
+      end = std::min(columns, end + number(1, longest));
+      row.push_back({end, colour(colours)});
+    }
+    return row;
+  }
+
+  // Rows that are new, the same as above, or differ from it in a pixel or two.
+  Pixels pixels(std::uint32_t columns, std::uint32_t rows) {
+    Pixels pixels{columns, std::vector<std::uint32_t>{1, 3, 4}[number(0, 2)], {}};
+    mask_ = pixels.bytes_per_pixel == 4 ? ~0u : (1u << 8 * pixels.bytes_per_pixel) - 1;
+    const std::uint32_t longest = number(1, 60);
+    const std::uint32_t colours = number(1, 3) == 1 ? 2 : number(2, 70'000);
+    for (std::uint32_t i = 0; i < rows; ++i) {
+      const bool is_new = pixels.rows.empty() || number(0, 2) == 0;
+      pixels.rows.push_back(is_new ? row(columns, longest, colours) : pixels.rows.back());
+      if (is_new || number(0, 1) == 0) continue;
+      Row& like_above = pixels.rows.back();
+      like_above[number(0, static_cast<std::uint32_t>(like_above.size()) - 1)].pixel =
+          colour(colours);
+    }
+    return pixels;
+  }
+
+ private:
+  std::uint32_t colour(std::uint32_t colours) {
+    return (number(0, colours - 1) * 2'654'435'761u) & mask_;
+  }
+
+  std::mt19937 random_;
+  std::uint32_t mask_ = 0;
+};
+
+void expect_back(RunDeflater& deflater, const Pixels& pixels) {
+  const Bytes bytes = bytes_of(pixels);
+  const Bytes output = compressed(deflater, pixels);
+  EXPECT_EQ(decompressed(output, bytes.size()), bytes)
+      << pixels.columns << " x " << pixels.rows.size() << " pixels of " << pixels.bytes_per_pixel;
+}
+
+TEST(RunDeflaterTest, WhatIsCompressedComesBack) {
+  RandomPixels random(1);
+  RunDeflater deflater;
+  for (int i = 0; i < 1500; ++i) {
+    expect_back(deflater, random.pixels(random.number(1, 300), random.number(1, 40)));
+  }
+}
+
+TEST(RunDeflaterTest, RowsLongerThanTheWindowComeBack) {
+  RandomPixels random(2);
+  RunDeflater deflater;
+  for (const std::uint32_t columns : {8'191u, 8'192u, 16'384u}) {
+    for (int i = 0; i < 3; ++i) expect_back(deflater, random.pixels(columns, 20));
+  }
+}
+
+TEST(RunDeflaterTest, ManyBlocksComeBack) {
+  RandomPixels random(3);
+  RunDeflater deflater;
+  Pixels pixels{1'024, 1, {}};
+  for (int i = 0; i < 1'024; ++i) pixels.rows.push_back(random.row(1'024, 3, 1'000));
+  expect_back(deflater, pixels);
+}
+
+// Codes of symbols whose counts grow like Fibonacci's numbers would be longer than a code may be.
+TEST(RunDeflaterTest, CodesAreNoLongerThanTheyMayBe) {
+  RunDeflater deflater;
+  Row row;
+  std::uint32_t count = 1;
+  std::uint32_t before = 1;
+  std::uint32_t column = 0;
+  for (std::uint32_t symbol = 1; symbol < 20; ++symbol) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      row.push_back({++column, symbol});
+      row.push_back({++column, 0});
+    }
+    count += std::exchange(before, count);
+  }
+  expect_back(deflater, {column, 1, {row}});
+}
+
+TEST(RunDeflaterTest, APictureOfOneColourTakesNextToNothing) {
+  RunDeflater deflater;
+  const Pixels pixels{256, 1, std::vector<Row>(256, Row{{256, 7}})};
+  expect_back(deflater, pixels);
+  EXPECT_LT(compressed(deflater, pixels).size(), 90u);
+}
+
+TEST(RunDeflaterTest, TheBytesDoNotDependOnWhatWasCompressedBefore) {
+  RandomPixels random(4);
+  RunDeflater used;
+  for (int i = 0; i < 100; ++i) {
+    const Pixels pixels = random.pixels(random.number(1, 300), random.number(1, 40));
+    RunDeflater fresh;
+    EXPECT_EQ(compressed(used, pixels), compressed(fresh, pixels));
+  }
+}
+
+}  // namespace
+}  // namespace trapeze
