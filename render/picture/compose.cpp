@@ -610,8 +610,13 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
     return;
   }
   int change = kMostChange;
-  while (paint(change, change, picture) > most) --change;
-  if (picture.colours.size() <= kPaletteColours) return;
+  for (double sum = paint(change, change, picture); sum > most;
+       sum = paint(change, change, picture)) {
+    // The mean grows with the most.
+    change = std::min(change - 1, static_cast<int>(change * most / sum));
+  }
+  const std::size_t colours = picture.colours.size();
+  if (colours <= kPaletteColours || colours > kMostToGather) return;
   // Steps along edges take much of a palette: colours that are close to each other in this picture
   // may take less.
   const bool is_within = paint(0, kMostChange, other_) <= most;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 
 #include "render/picture/number_table.h"
 
@@ -53,6 +54,42 @@ class Lattice {
 };
 
 }  // namespace
+
+/// Numbers of colours by where their channels lie, so that those close to a colour are found
+/// without looking at all.
+class ColourReducer::Neighbourhood {
+ public:
+  Neighbourhood() { first_.fill(kNone); }
+
+  /// Numbers are added in ascending order, from 0 on.
+  void add(const Channels& channels) {
+    std::uint32_t& first = first_[place_of(channels.r, channels.g)];
+    next_.push_back(std::exchange(first, static_cast<std::uint32_t>(next_.size())));
+  }
+
+  /// Calls visit(number) for all colours none of whose channels is further away than kReach, and
+  /// for others.
+  template <typename Visit>
+  void for_each_near(const Channels& channels, const Visit& visit) const {
+    for (int r = channels.r - kReach; r <= channels.r + kReach; r += kReach) {
+      for (int g = channels.g - kReach; g <= channels.g + kReach; g += kReach) {
+        if (r < 0 || g < 0 || r >= kSide * kReach || g >= kSide * kReach) continue;
+        for (std::uint32_t i = first_[place_of(r, g)]; i != kNone; i = next_[i]) visit(i);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kReach = 2 * kMostChange + 1;
+  static constexpr int kSide = 255 / kReach + 1;
+
+  static std::size_t place_of(int r, int g) {
+    return static_cast<std::size_t>(r / kReach * kSide + g / kReach);
+  }
+
+  std::array<std::uint32_t, static_cast<std::size_t>(kSide* kSide)> first_;
+  std::vector<std::uint32_t> next_;  // by number
+};
 
 /// Around colours that may become one.
 class ColourReducer::Box {
@@ -110,9 +147,9 @@ class ColourReducer::NewColours {
 std::uint64_t ColourReducer::reduce(RunPicture& picture, int most_change) {
   count_pixels(picture);
   put_into_lattice(picture, most_change);
-  if (most_change > 0 && colours_.size() > kPaletteColours && !gather(picture, most_change)) {
-    put_into_lattice(picture, most_change);
-  }
+  const bool is_worth_it =
+      colours_.size() > kPaletteColours && colours_.size() <= kMostToGather && most_change > 0;
+  if (is_worth_it && !gather(picture, most_change)) put_into_lattice(picture, most_change);
   apply(picture);
   return change();
 }
@@ -152,39 +189,51 @@ void ColourReducer::put_into_lattice(const RunPicture& picture, int most_change)
 bool ColourReducer::gather(const RunPicture& picture, int most_change) {
   NewColours made(*this);
   keep_all_but_mixed(picture, made);
+  if (colours_.size() > kPaletteColours) return false;
+  Neighbourhood kept;
+  for (const Channels& channels : new_channels_) kept.add(channels);
   std::vector<std::uint32_t> left;
   for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
     if (pixels_[i] == 0 || becomes_[i] != kNone) continue;
-    becomes_[i] = nearest(channels_[i], most_change);
+    becomes_[i] = nearest(kept, channels_[i], most_change);
     if (becomes_[i] == kNone) left.push_back(i);
   }
   std::ranges::sort(left, {}, [&](std::uint32_t i) {
     return std::tuple(~pixels_[i], ColourKey(picture.colours[i]).bits);
   });
-  while (!left.empty()) {
+  Neighbourhood others;
+  for (const std::uint32_t i : left) others.add(channels_[i]);
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t first = 0; first < left.size(); ++first) {
+    if (becomes_[left[first]] != kNone) continue;
     if (colours_.size() >= kPaletteColours) return false;
-    Box box(channels_[left.front()], 2 * most_change);
-    const auto members = std::stable_partition(
-        left.begin(), left.end(), [&](std::uint32_t i) { return !box.take(channels_[i]); });
+    near.clear();
+    others.for_each_near(channels_[left[first]], [&](std::uint32_t k) {
+      if (k > first && becomes_[left[k]] == kNone) near.push_back(k);
+    });
+    std::ranges::sort(near);
+    Box box(channels_[left[first]], 2 * most_change);
+    std::erase_if(near, [&](std::uint32_t k) { return !box.take(channels_[left[k]]); });
     const std::uint32_t colour = made.number_of(straight(box.middle()));
-    for (auto i = members; i != left.end(); ++i) becomes_[*i] = colour;
-    left.erase(members, left.end());
+    becomes_[left[first]] = colour;
+    for (const std::uint32_t k : near) becomes_[left[k]] = colour;
   }
   return true;
 }
 
-/// Of the new colours; kNone if all are too far.
-std::uint32_t ColourReducer::nearest(const Channels& channels, int most_change) const {
+/// Of the new colours; kNone if all are too far. Of those that are as near, the first.
+std::uint32_t ColourReducer::nearest(const Neighbourhood& kept, const Channels& channels,
+                                     int most_change) const {
   std::uint32_t nearest = kNone;
-  Difference least{most_change + 1, 0};
-  for (std::uint32_t k = 0; k < new_channels_.size(); ++k) {
+  std::tuple least{most_change + 1, 0, kNone};
+  kept.for_each_near(channels, [&](std::uint32_t k) {
     const bool are_opaque_alike = (new_channels_[k].a == 255) == (channels.a == 255);
     const Difference apart = difference(new_channels_[k], channels);
-    const bool is_nearer = std::tuple(apart.most, apart.sum) < std::tuple(least.most, least.sum);
-    if (!are_opaque_alike || !is_nearer) continue;
-    least = apart;
+    const std::tuple distance{apart.most, apart.sum, k};
+    if (!are_opaque_alike || distance >= least) return;
+    least = distance;
     nearest = k;
-  }
+  });
   return nearest;
 }
 
