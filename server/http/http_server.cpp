@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/base/build_id.h"
+#include "server/http/response_head.h"
 
 namespace trapeze {
 namespace {
@@ -35,6 +35,10 @@ namespace net = boost::asio;
 using tcp = net::ip::tcp;
 using ErrorCode = beast::error_code;
 using Clock = std::chrono::steady_clock;
+// Of one thread, which needs neither locks nor strands for it.
+using Executor = net::io_context::executor_type;
+using Socket = net::basic_stream_socket<tcp, Executor>;
+using Timer = net::basic_waitable_timer<Clock, net::wait_traits<Clock>, Executor>;
 
 constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
 constexpr std::size_t kFirstRead = 2048;                   // most requests come as a whole
@@ -50,15 +54,9 @@ constexpr auto kRefusalPause = std::chrono::seconds(1);
 constexpr auto kHalfClosedTime = std::chrono::seconds(1);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kWarningPause = std::chrono::seconds(1);
-
-std::string http_date(std::time_t time) {
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  std::array<char, 40> text{};
-  const std::size_t length =
-      std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
-  return {text.data(), length};
-}
+// How often connections are looked at that may have taken too long.
+constexpr auto kShortestRound = std::chrono::milliseconds(10);
+constexpr auto kLongestRound = std::chrono::milliseconds(500);
 
 bool is_http_error(const ErrorCode& error) {
   return error.category() == http::make_error_code(http::error::bad_version).category();
@@ -85,6 +83,13 @@ std::string list_of(const http::request<http::string_body>& message, beast::stri
     list += view_of(field->value());
   }
   return list;
+}
+
+/// So that no limit is exceeded by much.
+std::chrono::milliseconds round_for(const HttpServerOptions& options) {
+  const auto shortest =
+      std::min({options.idle_timeout, options.read_timeout, options.write_timeout});
+  return std::clamp<std::chrono::milliseconds>(shortest / 8, kShortestRound, kLongestRound);
 }
 
 tcp::endpoint endpoint_of(const HttpServerOptions& options) {
@@ -126,9 +131,14 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
  private:
   void open();
   void accept();
-  void on_accepted(const ErrorCode& error, tcp::socket socket);
+  void on_accepted(const ErrorCode& error, Socket socket);
   void warn_of_refusal(const ErrorCode& error);
-  void admit(tcp::socket socket);
+  void admit(Socket socket);
+  /// Ends connections that have taken too long, again and again while there are any.
+  void begin_rounds();
+  void make_round();
+  std::vector<std::shared_ptr<Connection>> alive_connections() const;
+  void stop_threads();
   void wait_for_signal();
   void wait_for_hangup();
   void begin_draining();
@@ -148,28 +158,38 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> connections_of_;
   bool has_run_ = false;
 
-  // Last, so that what still is in its queues when it goes finds the rest alive.
-  net::io_context io_;
-  net::strand<net::io_context::executor_type> control_;  // for everything below
-  net::executor_work_guard<net::io_context::executor_type> work_;
-  tcp::acceptor acceptor_;
-  net::steady_timer accept_timer_;
+  // Of a thread each, which has its share of the connections. Last, so that what still is in their
+  // queues when they go finds the rest alive.
+  struct IoThread {
+    net::io_context io{1};
+    net::executor_work_guard<Executor> work{io.get_executor()};
+  };
+  static std::vector<std::unique_ptr<IoThread>> make_io_threads(unsigned count);
+  const std::vector<std::unique_ptr<IoThread>> io_threads_;
+  std::size_t next_thread_ = 0;  // for the next connection
+
+  const Executor control_;  // of the first of them, for everything below
+  net::basic_socket_acceptor<tcp, Executor> acceptor_;
+  Timer accept_timer_;
   Clock::time_point next_warning_;  // that connections cannot be accepted
-  net::steady_timer drain_timer_;
-  net::signal_set signals_;
-  net::signal_set hangups_;
+  const std::chrono::milliseconds round_;
+  Timer round_timer_;
+  bool has_rounds_ = false;
+  Timer drain_timer_;
+  net::basic_signal_set<Executor> signals_;
+  net::basic_signal_set<Executor> hangups_;
 };
 
 /// One client. Reads a request, answers it, and only then reads the next: so pipelined requests
-/// are answered in order. Everything happens on the strand of its stream.
+/// are answered in order. Everything happens on the thread of its socket.
 class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(State& state, tcp::socket socket, const ClientAddress& peer)
+  Connection(State& state, Socket socket, const ClientAddress& peer)
       : state_(state),
         peer_(peer),
         is_trusted_(state.is_trusted(peer)),
-        stream_(std::move(socket)),
-        half_closed_timer_(stream_.get_executor()) {}
+        socket_(std::move(socket)),
+        half_closed_timer_(socket_.get_executor()) {}
   ~Connection() { state_.leave(*this); }  // NOLINT(bugprone-exception-escape): memory may end
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -181,8 +201,15 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   /// Closes the connection if it waits for a request; else it is closed after the response.
   /// From any thread.
   void drain();
+  /// Closes the connection if it has taken longer than it may. From any thread.
+  void end_if_late();
 
  private:
+  /// From now on; what has not come to an end then is closed.
+  void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
+  void allow_any_time() { deadline_ = Clock::time_point::max(); }
+  bool is_late() const { return deadline_.load() < Clock::now(); }
+
   void read();
   void await_first_byte();
   void read_request();
@@ -201,9 +228,8 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   void on_readable_while_watching();
   void stop_watching();
   void send(HttpResponse response);
-  template <typename Body>
-  void write(http::response<Body> message, std::shared_ptr<const std::string> bytes);
-  void on_written(const ErrorCode& error, bool keep_alive);
+  void write();
+  void on_written(const ErrorCode& error);
   void close_gently();
   void discard_input();
   void tell(const HttpResponse& response) const;
@@ -211,10 +237,11 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   State& state_;
   const ClientAddress peer_;
   const bool is_trusted_;
-  beast::tcp_stream stream_;
+  Socket socket_;
+  std::atomic<Clock::time_point> deadline_{Clock::time_point::max()};
   beast::flat_buffer buffer_{kMaxBuffer};
   std::optional<http::request_parser<http::string_body>> parser_;
-  net::steady_timer half_closed_timer_;
+  Timer half_closed_timer_;
   bool is_watching_ = false;
   bool is_reading_ = false;  // and nobody has asked for anything yet, if the buffer is empty
 
@@ -223,6 +250,11 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   Clock::time_point begin_;
   unsigned version_ = 11;
   bool keep_alive_ = false;
+  bool is_answered_ = false;
+
+  // The response being sent.
+  std::string head_;
+  std::shared_ptr<const std::string> body_;  // null: none
 
   std::array<char, 4096> discarded_{};
   std::size_t discarded_bytes_ = 0;
@@ -230,12 +262,12 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
 
 void HttpServer::Connection::start() {
   state_.enter(*this);
-  net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->read(); });
+  net::dispatch(socket_.get_executor(), [self = shared_from_this()] { self->read(); });
 }
 
 void HttpServer::Connection::refuse(const Problem& problem) {
   state_.enter(*this);
-  net::dispatch(stream_.get_executor(), [self = shared_from_this(), problem] {
+  net::dispatch(socket_.get_executor(), [self = shared_from_this(), problem] {
     self->request_.client = self->peer_;
     self->begin_ = Clock::now();
     self->send(problem_response(problem, kRefusalPause));
@@ -243,10 +275,19 @@ void HttpServer::Connection::refuse(const Problem& problem) {
 }
 
 void HttpServer::Connection::drain() {
-  net::post(stream_.get_executor(), [self = shared_from_this()] {
+  net::post(socket_.get_executor(), [self = shared_from_this()] {
     const bool is_idle =
         self->is_reading_ && self->buffer_.size() == 0 && !self->parser_->got_some();
-    if (is_idle) self->stream_.close();
+    ErrorCode ignored;  // it may have gone already
+    if (is_idle) self->socket_.close(ignored);
+  });
+}
+
+void HttpServer::Connection::end_if_late() {
+  if (!is_late()) return;
+  net::post(socket_.get_executor(), [self = shared_from_this()] {
+    ErrorCode ignored;  // it may have gone already
+    if (self->is_late()) self->socket_.close(ignored);
   });
 }
 
@@ -261,8 +302,8 @@ void HttpServer::Connection::read() {
 }
 
 void HttpServer::Connection::await_first_byte() {
-  stream_.expires_after(state_.options().idle_timeout);
-  stream_.async_read_some(buffer_.prepare(kFirstRead),
+  allow(state_.options().idle_timeout);
+  socket_.async_read_some(buffer_.prepare(kFirstRead),
                           [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
                             self->buffer_.commit(bytes);
                             if (!error) return self->read_request();
@@ -273,12 +314,17 @@ void HttpServer::Connection::await_first_byte() {
 
 // The time runs on from the first byte, however slowly the others come.
 void HttpServer::Connection::read_request() {
-  stream_.expires_after(state_.options().read_timeout);
-  http::async_read_header(stream_, buffer_, *parser_,
-                          [self = shared_from_this()](const ErrorCode& error, std::size_t) {
-                            if (error || self->parser_->is_done()) return self->on_read(error);
-                            self->ask_for_body();
-                          });
+  allow(state_.options().read_timeout);
+  const auto on_header = [this](const ErrorCode& error) {
+    if (error || parser_->is_done()) return on_read(error);
+    ask_for_body();
+  };
+  ErrorCode error;
+  buffer_.consume(parser_->put(buffer_.data(), error));
+  if (error != http::error::need_more) return on_header(error);
+  http::async_read_header(socket_, buffer_, *parser_,
+                          [self = shared_from_this(), on_header](
+                              const ErrorCode& failure, std::size_t) { on_header(failure); });
 }
 
 void HttpServer::Connection::ask_for_body() {
@@ -287,7 +333,7 @@ void HttpServer::Connection::ask_for_body() {
                            beast::iequals(header[http::field::expect], "100-continue");
   if (!is_expected) return read_body();
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-  net::async_write(stream_, net::buffer(kContinue),
+  net::async_write(socket_, net::buffer(kContinue),
                    [self = shared_from_this()](const ErrorCode& error, std::size_t) {
                      if (error) return self->on_read(error);
                      self->read_body();
@@ -296,14 +342,15 @@ void HttpServer::Connection::ask_for_body() {
 
 void HttpServer::Connection::read_body() {
   http::async_read(
-      stream_, buffer_, *parser_,
+      socket_, buffer_, *parser_,
       [self = shared_from_this()](const ErrorCode& error, std::size_t) { self->on_read(error); });
 }
 
 void HttpServer::Connection::on_read(const ErrorCode& error) {
   is_reading_ = false;
   begin_ = Clock::now();
-  stream_.expires_never();
+  allow_any_time();
+  is_answered_ = false;
   if (error) return answer_unreadable(error);
   handle(parser_->get());
 }
@@ -362,31 +409,29 @@ void HttpServer::Connection::handle(const http::request<http::string_body>& mess
   try {
     state_.handler()(request_, [held = std::move(held)](HttpResponse response) {
       Connection& connection = *held.second;
-      net::post(connection.stream_.get_executor(),
-                [self = held.second, response = std::move(response)]() mutable {
-                  self->send(std::move(response));
-                });
+      net::dispatch(connection.socket_.get_executor(),
+                    [self = held.second, response = std::move(response)]() mutable {
+                      self->send(std::move(response));
+                    });
     });
   } catch (const std::exception& error) {
     spdlog::error("{} {}: {}", request_.method, request_.target, error.what());
     send(problem_response({500, "The request could not be answered."}));
     return;
   }
-  if (request_.disconnection->is_awaited()) watch_for_disconnection();
+  if (!is_answered_ && request_.disconnection->is_awaited()) watch_for_disconnection();
 }
 
 void HttpServer::Connection::watch_for_disconnection() {
   is_watching_ = true;
-  stream_.socket().async_wait(tcp::socket::wait_read,
-                              [self = shared_from_this()](const ErrorCode& error) {
-                                if (!error && self->is_watching_)
-                                  self->on_readable_while_watching();
-                              });
+  socket_.async_wait(Socket::wait_read, [self = shared_from_this()](const ErrorCode& error) {
+    if (!error && self->is_watching_) self->on_readable_while_watching();
+  });
 }
 
 void HttpServer::Connection::on_readable_while_watching() {
   char byte = 0;
-  const auto received = ::recv(stream_.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+  const auto received = ::recv(socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
   if (received > 0) return;  // the next request, behind which nothing can be seen
   if (received < 0) {
     if (errno == EAGAIN || errno == EINTR) return watch_for_disconnection();
@@ -403,7 +448,7 @@ void HttpServer::Connection::stop_watching() {
   is_watching_ = false;
   half_closed_timer_.cancel();
   ErrorCode ignored;  // then there is nothing to cancel
-  stream_.socket().cancel(ignored);
+  socket_.cancel(ignored);
 }
 
 ClientAddress HttpServer::Connection::client_of(
@@ -414,55 +459,52 @@ ClientAddress HttpServer::Connection::client_of(
 }
 
 void HttpServer::Connection::send(HttpResponse response) {
+  is_answered_ = true;
   stop_watching();
   tell(response);
-  http::response_header<> header;
-  header.version(version_);
-  header.result(static_cast<unsigned>(response.status));
-  header.set(http::field::date, http_date(std::time(nullptr)));
-  header.set(http::field::server, "trapeze/" + version());
-  for (const auto& [name, value] : response.headers) header.insert(name, value);
-  const bool keep_alive = keep_alive_ && !state_.is_draining();
-  const auto bytes = std::move(response.body);
-  if (bytes == nullptr || request_.method == "HEAD") {
-    http::response<http::empty_body> message(std::move(header));
-    if (bytes != nullptr) message.content_length(bytes->size());
-    message.keep_alive(keep_alive);
-    return write(std::move(message), nullptr);
-  }
-  http::response<http::span_body<const char>> message(std::move(header));
-  message.body() = {bytes->data(), bytes->size()};
-  message.content_length(bytes->size());
-  message.keep_alive(keep_alive);
-  write(std::move(message), bytes);
+  keep_alive_ = keep_alive_ && !state_.is_draining();
+  head_.clear();
+  append_response_head(response, version_, keep_alive_, head_);
+  body_ = request_.method == "HEAD" ? nullptr : std::move(response.body);
+  allow(state_.options().write_timeout);
+  write();
 }
 
-template <typename Body>
-void HttpServer::Connection::write(http::response<Body> message,
-                                   std::shared_ptr<const std::string> bytes) {
-  stream_.expires_after(state_.options().write_timeout);
-  auto kept = std::make_shared<http::response<Body>>(std::move(message));
-  http::async_write(
-      stream_, *kept,
-      [self = shared_from_this(), kept, bytes = std::move(bytes)](
-          const ErrorCode& error, std::size_t) { self->on_written(error, kept->keep_alive()); });
+// Most responses fit into what the system keeps for the socket, and are gone at once.
+void HttpServer::Connection::write() {
+  using Parts = std::array<net::const_buffer, 2>;
+  const Parts parts{net::buffer(head_), body_ == nullptr ? net::const_buffer()
+                                                         : net::const_buffer(net::buffer(*body_))};
+  ErrorCode error;
+  const std::size_t sent = socket_.write_some(parts, error);
+  if (error && error != net::error::would_block) return on_written(error);
+  beast::buffers_suffix<Parts> rest(parts);
+  rest.consume(sent);
+  if (beast::buffer_bytes(rest) == 0) return on_written({});
+  net::async_write(socket_, rest,
+                   [self = shared_from_this()](const ErrorCode& failure, std::size_t) {
+                     self->on_written(failure);
+                   });
 }
 
-void HttpServer::Connection::on_written(const ErrorCode& error, bool keep_alive) {
+void HttpServer::Connection::on_written(const ErrorCode& error) {
+  body_ = nullptr;
   if (error) return;  // the client has gone
-  if (keep_alive) return read();
-  close_gently();
+  if (!keep_alive_) return close_gently();
+  if (buffer_.size() == 0) return read();
+  // However many requests a client sends at once, the stack stays as it is.
+  net::post(socket_.get_executor(), [self = shared_from_this()] { self->read(); });
 }
 
 void HttpServer::Connection::close_gently() {
   ErrorCode ignored;  // it may have gone already
-  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-  stream_.expires_after(kLingerTime);
+  socket_.shutdown(Socket::shutdown_send, ignored);
+  allow(kLingerTime);
   discard_input();
 }
 
 void HttpServer::Connection::discard_input() {
-  stream_.async_read_some(net::buffer(discarded_),
+  socket_.async_read_some(net::buffer(discarded_),
                           [self = shared_from_this()](const ErrorCode& error, std::size_t bytes) {
                             self->discarded_bytes_ += bytes;
                             if (!error && self->discarded_bytes_ < kMaxLingerBytes)
@@ -483,15 +525,23 @@ HttpServer::State::State(const HttpServerOptions& options, Handler handler, Obse
     : options_(options),
       handler_(std::move(handler)),
       observer_(std::move(observer)),
-      io_(static_cast<int>(options.threads)),
-      control_(net::make_strand(io_)),
-      work_(net::make_work_guard(io_)),
+      io_threads_(make_io_threads(options.threads)),
+      control_(io_threads_.front()->io.get_executor()),
       acceptor_(control_),
       accept_timer_(control_),
+      round_(round_for(options)),
+      round_timer_(control_),
       drain_timer_(control_),
       signals_(control_),
       hangups_(control_) {
   open();
+}
+
+std::vector<std::unique_ptr<HttpServer::State::IoThread>> HttpServer::State::make_io_threads(
+    unsigned count) {
+  std::vector<std::unique_ptr<IoThread>> threads(std::max(count, 1u));
+  for (auto& thread : threads) thread = std::make_unique<IoThread>();
+  return threads;
 }
 
 void HttpServer::State::open() {
@@ -513,13 +563,15 @@ void HttpServer::State::run() {
   net::post(control_, [this] { accept(); });
   std::vector<std::thread> threads;
   try {
-    for (unsigned i = 1; i < options_.threads; ++i) threads.emplace_back([this] { io_.run(); });
+    for (std::size_t i = 1; i < io_threads_.size(); ++i) {
+      threads.emplace_back([&io = io_threads_[i]->io] { io.run(); });
+    }
   } catch (const std::system_error&) {
-    io_.stop();
+    stop_threads();
     for (std::thread& thread : threads) thread.join();
     throw;
   }
-  io_.run();
+  io_threads_.front()->io.run();
   for (std::thread& thread : threads) thread.join();
   const std::lock_guard lock(mutex_);
   has_run_ = true;
@@ -527,15 +579,17 @@ void HttpServer::State::run() {
 
 void HttpServer::State::accept() {
   if (is_draining_) return;
-  acceptor_.async_accept(net::make_strand(io_), [this](const ErrorCode& error, tcp::socket socket) {
-    on_accepted(error, std::move(socket));
-  });
+  net::io_context& io = io_threads_[next_thread_]->io;
+  acceptor_.async_accept(
+      io, [this](const ErrorCode& error, Socket socket) { on_accepted(error, std::move(socket)); });
 }
 
-void HttpServer::State::on_accepted(const ErrorCode& error, tcp::socket socket) {
+void HttpServer::State::on_accepted(const ErrorCode& error, Socket socket) {
   if (is_draining_) return;
   if (!error) {
+    next_thread_ = (next_thread_ + 1) % io_threads_.size();
     admit(std::move(socket));
+    begin_rounds();
     return accept();
   }
   // Most likely there are no more file descriptors: trying again at once would only burn time.
@@ -554,7 +608,33 @@ void HttpServer::State::warn_of_refusal(const ErrorCode& error) {
   spdlog::warn("cannot accept a connection: {}", error.message());
 }
 
-void HttpServer::State::admit(tcp::socket socket) {
+void HttpServer::State::begin_rounds() {
+  if (has_rounds_) return;
+  has_rounds_ = true;
+  make_round();
+}
+
+void HttpServer::State::make_round() {
+  const auto connections = alive_connections();
+  has_rounds_ = !connections.empty();
+  if (!has_rounds_) return;
+  for (const auto& connection : connections) connection->end_if_late();
+  round_timer_.expires_after(round_);
+  round_timer_.async_wait([this](const ErrorCode& cancelled) {
+    if (!cancelled) make_round();
+  });
+}
+
+std::vector<std::shared_ptr<HttpServer::Connection>> HttpServer::State::alive_connections() const {
+  std::vector<std::shared_ptr<Connection>> connections;
+  const std::lock_guard lock(mutex_);
+  for (Connection* connection : connections_) {
+    if (auto alive = connection->weak_from_this().lock()) connections.push_back(std::move(alive));
+  }
+  return connections;
+}
+
+void HttpServer::State::admit(Socket socket) {
   ErrorCode error;
   const auto remote = socket.remote_endpoint(error);
   if (error) return;  // it has gone already
@@ -570,6 +650,8 @@ void HttpServer::State::admit(tcp::socket socket) {
   if (count >= options_.max_connections + kMaxRefusals) return;
   if (is_greedy && count_of_peer >= options_.max_connections_per_address + kMaxRefusals) return;
   socket.set_option(tcp::no_delay(true), error);  // only a matter of speed
+  socket.non_blocking(true, error);
+  if (error) return;
   auto connection = std::make_shared<Connection>(*this, std::move(socket), peer);
   if (is_full) {
     connection->refuse({503, "There are too many connections. Ask again."});
@@ -609,7 +691,7 @@ void HttpServer::State::leave(Connection& connection) {
 
 void HttpServer::State::stop() {
   net::post(control_, [this] {
-    if (is_draining_) return io_.stop();
+    if (is_draining_) return stop_threads();
     if (is_leaving_ || options_.drain_delay.count() == 0) {
       is_leaving_ = true;
       return begin_draining();
@@ -623,24 +705,20 @@ void HttpServer::State::stop() {
 }
 
 void HttpServer::State::begin_draining() {
-  std::vector<std::shared_ptr<Connection>> connections;
   {
     const std::lock_guard lock(mutex_);
     is_draining_ = true;
-    for (Connection* connection : connections_) {
-      if (auto alive = connection->weak_from_this().lock()) connections.push_back(std::move(alive));
-    }
     if (connections_.empty()) net::post(control_, [this] { finish(); });
   }
   ErrorCode ignored;  // closing cannot fail in a way that matters now
   acceptor_.close(ignored);
   accept_timer_.cancel();
-  for (const auto& connection : connections) connection->drain();
+  for (const auto& connection : alive_connections()) connection->drain();
   drain_timer_.expires_after(options_.drain_timeout);
   drain_timer_.async_wait([this](const ErrorCode& cancelled) {
     if (cancelled) return;
     spdlog::warn("some requests did not end in time and are given up");
-    io_.stop();
+    stop_threads();
   });
 }
 
@@ -648,7 +726,12 @@ void HttpServer::State::finish() {
   drain_timer_.cancel();
   signals_.cancel();
   hangups_.cancel();
-  work_.reset();
+  round_timer_.cancel();
+  for (const auto& thread : io_threads_) thread->work.reset();
+}
+
+void HttpServer::State::stop_threads() {
+  for (const auto& thread : io_threads_) thread->io.stop();
 }
 
 void HttpServer::State::stop_on_signals() {
