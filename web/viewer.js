@@ -478,8 +478,16 @@ class Viewer {
       mention(`${this.title_of_(this.layers_[i].name)}: ${problem.detail}`);
     }
     if (!problem) Object.assign(state, { drawn: style, entries });
-    else state.drawn ??= new Map();
+    else if (!state.drawn) this.draw_usual_(i, state, name);
     this.refresh_();
+  }
+
+  /** In place of a style of the address that was wrong from the start. */
+  async draw_usual_(i, state, name) {
+    state.drawn = new Map();
+    const { entries = [] } = await ask_legend(BASE, this.layers_[i].name, state.drawn, name);
+    if (state.drawn.size === 0) state.entries = entries;
+    this.show_legend_();
   }
 
   /** Map and address, once for all that changes at a time. */

@@ -196,6 +196,7 @@ test("a wrong style in the address is told, and the usual one is drawn", async (
     const list = document.querySelector("#layers").getBoundingClientRect();
     return told.top >= list.top && told.bottom <= list.bottom;
   });
+  await page.locator("#legend").getByText("Land").waitFor();
   await wait_for_query(page, "land", {});
   await wait_for_query(page, "lake", { fill: "00ff00" });
   assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200), []);
