@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import {
-  DESKTOP, PHONE, new_page, of_layer, save_screenshot, shown_tiles, start_browser_and_server,
+  DESKTOP, PHONE, at_rest, new_page, of_layer, save_screenshot, shown_tiles, start_browser_and_server,
   tiles_drawn,
 } from "./served_viewer.mjs";
 
@@ -105,6 +105,27 @@ test("pauses grow while the server is away, and end at once by hand, or when the
     await status.waitFor({ state: "hidden" });
     await page.context().close();
   });
+
+test("whoever zooms while the server is away still sees the map, and then a sharp one", async () => {
+  const { page, status } = await open("#7/45.5/6.5");
+  await server.stop();
+  try {
+    await page.click(".leaflet-control-zoom-in");
+    await status.getByText("The server cannot be reached.").waitFor();
+    await at_rest(page);
+    const old = await page.evaluate(() => [...document.querySelectorAll("img.leaflet-tile-loaded")]
+      .filter(({ src, naturalWidth }) => src.includes("/7/") && naturalWidth > 0).length);
+    assert.ok(old > 0, `${old} tiles of the zoom before`);
+    await save_screenshot(page, "desktop-zoomed-while-away");
+  } finally {
+    await server.start();
+  }
+  await tiles_drawn(page);
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll("img.leaflet-tile")].every(({ src }) => src.includes("/8/")));
+  await status.waitFor({ state: "hidden" });
+  await page.context().close();
+});
 
 test("a server that comes back with other layers says so, and the page can be loaded again", async () => {
   const { page, status } = await open("#7/45.5/6.5");
