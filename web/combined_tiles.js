@@ -119,12 +119,13 @@ export class CombinedTiles {
       this.tell_loading_();
       this.on_.failed(tile.src);
     });
-    tiles.on("tileunload", ({ tile, coords }) => {
+    // One that is no longer wanted before it has come is aborted, and not unloaded.
+    tiles.on("tileunload tileabort", ({ tile, coords }) => {
       sheet.images.delete(place_of(coords));
       sheet.waiting.delete(tile);
       sheet.failed.delete(tile);
       if (this.refused_.delete(tile)) this.on_.refused_gone();
-      this.tell_loading_();
+      this.tidy_();
     });
     return sheet;
   }

@@ -295,6 +295,9 @@ test("a line at the top shows that tiles are on their way, and goes when they ar
     return width > 100 && width < 1200;
   });
   await save_screenshot(page, "desktop-progress");
+  // What was on its way is not wanted any more, and not waited for.
+  await page.click(".leaflet-control-zoom-in");
+  await at_rest(page);
   let_go();
   await tiles_drawn(page);
   await page.waitForFunction(() => !document.querySelector(".progress.shown"));
