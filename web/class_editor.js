@@ -2,7 +2,7 @@
 
 import { WAYS } from "./class_breaks.js";
 import { format_classes, parse_classes } from "./class_list.js";
-import { CLASS_COLOURS, COLOUR_OF_OTHERS, rgb_of } from "./colours.js";
+import { CLASS_COLOURS, COLOUR_OF_OTHERS, light_colour_at, rgb_of } from "./colours.js";
 import { button, choose, element, input, mark_wrong, select } from "./elements.js";
 
 // Those of ColorBrewer that lead from one end to another, and so have a colour for any count. All but
@@ -123,8 +123,10 @@ export class ClassEditor {
     }
     this.suggest_button_.addEventListener("click", () => this.suggest_classes_());
     this.add_.addEventListener("click", () => {
-      const colour = CLASS_COLOURS[this.classes_.length % CLASS_COLOURS.length];
-      this.classes_.push({ kind: "value", value: "", colour });
+      const used = new Set(this.classes_.map(({ colour }) => colour));
+      let position = 0;
+      while (used.has(light_colour_at(position))) position++;
+      this.classes_.push({ kind: "value", value: "", colour: light_colour_at(position) });
       this.show_rows_();
       this.rows_.lastElementChild.querySelector("input").focus();
     });

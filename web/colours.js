@@ -6,6 +6,21 @@ export const CLASS_COLOURS = ["77aadd", "ee8866", "eedd88", "ffaabb", "99ddff", 
   "aaaa00"];
 export const COLOUR_OF_OTHERS = "d9dde2";
 
+const GOLDEN_ANGLE = 137.50776405003785; // turned by it, hues stay apart however many there are
+const MIDDLES = [176, 194, 158, 185]; // of the channels: what is near in hue is not as light
+const REACH = 56; // how far they go from it
+
+/** A light colour for the one at `position` of things that shall be told apart; none comes twice. */
+export function light_colour_at(position) {
+  if (position < CLASS_COLOURS.length) return CLASS_COLOURS[position];
+  const middle = MIDDLES[position % MIDDLES.length];
+  const channel = (turned) => {
+    const radians = ((position * GOLDEN_ANGLE - turned) * Math.PI) / 180;
+    return Math.round(middle + REACH * Math.cos(radians)).toString(16).padStart(2, "0");
+  };
+  return channel(0) + channel(120) + channel(240);
+}
+
 /** For a style sheet; what is no colour is no danger there. */
 export function css_of(colour) {
   return /^[0-9a-f]+$/i.test(colour) ? `#${colour}` : colour;

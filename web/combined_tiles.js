@@ -2,6 +2,14 @@
 // ones have come, so that the map does not blink; those that fail are kept in mind and asked for again.
 /* global L */
 
+/** Where a tile is missing, the one of the zoom before stays to be seen, as for one that is on its way. */
+const PatientTiles = L.TileLayer.extend({
+  _tileReady(coords, error, tile) {
+    if (error && this._map) this.fire("tileerror", { error, tile, coords });
+    else L.TileLayer.prototype._tileReady.call(this, coords, error, tile);
+  },
+});
+
 export class CombinedTiles {
   /**
    * @param map the Leaflet map
@@ -53,10 +61,11 @@ export class CombinedTiles {
 
   /** Asks again for every tile that is missing. */
   retry() {
-    for (const { failed } of this.shown_) {
+    for (const { failed, waiting } of this.shown_) {
       for (const [image, url] of [...failed]) {
         if (this.refused_.has(image)) continue;
         failed.delete(image);
+        waiting.add(image);
         image.src = url;
         this.tell_loading_();
       }
@@ -81,7 +90,7 @@ export class CombinedTiles {
 
   new_sheet_(request) {
     // {r} is "@2x" on a dense screen. Braces of a name are encoded: only ours are replaced.
-    const tiles = L.tileLayer(`${this.url_}${request.path}/{z}/{x}/{y}{r}.png${request.query}`, {
+    const tiles = new PatientTiles(`${this.url_}${request.path}/{z}/{x}/{y}{r}.png${request.query}`, {
       minZoom: Math.max(request.min_zoom, this.map_.getMinZoom()),
       maxZoom: Math.min(request.max_zoom, this.map_.getMaxZoom()),
       pane: this.pane_,
@@ -110,14 +119,14 @@ export class CombinedTiles {
       this.tell_loading_();
       this.on_.failed(tile.src);
     });
-    tiles.on("tileunload", ({ tile, coords }) => {
+    // One that is no longer wanted before it has come is aborted, and not unloaded.
+    tiles.on("tileunload tileabort", ({ tile, coords }) => {
       sheet.images.delete(place_of(coords));
       sheet.waiting.delete(tile);
       sheet.failed.delete(tile);
       if (this.refused_.delete(tile)) this.on_.refused_gone();
-      this.tell_loading_();
+      this.tidy_();
     });
-    tiles.on("load", () => this.tidy_());
     return sheet;
   }
 
@@ -146,7 +155,7 @@ export class CombinedTiles {
 
   /** Takes old tiles away when all new ones are there. */
   tidy_() {
-    const is_whole = this.shown_.every(({ tiles, failed }) => !tiles.isLoading() && !failed.size);
+    const is_whole = this.shown_.every(({ waiting, failed }) => !waiting.size && !failed.size);
     if (is_whole) {
       for (const { tiles } of this.outdated_.splice(0)) tiles.remove();
     }

@@ -184,8 +184,8 @@ function progress_of(layers) {
   const bars = open.slice(0, MOST_NAMED).map(({ name, title, percent }) =>
     ({ name: String(title || name), percent: Math.max(0, Math.floor(percent)) }));
   const told = bars.map(({ name, percent }) => `${name} ${percent} %`);
-  if (open.length > bars.length) told.push(`${open.length - bars.length} more`);
-  return { aside: told.join(", "), bars };
+  const more = open.length > bars.length ? `and ${open.length - bars.length} more` : "";
+  return { aside: [...told, more].filter(Boolean).join(", "), bars, more };
 }
 
 function sleep(ms) {

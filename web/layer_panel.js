@@ -39,10 +39,17 @@ export function layer_row(layer, builtin_fill, suggest, on) {
   details.addEventListener("toggle", () => {
     if (!details.open) return;
     form.open();
+    if (show_where_wrong()) return;
     if (details.getBoundingClientRect().bottom > row.parentElement.getBoundingClientRect().bottom) {
       row.scrollIntoView({ block: "start" });
     }
   });
+  /** @returns whether there is something wrong */
+  const show_where_wrong = () => {
+    const told = form.node.querySelector(".problem");
+    told?.scrollIntoView({ block: "center" });
+    return told !== null;
+  };
   return {
     row, handle, box, title,
     show: (state) => {
@@ -55,7 +62,7 @@ export function layer_row(layer, builtin_fill, suggest, on) {
       form.show_problem(problem);
       if (!problem) return;
       details.open = true;
-      form.node.querySelector(".problem").scrollIntoView({ block: "nearest" });
+      show_where_wrong();
     },
   };
 }

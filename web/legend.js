@@ -2,7 +2,7 @@
 
 import { css_of } from "./colours.js";
 import { element } from "./elements.js";
-import { query_part } from "./tile_query.js";
+import { parameters_of_layers, query_part } from "./tile_query.js";
 
 const LINE = "var(--pattern) 0 1px, transparent 1px 5px";
 const PATTERNS = {
@@ -19,13 +19,14 @@ const MOST_NAMED = 3; // in one row
 const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity"];
 
 /**
- * Asks for the legend of one layer in a style, which is also how a style is proved before tiles are
- * asked for. @returns {entries} or {problem: {detail, parameter}}; neither if there is no answer.
+ * Asks for the legend of one layer in a style, over the one that is named `under`, if any, which is also
+ * how a style is proved before tiles are asked for. @returns {entries} or {problem: {detail, parameter}}; neither if there is no answer.
  */
-export async function ask_legend(base, name, style) {
+export async function ask_legend(base, name, style, under) {
+  const parameters = parameters_of_layers([{ name, style }], under ? [["style", under]] : []);
   let response;
   try {
-    response = await fetch(new URL(`legend/${encodeURIComponent(name)}.json${query_part(style)}`,
+    response = await fetch(new URL(`legend/${encodeURIComponent(name)}.json${query_part(parameters)}`,
       base));
     const told = await response.json();
     if (response.ok && Array.isArray(told?.layers?.[0]?.entries)) {
@@ -33,7 +34,11 @@ export async function ask_legend(base, name, style) {
     }
     if (response.status >= 400 && response.status < 500) {
       const detail = String(told?.detail ?? told?.title);
-      return { problem: { detail, parameter: told?.parameter } };
+      const parameter = String(told?.parameter ?? "");
+      const prefix = `${name}.`;
+      return {
+        problem: { detail, parameter: parameter.startsWith(prefix) ? parameter.slice(prefix.length) : parameter },
+      };
     }
   } catch {
     // The tiles will tell whether the server is there.

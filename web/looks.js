@@ -1,9 +1,11 @@
 // Ways to draw a map that go with any layers: what a click on "Restyle" offers beside the styles of the
 // server.
 
+import { light_colour_at } from "./colours.js";
+
 // Land before water, as layers often lie.
-const PASTEL = ["eedd88", "99ddff", "bbcc33", "ffaabb", "77aadd", "ee8866", "44bb99", "aaaa00"];
-const colour_at = (i) => PASTEL[i % PASTEL.length];
+const FIRST = ["eedd88", "99ddff", "bbcc33", "ffaabb", "77aadd", "ee8866", "44bb99", "aaaa00"];
+const colour_at = (i) => FIRST[i] ?? light_colour_at(i);
 
 /** Each gives the parameters of the layer at position `i`. */
 const LOOKS = {

@@ -47,10 +47,12 @@ export function show_attribution(map, layers) {
   control.addTo(map);
 }
 
-/** Where all of `boxes` can be seen, or the world if they span most of it. */
+/** Where all of `boxes` can be seen, or the world if they span most of it from side to side and in height. */
 export function show_boxes(map, boxes, max_zoom = MAX_ZOOM) {
   const all = bounds_around(boxes);
-  if (all.isValid() && all.getEast() - all.getWest() < 180) {
+  const is_world = all.isValid() && all.getEast() - all.getWest() >= 180 &&
+    all.getNorth() - all.getSouth() >= 110;
+  if (all.isValid() && !is_world) {
     map.fitBounds(all, { ...free_padding(map), maxZoom: max_zoom });
   } else {
     // The smallest whole zoom at which the world is as high as the window.

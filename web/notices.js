@@ -13,7 +13,7 @@ export class Notices {
 
   /**
    * `kind` is one of ORDER, `text` "" where there is nothing more to say. `more` may have {aside: what
-   * changes too often to be read out, bars: [{name, percent}], action: [text, function], for_ms: after
+   * changes too often to be read out, bars: [{name, percent}], more: what stands below them, action: [text, function], for_ms: after
    * which it goes}.
    */
   say(kind, text, more = {}) {
@@ -38,7 +38,8 @@ export class Notices {
     if (key !== this.now_) this.build_(said, key);
     this.aside_.textContent = said.aside ? ` ${said.aside}` : "";
     this.act_ = said.action?.[1];
-    this.bars_.replaceChildren(...(said.bars ?? []).map(bar_of));
+    this.bars_.replaceChildren(...(said.bars ?? []).map(bar_of),
+      ...(said.more ? [element("span", "more", said.more)] : []));
   }
 
   /** Only what is new is built anew: a button keeps the focus while the seconds pass. */

@@ -52,8 +52,10 @@ function drag(list, row, rows, { target, pointerId, clientY }, on_move) {
     frame = requestAnimationFrame(scroll);
   };
   const move = (event) => (y = event.clientY);
-  const end = ({ type }) => {
+  const end = ({ type, clientY: last_y }) => {
     cancelAnimationFrame(frame);
+    // No frame may have come since the pointer moved.
+    if (type === "pointerup") to = position_of(rows, last_y, from);
     row.classList.remove("dragged");
     for (const other of rows) other.classList.remove("drop-above", "drop-below");
     for (const name of ["pointermove", "pointerup", "pointercancel"]) {

@@ -41,11 +41,13 @@ export function query_part(parameters) {
 
 /**
  * The parameters of a picture of several layers: `layers` are {name, style}, the lowest first.
- * A layer's own are written with its name before them, unless it is alone.
+ * A layer's own are written with its name before them, unless it is alone and no named style is there,
+ * which may say something of this layer: of all layers one cannot say otherwise.
  */
 export function parameters_of_layers(layers, shared) {
+  const is_plain = layers.length === 1 && !new Map(shared).has("style");
   const own = layers.flatMap(({ name, style }) =>
-    [...style].map(([key, value]) => [layers.length > 1 ? `${name}.${key}` : key, value]));
+    [...style].map(([key, value]) => [is_plain ? key : `${name}.${key}`, value]));
   return [...own, ...shared];
 }
 

@@ -36,7 +36,7 @@ import { box_in_view, is_in_view, wrapped_longitude } from "./view_bounds.js";
 
 const BUILTIN_FILL = "808080"; // of layers whose style the catalog does not tell
 const NARROW = "(max-width: 1100px)";
-const PHONE = "(max-width: 600px)";
+const UPRIGHT = "(max-width: 900px)"; // of a tablet, half of which the panel would cover
 const MESSAGE_MS = 6000;
 const LEAST_ZOOM_TO = 18; // a layer that does not say how true it is
 
@@ -469,8 +469,8 @@ class Viewer {
     if (style.size === 0) state.drawn = style;
     this.refresh_();
     const name = this.shared_.get("style");
-    const { problem = null, entries = [] } = await ask_legend(BASE, this.layers_[i].name,
-      name ? [...style, ["style", name]] : style);
+    const { problem = null, entries = [] } =
+      await ask_legend(BASE, this.layers_[i].name, style, name);
     if (this.states_[i] !== state || state.style !== style) return;
     if (this.shared_.get("style") !== name) return;
     this.rows_[i].show_problem(problem);
@@ -478,8 +478,16 @@ class Viewer {
       mention(`${this.title_of_(this.layers_[i].name)}: ${problem.detail}`);
     }
     if (!problem) Object.assign(state, { drawn: style, entries });
-    else state.drawn ??= new Map();
+    else if (!state.drawn) this.draw_usual_(i, state, name);
     this.refresh_();
+  }
+
+  /** In place of a style of the address that was wrong from the start. */
+  async draw_usual_(i, state, name) {
+    state.drawn = new Map();
+    const { entries = [] } = await ask_legend(BASE, this.layers_[i].name, state.drawn, name);
+    if (state.drawn.size === 0) state.entries = entries;
+    this.show_legend_();
   }
 
   /** Map and address, once for all that changes at a time. */
@@ -661,7 +669,7 @@ class Viewer {
   }
 }
 
-make_foldable($("panel-toggle"), $("panel-body"), PHONE);
+make_foldable($("panel-toggle"), $("panel-body"), UPRIGHT);
 make_foldable($("legend-toggle"), $("legend-body"), NARROW);
 make_address_copyable();
 watch_tiles(TILES, (line) => ($("timing").textContent = line));

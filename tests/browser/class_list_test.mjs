@@ -31,12 +31,14 @@ test("what is no list of classes is told apart from an empty one", () => {
   }
 });
 
-test("layers drawn together are told apart by name, one alone is not", () => {
+test("layers drawn together are told apart by name, one alone only over a named style", () => {
   const land = { name: "land", style: new Map([["fill", "red"]]) };
   const lake = { name: "lake", style: new Map([["filter", "name = 'a & b'"]]) };
   const shared = new Map([["simplify", "4"]]);
   assert.equal(query_part(parameters_of_layers([land], shared)), "?fill=red&simplify=4");
   assert.equal(query_part(parameters_of_layers([land, lake], shared)),
     "?land.fill=red&lake.filter=name%20%3D%20'a%20%26%20b'&simplify=4");
+  assert.equal(query_part(parameters_of_layers([land], new Map([["style", "night"]]))),
+    "?land.fill=red&style=night");
   assert.equal(query_part(parameters_of_layers([{ name: "lake", style: new Map() }], [])), "");
 });

@@ -65,8 +65,8 @@ function on_screen({ lon, lat }) {
 }
 
 /** The pixels of PNG files, each laid in its place on white, as the bytes of RGBA. */
-function pixels_of_pictures(page, size, pictures) {
-  return page.evaluate(async ([size, pictures]) => {
+async function pixels_of_pictures(page, size, pictures) {
+  const data_url = await page.evaluate(async ([size, pictures]) => {
     const context = new OffscreenCanvas(size, size).getContext("2d");
     context.fillStyle = "white";
     context.fillRect(0, 0, size, size);
@@ -74,8 +74,14 @@ function pixels_of_pictures(page, size, pictures) {
       const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
       context.drawImage(await createImageBitmap(new Blob([bytes])), x, y);
     }
-    return [...context.getImageData(0, 0, size, size).data];
+    // As text, since millions of numbers take the remote control minutes.
+    const reader = new FileReader();
+    const is_read = new Promise((resolve) => (reader.onload = resolve));
+    reader.readAsDataURL(new Blob([context.getImageData(0, 0, size, size).data]));
+    await is_read;
+    return reader.result;
   }, [size, pictures]);
+  return new Uint8Array(Buffer.from(data_url.slice(data_url.indexOf(",") + 1), "base64"));
 }
 
 /** What stands on the screen, as the bytes of RGBA. */

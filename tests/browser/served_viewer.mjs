@@ -164,6 +164,12 @@ export async function start_browser_and_server(options = [], more_config = "") {
 }
 
 export const DESKTOP = { viewport: { width: 1280, height: 800 } };
+export const TABLET = {
+  viewport: { width: 820, height: 1180 },
+  deviceScaleFactor: 2,
+  isMobile: true,
+  hasTouch: true,
+};
 export const PHONE = {
   viewport: { width: 390, height: 844 },
   deviceScaleFactor: 2,
@@ -197,6 +203,12 @@ export async function tiles_drawn(page) {
       tile.classList.contains("leaflet-tile-loaded") && tile.naturalWidth > 0 &&
       getComputedStyle(tile).opacity === "1");
   }, null, { timeout: 30_000 });
+}
+
+/** Until nothing on the page moves, unfolds or fades. */
+export async function at_rest(page) {
+  await page.waitForFunction(() => !document.querySelector(".leaflet-pan-anim, .leaflet-zoom-anim") &&
+    document.getAnimations().every(({ playState }) => playState !== "running"));
 }
 
 /**

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import test from "node:test";
 
 import {
-  DESKTOP, HERE, PHONE, new_page, start_browser_and_server, tiles_drawn,
+  DESKTOP, HERE, PHONE, at_rest, new_page, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 const AXE = readFileSync(createRequire(join(HERE, "package.json")).resolve("axe-core/axe.min.js"), "utf8");
@@ -146,7 +146,7 @@ for (const [device, options] of [["desktop", DESKTOP], ["phone", PHONE]]) {
       if (is_empty) await page.getByText("All layers are off").waitFor();
       else await tiles_drawn(page);
       await act(page);
-      await page.waitForTimeout(400); // what unfolds, or fades
+      await at_rest(page);
       assert.deepEqual(await violations(page), []);
       if (device === "phone") assert.deepEqual(await small_targets(page), []);
       await page.context().close();

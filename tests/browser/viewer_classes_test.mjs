@@ -50,7 +50,7 @@ async function parameter(page, name, wanted) {
   await page.waitForFunction(([key, text]) => {
     const part = location.hash.split("&").find((one) => one.startsWith(`${key}=`));
     return decodeURIComponent(part ?? "").slice(key.length + 1) === text;
-  }, [`columns.${name}`, wanted], { timeout: 10_000 }).catch(async () =>
+  }, [`columns.${name}`, wanted], { timeout: 30_000 }).catch(async () =>
     assert.fail(`${name} is not ${wanted} in ${decodeURIComponent(await hash_of(page))}`));
 }
 

@@ -4,7 +4,7 @@ import { join } from "node:path";
 import test from "node:test";
 
 import {
-  HERE, PHONE, assert_nothing_went_wrong, hash_of, new_page, of_layer, query_of,
+  HERE, PHONE, TABLET, assert_nothing_went_wrong, hash_of, new_page, of_layer, query_of,
   save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
@@ -178,6 +178,27 @@ test("where the data ends, a line says so and leads back", async () => {
   await page.waitForFunction(() => document.querySelector("img.leaflet-tile[src*='/12/']"));
   await tiles_drawn(page);
   assert.equal(await status.isVisible(), false, "of the land nobody knows");
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("on an upright tablet the panel is folded, so that both sides of a comparison are told", async () => {
+  const { page, seen, offer } = await open("", TABLET);
+  assert.equal(await page.locator("#panel-body").isVisible(), false);
+  await offer.getByRole("button", { name: TRIALS[1] }).tap();
+  await tiles_drawn(page);
+  for (const side of [".left", ".right"]) {
+    const is_on_top = await page.locator(`.divider ${side}`).evaluate((label) => {
+      const { x, y, width, height } = label.getBoundingClientRect();
+      // Labels let clicks through: what hides them is what else would be hit there.
+      const hit = document.elementFromPoint(x + width / 2, y + height / 2);
+      return x >= 0 && x + width <= window.innerWidth && Boolean(hit?.closest("#map"));
+    });
+    assert.ok(is_on_top, side);
+  }
+  await save_screenshot(page, "tablet-try-apart");
+  await page.tap("#panel-toggle");
+  assert.equal(await page.locator("#layers").isVisible(), true);
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });

@@ -149,7 +149,6 @@ test("a layer is dragged by its handle to where it is dropped", async () => {
     await page.mouse.move(...await middle_of(title));
     await page.mouse.down();
     await page.mouse.move(x, y + by, { steps: 6 });
-    await page.waitForTimeout(100);
     await page.mouse.up();
   };
   await drag("Houses 6", "Houses 4", 10); // the topmost, below the third

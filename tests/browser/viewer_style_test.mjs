@@ -191,6 +191,12 @@ test("a wrong style in the address is told, and the usual one is drawn", async (
   const { page, seen } = await new_page(browser);
   await page.goto(`${server.base}#5/46/10&land.fill=nonsense&lake.fill=00ff00`);
   await page.getByRole("alert").getByText("fill").waitFor();
+  await page.waitForFunction(() => {
+    const told = document.querySelector("[role=alert]").getBoundingClientRect();
+    const list = document.querySelector("#layers").getBoundingClientRect();
+    return told.top >= list.top && told.bottom <= list.bottom;
+  });
+  await page.locator("#legend").getByText("Land").waitFor();
   await wait_for_query(page, "land", {});
   await wait_for_query(page, "lake", { fill: "00ff00" });
   assert.deepEqual(seen.tiles.filter(({ status }) => status !== 200), []);
@@ -199,18 +205,19 @@ test("a wrong style in the address is told, and the usual one is drawn", async (
 
 test("an answer that comes late does not undo what was changed since", async () => {
   const { page, seen, land } = await open();
-  let is_first = true;
-  await page.route("**/legend/land.json?**", async (route) => {
-    if (is_first) {
-      is_first = false;
-      await new Promise((resolve) => setTimeout(resolve, 1000));
-    }
+  let let_go;
+  const held = new Promise((resolve) => (let_go = resolve));
+  await page.route("**/legend/land.json?**fill=ff0000**", async (route) => {
+    await held;
     await route.continue();
   });
+  const late = page.waitForResponse((response) => response.url().includes("fill=ff0000"));
   await land.getByLabel("Colour of Land").fill("#ff0000");
   await land.getByLabel("Colour of Land").fill("#00ff00");
   await wait_for_query(page, "land", { fill: "00ff00" });
-  await page.waitForTimeout(1200);
+  let_go();
+  await (await late).finished();
+  await page.waitForTimeout(500); // in which it could be taken
   await wait_for_query(page, "land", { fill: "00ff00" });
   assert.ok(!seen.tiles.some(({ url }) => url.includes("ff0000")));
   assert_nothing_went_wrong(server, seen);
@@ -252,6 +259,21 @@ test("a named style is asked for, shown in the panel, and changed by what is set
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
+
+test("what is set for a layer holds over what a named style sets for it, also where it is the only one",
+  async () => {
+    const { page, seen, land } = await open("#5/46/10&on=land&style=night&land.fill=00ff00");
+    assert.ok((await pixels_of_colour(page, "land", [0, 255, 0])) > 1000);
+    const swatch = page.locator("#legend li", { hasText: "others" }).locator(".ink");
+    assert.equal(await swatch.evaluate((ink) => getComputedStyle(ink).backgroundColor), "rgb(0, 255, 0)");
+    // What is wrong with it is told beside the control.
+    await land.getByLabel("Filter").fill("nobody = 1");
+    await page.keyboard.press("Tab");
+    await land.locator("fieldset[aria-label=Features] .problem").waitFor();
+    assert.equal(await land.getByLabel("Filter").getAttribute("aria-invalid"), "true");
+    assert.deepEqual(seen.errors.filter((text) => !text.includes("400")), []);
+    await page.context().close();
+  });
 
 test("a style that the server does not know is told and left out", async () => {
   const { page, seen } = await new_page(browser);
@@ -352,8 +374,9 @@ test("compare: each side shows its own picture, also after the map was moved", a
   };
   await assert_sides();
   await page.focus("#map");
+  const before = await hash_of(page);
   await page.keyboard.press("ArrowRight");
-  await page.waitForTimeout(600);
+  await page.waitForFunction((hash) => location.hash !== hash, before); // written when the map has come to rest
   await tiles_drawn(page);
   await assert_sides();
   assert.deepEqual(seen.errors, []);
