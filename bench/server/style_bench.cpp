@@ -38,6 +38,13 @@ constexpr Style kStyles[] = {
     {"hatch", "pattern=hatch"},
     {"dots", "pattern=dots"},
     {"opacity", "opacity=0.5"},
+    // Without making colours fewer, which takes most of a tile of many edges.
+    {"plain_exact", "quality=exact"},
+    {"three_classes_exact",
+     "color-by=type&classes=residential:red,farmland:green,*:blue&quality=exact"},
+    {"outline_exact", "stroke=black&quality=exact"},
+    {"outline_dashed_exact", "stroke=black&stroke-dasharray=4,2&quality=exact"},
+    {"hatch_exact", "pattern=hatch&quality=exact"},
 };
 
 std::vector<TripLayer> trip_layers() {
