@@ -277,7 +277,8 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
   add_sides(s_right, t_right);
   // Level sides; or both have a vertex of that height beside them.
   const auto add_level = [&](int y, int other_y, int at) {
-    if (std::abs(y - other_y) <= kAlong) common.along += std::max(0.0, to[at] - from[at]);
+    const double apart = std::abs(static_cast<double>(y) - other_y);
+    if (apart <= kAlong) common.along += std::max(0.0, to[at] - from[at]);
   };
   add_level(a.box.min_y, b.box.min_y, 0);
   add_level(a.box.max_y, b.box.max_y, kHeights - 1);

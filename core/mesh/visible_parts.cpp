@@ -144,7 +144,7 @@ bool VisibleParts::cut(const TrapezoidPart& part, const Sheet::Item& above, floa
     const bool has_east = !is_west(right, above_right);
     if (has_west) keep_between(top, bottom, left, above_left);
     if (has_east) keep_between(top, bottom, above_right, right);
-    if (share > 0 && top < bottom) {
+    if (part.share * share >= kLeastShare && top < bottom) {
       parts_.push_back({top, bottom, has_west ? above_left.edge : left.edge,
                         has_east ? above_right.edge : right.edge, part.share * share});
     }

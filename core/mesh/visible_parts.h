@@ -50,6 +50,9 @@ class Sheet {
 /// The parts of trapezoids that are to be seen. One thread at a time.
 class VisibleParts {
  public:
+  /// What is less of a colour is nothing: half of the smallest step of 8 bits.
+  static constexpr float kLeastShare = 0.5F / 255;
+
   /// Begins without any, of a mesh which must outlive the use of the parts.
   void begin(const MeshView& mesh);
 
@@ -58,7 +61,8 @@ class VisibleParts {
 
   /// Lays a sheet of the same mesh over the trapezoid that was added last: through it `share` of
   /// what lies below is seen, 0 to 1. Of the parts below it there remains that share, and nothing
-  /// if that is 0. `check` is called for each trapezoid that is looked at.
+  /// if less than kLeastShare is left of them: so the parts are bounded where many sheets lie over
+  /// each other. `check` is called for each trapezoid that is looked at.
   void cover(const Sheet& sheet, float share, CancellationCheck& check);
 
   std::span<const TrapezoidPart> parts() const { return parts_; }

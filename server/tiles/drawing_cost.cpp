@@ -1,7 +1,9 @@
 #include "server/tiles/drawing_cost.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "core/mesh/visible_parts.h"
 #include "server/tiles/layer_drawing.h"
 
 namespace trapeze {
@@ -17,8 +19,21 @@ std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const 
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
 
-/// Of that many trapezoids, by those that lie over them. The features are those of the layer with
-/// the test of topology: the one without has no table of them.
+/// How many features over each other can be told from each other, at most; 0 if all that are
+/// painted are opaque.
+double depth_of(const LayerStyle& style) {
+  double depth = 0;
+  for (const ClassPaint& paint : style.paints) {
+    if (paint.fill.a == 0 || paint.fill.a == 255) continue;
+    const double share = 1 - paint.fill.a / 255.0;  // that is seen through one
+    depth = std::max(depth, std::log(double{VisibleParts::kLeastShare}) / std::log(share));
+  }
+  return depth;
+}
+
+/// Of that many trapezoids, by those that lie over them. What is seen through others is cut up by
+/// all of them, so that its parts grow by the square of how many they are. The features are those
+/// of the layer with the test of topology: the one without has no table of them.
 std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
                            const LayerPaint& paint) {
   const OverlapTable& overlaps = plan.layer_of(paint).overlaps();
@@ -26,7 +41,12 @@ std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
       (is_plain(paint.style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
   if (pairs == 0) return 0;
   const std::size_t features = plan.dataset->layers()[paint.layer].layer->features().size();
-  return trapezoids + trapezoids * pairs / features;
+  const std::uint64_t cost = trapezoids + trapezoids * pairs / features;
+  const double each = static_cast<double>(pairs) / static_cast<double>(features);
+  const double depth = std::min(depth_of(paint.style), each);
+  if (depth <= 1) return cost;
+  return cost + static_cast<std::uint64_t>(static_cast<double>(trapezoids) * depth * (depth - 1) *
+                                           kSidesPerPartSeenThrough);
 }
 
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {

@@ -109,6 +109,25 @@ TEST(VisiblePartsTest, ThroughWhatLiesOverItAShareIsSeen) {
   EXPECT_EQ(areas, (std::map<float, double>{{0.25F, 2500}, {0.5F, 5000}, {1.0F, 2500}}));
 }
 
+TEST(VisiblePartsTest, BelowMoreThanCanBeToldFromEachOtherThereIsNothing) {
+  constexpr int kDepth = 8;  // of halves: 1/256, and 1/512 would be less than kLeastShare
+  std::mt19937 random(5);
+  std::vector<Rings> polygons(1);
+  polygons.front().add(std::vector<Point>{{-50, -50}, {50, -50}, {50, 50}, {-50, 50}});
+  while (polygons.size() <= kDepth) {
+    polygons.emplace_back();
+    polygons.back().add(random_star(random, {0, 0}, 12, 400, 900));
+  }
+  const Cut seen = cut_first(polygons, 0.5F);
+  ASSERT_FALSE(seen.parts.parts().empty());
+  for (const TrapezoidPart& part : seen.parts.parts()) EXPECT_EQ(part.share, 1.0F / 256);
+  while (polygons.size() < 200) {
+    polygons.emplace_back();
+    polygons.back().add(random_star(random, {0, 0}, 12, 400, 900));
+  }
+  EXPECT_THAT(cut_first(polygons, 0.5F).parts.parts(), IsEmpty());
+}
+
 TEST(VisiblePartsTest, OfStarsEveryPointIsSeenAsOftenAsThereIsNothingAbove) {
   std::size_t seen = 0;
   std::size_t hidden = 0;

@@ -1,10 +1,13 @@
 // Features of one layer that lie over each other, pixel by pixel.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "core/layer/layer_builder.h"
 #include "core/layer/untested_layer.h"
 #include "render/picture/png.h"
 #include "server/service/site.h"
+#include "tests/core/shapes/ring_text.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -28,7 +31,7 @@ Rings box(double west, double north, double east, double south) {
   return polygon({{west, north}, {east, north}, {east, south}, {west, south}});
 }
 
-/// Pixels of the tile of zoom 0, by id:
+/// With their kinds. Pixels of the tile of zoom 0, by id:
 ///   1  field: columns 32.5 to 128, rows 32.5 to 128
 ///   2  wood, in the field: columns 64.5 to 96.5, rows 64.5 to 96.5
 ///   3  lake, over the eastern border of the field: columns 112 to 160, rows 48 to 80
@@ -37,13 +40,10 @@ Rings box(double west, double north, double east, double south) {
 ///   6  lake, over both: columns 80 to 112, rows 176 to 208
 ///   7  field: a triangle with a slanted western side
 ///   8  wood: the southern part of 7, with the same sides
-std::shared_ptr<const Dataset> plots() {
-  FeatureTable features({{"kind", FieldType::text}});
-  std::vector<LayerBuilder> builders(1);
-  const auto add = [&](std::string_view kind, Rings rings) {
-    const auto id = static_cast<std::int64_t>(features.size()) + 1;
-    const std::vector<Value> values = {kind};
-    builders.front().add(features.append(id, values), rings);
+std::vector<std::pair<std::string, Rings>> plots() {
+  std::vector<std::pair<std::string, Rings>> plots;
+  const auto add = [&plots](const char* kind, const Rings& rings) {
+    plots.emplace_back(kind, rings);
   };
   add("field", box(32.5, 32.5, 128, 128));
   add("wood", box(64.5, 64.5, 96.5, 96.5));
@@ -53,6 +53,28 @@ std::shared_ptr<const Dataset> plots() {
   add("lake", box(80, 176, 112, 208));
   add("field", polygon({{200.3, 20}, {240, 220.6}, {180.3, 220.6}}));
   add("wood", polygon({{190.3, 120.3}, {220.150625, 120.3}, {240, 220.6}, {180.3, 220.6}}));
+  return plots;
+}
+
+/// So many stars of 12 points around the middle, which all of them cover.
+std::vector<std::pair<std::string, Rings>> stars(int count) {
+  std::mt19937 random(1);
+  std::vector<std::pair<std::string, Rings>> stars;
+  for (int i = 0; i < count; ++i) {
+    stars.emplace_back("wood", Rings());
+    stars.back().second.add(random_star(random, {0, 0}, 12, 30 * kPixel, 100 * kPixel));
+  }
+  return stars;
+}
+
+std::shared_ptr<const Dataset> layer_of(std::vector<std::pair<std::string, Rings>> plots) {
+  FeatureTable features({{"kind", FieldType::text}});
+  std::vector<LayerBuilder> builders(1);
+  for (auto& [kind, rings] : plots) {
+    const auto id = static_cast<std::int64_t>(features.size()) + 1;
+    const std::vector<Value> values = {std::string_view(kind)};
+    builders.front().add(features.append(id, values), rings);
+  }
   ServedLayer served;
   served.config.name = "plots";
   served.config.title = "Plots";
@@ -83,7 +105,7 @@ class OverlapPicturesTest : public ::testing::Test {
 
   testing::SampleSite site_{false};
 
-  void SetUp() override { site_.data().set(plots()); }
+  void SetUp() override { site_.data().set(layer_of(plots())); }
 };
 
 void expect_near(Rgba actual, Rgba expected, int tolerance) {
@@ -184,9 +206,23 @@ TEST_F(OverlapPicturesTest, OutlinesAreHiddenByWhatLiesOverThem) {
 TEST_F(OverlapPicturesTest, CostsMoreWhereTheOrderIsSeen) {
   const auto cost_of = [this](const std::string& query) {
     const HttpResponse response = site_.get("/tiles/plots/0/0/0.png?" + query);
+    EXPECT_EQ(response.status, 200) << query << (response.body ? *response.body : "");
     return std::stoi(std::string(response.header("X-Tile-Cost")));
   };
   EXPECT_GT(cost_of("fill=red&fill-opacity=0.5"), cost_of("fill=red"));
+  // The more features are seen through each other, the more parts there are.
+  site_.data().set(layer_of(stars(40)));
+  const int opaque = cost_of(kClasses);
+  const int half = cost_of("fill=red&fill-opacity=0.5");
+  EXPECT_GT(half, 10 * opaque);
+  EXPECT_GT(cost_of("fill=red&fill-opacity=0.3"), 2 * half);
+}
+
+TEST_F(OverlapPicturesTest, ManyHalfOpaqueFeaturesAreDrawnAsFarAsTheyAreSeen) {
+  site_.data().set(layer_of(stars(40)));
+  const Picture picture = tile("fill=red&fill-opacity=0.5");
+  expect_near(picture.at(128, 128), {255, 0, 0, 255}, 3);
+  EXPECT_EQ(picture.at(2, 2).a, 0);
 }
 
 }  // namespace
