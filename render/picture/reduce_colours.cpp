@@ -147,9 +147,10 @@ class ColourReducer::NewColours {
 std::uint64_t ColourReducer::reduce(RunPicture& picture, int most_change) {
   count_pixels(picture);
   put_into_lattice(picture, most_change);
-  const bool is_worth_it =
-      colours_.size() > kPaletteColours && colours_.size() <= kMostToGather && most_change > 0;
-  if (is_worth_it && !gather(picture, most_change)) put_into_lattice(picture, most_change);
+  if (colours_.size() > kPaletteColours && most_change > 0 && may_be_gathered(picture) &&
+      !gather(picture, most_change)) {
+    put_into_lattice(picture, most_change);
+  }
   apply(picture);
   return change();
 }
@@ -182,6 +183,15 @@ void ColourReducer::put_into_lattice(const RunPicture& picture, int most_change)
     becomes_[i] = made.number_of(most_change == 0 ? picture.colours[i]
                                                   : straight(lattice.middle_of(channels_[i])));
   }
+}
+
+/// Boxes around colours take about half as many as the cells of the lattice.
+bool ColourReducer::may_be_gathered(const RunPicture& picture) const {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    kept += pixels_[i] > 0 && picture.origins[i] != Origin::mixed ? 1 : 0;
+  }
+  return kept + (colours_.size() - std::min(kept, colours_.size())) / 2 <= kPaletteColours;
 }
 
 // Boxes are begun with the colour that most pixels have among those that are left. False if there

@@ -14,7 +14,7 @@ namespace trapeze {
 constexpr std::size_t kPaletteColours = 256;
 /// With more than so many along edges and in the lattice, no other way gets them into a palette:
 /// none is tried, for it takes time.
-constexpr std::size_t kMostToGather = 1024;
+constexpr std::size_t kMostToGather = 2 * kPaletteColours;
 
 /// How close to the exact picture one has to be.
 enum class Quality : std::uint8_t { bounded, exact };
@@ -50,6 +50,7 @@ class ColourReducer {
   void count_pixels(const RunPicture& picture);
   void keep_all_but_mixed(const RunPicture& picture, NewColours& made);
   void put_into_lattice(const RunPicture& picture, int most_change);
+  bool may_be_gathered(const RunPicture& picture) const;
   bool gather(const RunPicture& picture, int most_change);
   std::uint32_t nearest(const Neighbourhood& kept, const Channels& channels, int most_change) const;
   std::uint64_t change() const;
