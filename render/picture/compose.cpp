@@ -16,6 +16,10 @@
 namespace trapeze {
 namespace {
 
+// With more than so many colours, along edges and in the lattice, no other way gets them into a
+// palette: none is tried, for it takes time.
+constexpr std::size_t kMostToGather = 2 * kPaletteColours;
+
 // What one or several layers show of a pixel. Colours are premultiplied; all from 0 to 1.
 struct Paint {
   float r = 0;

@@ -12,9 +12,6 @@
 namespace trapeze {
 
 constexpr std::size_t kPaletteColours = 256;
-/// With more than so many along edges and in the lattice, no other way gets them into a palette:
-/// none is tried, for it takes time.
-constexpr std::size_t kMostToGather = 2 * kPaletteColours;
 
 /// How close to the exact picture one has to be.
 enum class Quality : std::uint8_t { bounded, exact };
