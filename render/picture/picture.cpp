@@ -57,4 +57,28 @@ RunPicture to_runs(const Picture& picture) {
   return made;
 }
 
+RunPicture joined(std::span<const RunPicture* const> pictures) {
+  RunPicture all;
+  all.width = pictures.front()->width;
+  NumberTable<ColourKey> numbers;
+  for (const RunPicture* picture : pictures) {
+    std::vector<std::uint32_t> becomes;
+    for (std::size_t i = 0; i < picture->colours.size(); ++i) {
+      std::uint32_t& number = numbers[ColourKey(picture->colours[i])];
+      if (number == NumberTable<ColourKey>::kNone) {
+        number = static_cast<std::uint32_t>(all.colours.size());
+        all.colours.push_back(picture->colours[i]);
+        all.origins.push_back(picture->origins[i]);
+      }
+      all.origins[number] = std::min(all.origins[number], picture->origins[i]);
+      becomes.push_back(number);
+    }
+    const auto before = static_cast<std::uint32_t>(all.runs.size());
+    for (const Run& run : picture->runs) all.runs.push_back({run.end, becomes[run.colour]});
+    for (const std::uint32_t end : picture->row_end) all.row_end.push_back(before + end);
+    all.height += picture->height;
+  }
+  return all;
+}
+
 }  // namespace trapeze

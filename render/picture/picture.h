@@ -62,5 +62,7 @@ struct RunPicture {
 Picture to_pixels(const RunPicture& picture);
 /// Every colour of it is flat.
 RunPicture to_runs(const Picture& picture);
+/// Pictures of one width, one below the other. There is at least one.
+RunPicture joined(std::span<const RunPicture* const> pictures);
 
 }  // namespace trapeze

@@ -10,6 +10,7 @@
 #include "render/picture/debug_marks.h"
 #include "render/picture/webp.h"
 #include "render/text/label.h"
+#include "server/tiles/paint_stages.h"
 
 namespace trapeze {
 namespace {
@@ -29,6 +30,21 @@ View with_margin(const View& view) {
           view.width + 2 * kPixels, view.height + 2 * kPixels};
 }
 
+/// That view of it. Its place is exact: sides of tiles are powers of two.
+View band_of(const TilePlan& plan, int band) {
+  View view = View::of_tile(plan.tile, plan.scale);
+  const int bands = TilePainter::bands_of(plan);
+  view.origin_y += plan.tile.side() / bands * band;
+  view.height /= bands;
+  return view;
+}
+
+void add_times(const PaintTimes& more, PaintTimes& times) {
+  for (const PaintStage& stage : kPaintStages) {
+    times.*stage.milliseconds += more.*stage.milliseconds;
+  }
+}
+
 }  // namespace
 
 TilePainter::TilePainter(std::unique_ptr<MaskRenderer> renderer,
@@ -43,9 +59,10 @@ std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
 std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
   drawing_count_ = 0;
   std::vector<Sketch> sketches;
-  for (const Job& job : jobs) sketches.push_back(sketch(job));
+  for (const Job& job : jobs) {
+    sketches.push_back(sketch(job, View::of_tile(job.plan->tile, job.plan->scale)));
+  }
   const DrawTimes drawn = draw(jobs, sketches);
-  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
 
   std::vector<std::optional<PaintedTile>> tiles;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -54,17 +71,65 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
       tiles.emplace_back();
       continue;
     }
-    const double part = share * static_cast<double>(sketch.tasks);
-    sketch.times.draw_ms += drawn.draw_ms * part;
-    sketch.times.read_ms += drawn.read_ms * part;
-    sketch.times.resolve_ms += drawn.resolve_ms * part;
+    note_times(drawn, sketch);
     tiles.emplace_back(finish(*jobs[i].plan, sketch));
   }
   return tiles;
 }
 
-TilePainter::Sketch TilePainter::sketch(const Job& job) {
+int TilePainter::bands_of(const TilePlan& plan) {
+  constexpr int kLeastScale = 4;
+  constexpr int kBands = 4;
+  const bool is_large = plan.scale >= kLeastScale && plan.tile.side() >= kBands;
+  return is_large && !plan.debug.any() ? kBands : 1;
+}
+
+std::optional<PaintedBand> TilePainter::paint_band(const Job& job, int band) {
+  drawing_count_ = 0;
+  Sketch sketch = this->sketch(job, band_of(*job.plan, band));
+  note_times(draw({&job, 1}, {&sketch, 1}), sketch);
+  if (sketch.is_cancelled) return std::nullopt;
+  const bool is_constant = !compose(*job.plan, sketch);
+  PaintedBand painted;
+  painted.hint = picture_.colours.size() == 1 ? hint_of(sketch) : TileHint::none;
+  if (is_constant) {
+    const Rgba colour = picture_.at(0, 0);
+    composer_.compose({}, sketch.view.width, sketch.view.height, colour, Quality::exact, picture_);
+  }
+  painted.picture = std::move(picture_);
+  painted.times = sketch.times;
+  return painted;
+}
+
+PaintedTile TilePainter::join(const TilePlan& plan, std::span<const PaintedBand> bands) {
+  PaintedTile tile;
+  std::vector<const RunPicture*> pictures;
+  for (const PaintedBand& band : bands) {
+    pictures.push_back(&band.picture);
+    add_times(band.times, tile.times);
+  }
+  const Stopwatch stopwatch(tile.times.encode_ms);
+  picture_ = joined(pictures);
+  const bool are_alike = std::ranges::all_of(
+      bands, [&](const PaintedBand& band) { return band.hint == bands.front().hint; });
+  if (picture_.colours.size() == 1 && are_alike) tile.hint = bands.front().hint;
+  tile.has_palette = picture_.colours.size() <= kPaletteColours;
+  tile.bytes = std::make_shared<const std::string>(encode(plan.format));
+  return tile;
+}
+
+/// What tiles that were drawn together share is shared out evenly.
+void TilePainter::note_times(const DrawTimes& drawn, Sketch& sketch) const {
+  const double part = static_cast<double>(sketch.tasks) /
+                      static_cast<double>(std::max<std::size_t>(tasks_.size(), 1));
+  sketch.times.draw_ms += drawn.draw_ms * part;
+  sketch.times.read_ms += drawn.read_ms * part;
+  sketch.times.resolve_ms += drawn.resolve_ms * part;
+}
+
+TilePainter::Sketch TilePainter::sketch(const Job& job, const View& view) {
   Sketch sketch;
+  sketch.view = view;
   sketch.first_drawing = drawing_count_;
   tools_.cancellation = job.cancellation;
   try {
@@ -91,14 +156,13 @@ void TilePainter::release_memory() {
 
 // From the top down: what lies under an opaque layer that covers everything is not looked at.
 void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
-  const View view = View::of_tile(plan.tile, plan.scale);
   const Stopwatch stopwatch(sketch.times.select_ms);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
     if (!paint->style.is_visible()) continue;  // here for its marks only
     if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
     LayerDrawing& drawing = drawings_[drawing_count_];
     const auto classes = classes_for(plan, *paint);
-    if (!drawing.select(plan, *paint, view, classes.get(), tools_)) continue;
+    if (!drawing.select(plan, *paint, sketch.view, classes.get(), tools_)) continue;
     ++drawing_count_;
     if (drawing.hides_all()) break;
   }
@@ -132,7 +196,7 @@ DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketche
 
 // Draws the outlines and patterns of one tile, and adds its masks to those to be drawn.
 void TilePainter::draw_details(const Job& job, Sketch& sketch) {
-  const View view = View::of_tile(job.plan->tile, job.plan->scale);
+  const View& view = sketch.view;
   const std::size_t tasks_before = tasks_.size();
   tools_.cancellation = job.cancellation;
   try {
@@ -148,27 +212,15 @@ void TilePainter::draw_details(const Job& job, Sketch& sketch) {
   sketch.tasks = tasks_.size() - tasks_before;
 }
 
-PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
+PaintedTile TilePainter::finish(const TilePlan& plan, Sketch& sketch) {
+  const View& view = sketch.view;
+  const bool is_constant = !compose(plan, sketch);
   PaintedTile tile{nullptr, TileHint::none, sketch.times};
-  const View view = View::of_tile(plan.tile, plan.scale);
-  bool is_constant = !plan.debug.any();
-  {
+  if (plan.debug.any()) {
     const Stopwatch stopwatch(tile.times.compose_ms);
-    painted_.clear();
-    tolerances_.clear();
-    for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
-      is_constant = is_constant && drawings_[k].is_constant();
-      painted_.push_back(drawings_[k].painted());
-      tolerances_.push_back(drawings_[k].tolerance(view));
-    }
-    if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
-    const int side = is_constant ? 1 : view.width;  // one pixel tells the colour
-    composer_.compose(painted_, side, side, plan.background, plan.quality, picture_);
-    if (plan.debug.any()) {
-      Picture marked = to_pixels(picture_);
-      mark(plan, view, marked);
-      picture_ = to_runs(marked);
-    }
+    Picture marked = to_pixels(picture_);
+    mark(plan, view, marked);
+    picture_ = to_runs(marked);
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
   if (picture_.colours.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
@@ -176,6 +228,23 @@ PaintedTile TilePainter::finish(const TilePlan& plan, const Sketch& sketch) {
   tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
                            : std::make_shared<const std::string>(encode(plan.format));
   return tile;
+}
+
+bool TilePainter::compose(const TilePlan& plan, Sketch& sketch) {
+  const View& view = sketch.view;
+  const Stopwatch stopwatch(sketch.times.compose_ms);
+  bool is_constant = !plan.debug.any();
+  painted_.clear();
+  tolerances_.clear();
+  for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
+    is_constant = is_constant && drawings_[k].is_constant();
+    painted_.push_back(drawings_[k].painted());
+    tolerances_.push_back(drawings_[k].tolerance(view));
+  }
+  if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
+  composer_.compose(painted_, is_constant ? 1 : view.width, is_constant ? 1 : view.height,
+                    plan.background, plan.quality, picture_);
+  return !is_constant;
 }
 
 // Of a tile of one colour.

@@ -52,6 +52,13 @@ struct PaintedTile {
   bool has_palette = true;  // or would have one, as PNG
 };
 
+/// A part of a tile: some of its rows, over its whole width.
+struct PaintedBand {
+  RunPicture picture;
+  TileHint hint = TileHint::none;
+  PaintTimes times;
+};
+
 class TilePainter {
  public:
   struct Job {
@@ -72,6 +79,14 @@ class TilePainter {
   /// the others. Throws what the renderer and the encoder throw; Cancelled is of one of the tiles.
   std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
 
+  /// How many bands of equal height a tile is painted in: 1, or if it is large, several, which
+  /// painters may do at the same time. That depends on nothing but the plan, and so do its bytes.
+  static int bands_of(const TilePlan& plan);
+  /// Paints one of them, the northernmost being 0. As paint().
+  std::optional<PaintedBand> paint_band(const Job& job, int band);
+  /// The tile that has these bands, from the north.
+  PaintedTile join(const TilePlan& plan, std::span<const PaintedBand> bands);
+
   /// Frees working memory that a giant needed and most tiles do not.
   void release_memory();
 
@@ -79,8 +94,9 @@ class TilePainter {
   bool gains_by_batching() const { return renderer_->gains_by_batching(); }
 
  private:
-  // The drawings of one tile, and what became of it.
+  // The drawings of one tile or band, and what became of it.
   struct Sketch {
+    View view;
     bool is_cancelled = false;
     std::size_t first_drawing = 0;
     std::size_t end_drawing = 0;
@@ -88,12 +104,15 @@ class TilePainter {
     PaintTimes times;
   };
 
-  Sketch sketch(const Job& job);
+  Sketch sketch(const Job& job, const View& view);
   void select(const TilePlan& plan, Sketch& sketch);
   void draw_details(const Job& job, Sketch& sketch);
   std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
   DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
-  PaintedTile finish(const TilePlan& plan, const Sketch& sketch);
+  void note_times(const DrawTimes& drawn, Sketch& sketch) const;
+  PaintedTile finish(const TilePlan& plan, Sketch& sketch);
+  /// False if it is of one colour, which its only pixel has then.
+  bool compose(const TilePlan& plan, Sketch& sketch);
   TileHint hint_of(const Sketch& sketch) const;
   std::string encode(TileFormat format);
   std::shared_ptr<const std::string> constant(Rgba colour, int side, TileFormat format);

@@ -146,23 +146,36 @@ void TileService::tell(const TileAnswer& answer) const {
 void TileService::work(TilePainter& painter) {
   const std::size_t most =
       painter.gains_by_batching() ? std::max<std::size_t>(options_.batch, 1) : 1;
-  Flights flights;
-  flights.reserve(most);  // all there will be: taking needs no memory
-  while (take(most, flights)) {
-    draw(painter, flights);
-    flights.clear();
+  Work work;
+  work.flights.reserve(most);  // all there will be: taking needs no memory
+  while (take(most, work)) {
+    if (work.bands != nullptr) {
+      help(painter, work.bands);
+      if (work.bands->flight->cost == Cost::dear) painter.release_memory();
+    } else {
+      draw(painter, work.flights);
+    }
+    work.flights.clear();
+    work.bands = nullptr;
   }
 }
 
-bool TileService::take(std::size_t most, Flights& flights) {
+bool TileService::take(std::size_t most, Work& work) {
+  Flights& flights = work.flights;
   std::unique_lock lock(mutex_);
-  wake_.wait(lock, [this] { return is_stopping_ || !queue_.empty() || may_take_dear(); });
+  wake_.wait(lock, [this] {
+    return is_stopping_ || !queue_.empty() || may_take_dear() || !bands_.empty();
+  });
   if (is_stopping_) return false;
   if (may_take_dear()) {
     ++dear_drawing_;
     ++drawing_;
     flights.push_back(std::move(dear_queue_.front()));
     dear_queue_.pop_front();
+    return true;
+  }
+  if (queue_.empty()) {
+    work.bands = bands_.front();
     return true;
   }
   const std::size_t count = std::min(most, share_of_queue());
@@ -219,13 +232,11 @@ void TileService::answer(TilePainter& painter, const Flights& flights) {
 }
 
 std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& flights) {
-  std::vector<TilePainter::Job> jobs;
-  for (const auto& flight : flights) jobs.push_back({&flight->plan, &flight->cancellation});
   const auto begin = Clock::now();
   std::vector<TileAnswer> answers;
   // This is the boundary of a request: nothing that goes wrong in one may end the worker.
   try {
-    for (auto& tile : painter.paint(jobs)) {
+    for (auto& tile : paint_tiles(painter, flights)) {
       answers.push_back(tile ? TileAnswer{TileOutcome::drawn, std::move(*tile)}
                              : TileAnswer{TileOutcome::late, {}});
     }
@@ -243,6 +254,78 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
     answers[i].tile.times.queue_ms = std::chrono::duration<double, std::milli>(waited).count();
   }
   return answers;
+}
+
+// Those that are large one after the other, each with the help of others.
+std::vector<std::optional<PaintedTile>> TileService::paint_tiles(TilePainter& painter,
+                                                                 const Flights& flights) {
+  std::vector<TilePainter::Job> jobs;
+  for (const auto& flight : flights) {
+    if (TilePainter::bands_of(flight->plan) == 1) {
+      jobs.push_back({&flight->plan, &flight->cancellation});
+    }
+  }
+  std::vector<std::optional<PaintedTile>> small;
+  if (!jobs.empty()) small = painter.paint(jobs);
+  auto next = small.begin();
+  std::vector<std::optional<PaintedTile>> tiles;
+  for (const auto& flight : flights) {
+    const bool is_large = TilePainter::bands_of(flight->plan) > 1;
+    tiles.push_back(is_large ? paint_in_bands(painter, flight) : std::move(*next++));
+  }
+  return tiles;
+}
+
+std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
+                                                       const std::shared_ptr<Flight>& flight) {
+  const auto bands = std::make_shared<Bands>();
+  bands->flight = flight;
+  bands->painted.resize(static_cast<std::size_t>(TilePainter::bands_of(flight->plan)));
+  {
+    const std::lock_guard lock(mutex_);
+    bands_.push_back(bands);
+  }
+  wake_.notify_all();
+  help(painter, bands);
+  {
+    std::unique_lock lock(mutex_);
+    band_done_.wait(lock, [&] { return bands->done == bands->taken; });
+    if (bands->failure != nullptr) std::rethrow_exception(bands->failure);
+  }
+  std::vector<PaintedBand> painted;
+  for (std::optional<PaintedBand>& band : bands->painted) {
+    if (!band) return std::nullopt;
+    painted.push_back(*std::move(band));
+  }
+  return painter.join(flight->plan, painted);
+}
+
+// Whoever waits for the bands is told of what goes wrong.
+void TileService::help(TilePainter& painter, const std::shared_ptr<Bands>& bands) {
+  const TilePainter::Job job{&bands->flight->plan, &bands->flight->cancellation};
+  while (const auto band = take_band(*bands)) {
+    std::exception_ptr failure;
+    try {
+      bands->painted[*band] = painter.paint_band(job, static_cast<int>(*band));
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    ++bands->done;
+    if (bands->failure == nullptr) bands->failure = failure;
+    band_done_.notify_all();
+  }
+}
+
+// After a failure none of the others is wanted.
+std::optional<std::size_t> TileService::take_band(Bands& bands) {
+  const std::lock_guard lock(mutex_);
+  const bool is_left = bands.taken < bands.painted.size() && bands.failure == nullptr;
+  if (is_left) ++bands.taken;
+  if (!is_left || bands.taken == bands.painted.size()) {
+    std::erase_if(bands_, [&bands](const auto& other) { return other.get() == &bands; });
+  }
+  return is_left ? std::optional(bands.taken - 1) : std::nullopt;
 }
 
 /// What was drawn while a file was written into may be drawn from anything.

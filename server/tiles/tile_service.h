@@ -1,7 +1,8 @@
 // Draws tiles on worker threads: a plan in, bytes out. Knows nothing of HTTP.
 //
 // Dear tiles have a queue of their own, and half of the workers at most: cheap ones go on being
-// drawn beside them.
+// drawn beside them. Large tiles are drawn in bands, with the help of workers that have nothing
+// else to do.
 //
 // Thread-safety: all methods may be called from any thread.
 #pragma once
@@ -11,9 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <unordered_map>
@@ -109,14 +112,28 @@ class TileService {
     std::vector<Callback> callbacks;  // empty ones withdrew
     std::size_t wanted = 0;           // callbacks that did not
   };
+  /// The bands of a large tile.
+  struct Bands {
+    std::shared_ptr<Flight> flight;
+    std::vector<std::optional<PaintedBand>> painted;  // each by who has taken it
+    // Guarded by the mutex of the service:
+    std::size_t taken = 0;
+    std::size_t done = 0;
+    std::exception_ptr failure = nullptr;  // of the first that failed
+  };
   using Flights = std::vector<std::shared_ptr<Flight>>;
   using Queue = std::deque<std::shared_ptr<Flight>>;
 
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);
-  /// Appends the next flights to draw together, up to so many; false when the service stops.
-  bool take(std::size_t most, Flights& flights);
+  /// What a worker is to do next: flights to draw together, or else bands to help with.
+  struct Work {
+    Flights flights;
+    std::shared_ptr<Bands> bands;
+  };
+  /// Of up to so many flights; false when the service stops.
+  bool take(std::size_t most, Work& work);
   bool may_take_dear() const;
   Queue& queue_of(Cost cost) { return cost == Cost::dear ? dear_queue_ : queue_; }
   /// How many of those that wait one worker should take, so that all workers have some.
@@ -128,7 +145,13 @@ class TileService {
   void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
   void answer(TilePainter& painter, const Flights& flights);
-  static std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
+  std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
+  std::vector<std::optional<PaintedTile>> paint_tiles(TilePainter& painter, const Flights& flights);
+  std::optional<PaintedTile> paint_in_bands(TilePainter& painter,
+                                            const std::shared_ptr<Flight>& flight);
+  /// Paints bands that nobody has taken yet.
+  void help(TilePainter& painter, const std::shared_ptr<Bands>& bands);
+  std::optional<std::size_t> take_band(Bands& bands);
   static void refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers);
   /// Answers all who asked and have not been answered.
   void land(const std::shared_ptr<Flight>& flight, TileAnswer answer);
@@ -142,6 +165,8 @@ class TileService {
 
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable wake_;
+  std::condition_variable band_done_;
+  std::deque<std::shared_ptr<Bands>> bands_;  // those of which not all have been taken
   Queue queue_;
   Queue dear_queue_;
   std::size_t drawing_ = 0;       // tiles that workers have taken

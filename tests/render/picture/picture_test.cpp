@@ -44,5 +44,22 @@ TEST(PictureTest, APictureOfOneColourIsConstant) {
   EXPECT_FALSE(to_runs(picture).is_constant());
 }
 
+TEST(PictureTest, PicturesAreJoinedOneBelowTheOther) {
+  std::mt19937 random(1);
+  const std::vector<Picture> parts{random_picture(13, 4, random), random_picture(13, 1, random),
+                                   random_picture(13, 6, random)};
+  std::vector<RunPicture> runs;
+  std::vector<Rgba> pixels;
+  for (const Picture& part : parts) {
+    runs.push_back(to_runs(part));
+    pixels.insert(pixels.end(), part.pixels.begin(), part.pixels.end());
+  }
+  const RunPicture all = joined(std::vector<const RunPicture*>{&runs[0], &runs[1], &runs[2]});
+  EXPECT_EQ(all.width, 13);
+  EXPECT_EQ(all.height, 11);
+  EXPECT_EQ(to_pixels(all).pixels, pixels);
+  EXPECT_LE(all.colours.size(), 5u) << "each colour is there once";
+}
+
 }  // namespace
 }  // namespace trapeze

@@ -269,6 +269,79 @@ TEST_F(TileServiceTest, AnObserverThatFailsDoesNotKeepTilesFromBeingAnswered) {
   EXPECT_EQ(submit(1).get().outcome, TileOutcome::drawn);
 }
 
+/// A tile with much in it.
+TilePlan busy_plan(TileId tile, int scale) {
+  TileRequest request;
+  request.layers = {"rings", "west"};
+  request.tile = tile;
+  request.scale = scale;
+  request.style =
+      testing::style_of("quality=exact&rings.fill=teal&west.fill=orange&west.fill-opacity=0.5");
+  return *plan_tile(request, testing::sample_dataset());
+}
+
+std::string bytes_of(TileService& service, const TilePlan& plan) {
+  std::promise<TileAnswer> promise;
+  service.submit(plan, plan.key(), TileService::Cost::dear,
+                 [&promise](const TileAnswer& answer) { promise.set_value(answer); });
+  const TileAnswer answer = promise.get_future().get();
+  return answer.outcome == TileOutcome::drawn ? *answer.tile.bytes : std::string();
+}
+
+TEST_F(TileServiceTest, ALargeTileHasTheSameBytesHoweverManyWorkersThereAre) {
+  const TilePlan plan = busy_plan({1, 0, 0}, 4);
+  ASSERT_GT(TilePainter::bands_of(plan), 1);
+  TileService one({}, make_renderers({RendererKind::software, {}}, 1).renderers);
+  TileService several({}, make_renderers({RendererKind::software, {}}, 4).renderers);
+  const std::string bytes = bytes_of(one, plan);
+  ASSERT_FALSE(bytes.empty());
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(bytes_of(several, plan), bytes);
+}
+
+TEST_F(TileServiceTest, ALargeTileIsThatOfItsFourChildren) {
+  TileService service({}, make_renderers({RendererKind::software, {}}, 2).renderers);
+  const Picture large = decode_png(bytes_of(service, busy_plan({1, 0, 0}, 4)));
+  ASSERT_EQ(large.width, 1024);
+  ASSERT_EQ(large.height, 1024);
+  int most = 0;
+  for (std::uint32_t child = 0; child < 4; ++child) {
+    const int column = static_cast<int>(child % 2) * 512;
+    const int row = static_cast<int>(child / 2) * 512;
+    const TilePlan plan = busy_plan({2, child % 2, child / 2}, 2);
+    ASSERT_EQ(TilePainter::bands_of(plan), 1);
+    const Picture quarter = decode_png(bytes_of(service, plan));
+    for (int y = 0; y < 512; ++y) {
+      for (int x = 0; x < 512; ++x) {
+        const Rgba here = quarter.at(x, y);
+        const Rgba there = large.at(column + x, row + y);
+        most = std::max({most, std::abs(here.r - there.r), std::abs(here.a - there.a)});
+      }
+    }
+  }
+  EXPECT_LE(most, 1);
+}
+
+TEST_F(TileServiceTest, AFailingBandFailsTheTileAndNotTheWorkers) {
+  gate_.fails = true;
+  open();
+  start({}, 3);
+  const TilePlan large = busy_plan({1, 0, 0}, 4);
+  EXPECT_EQ(bytes_of(*service_, large), "");
+  gate_.fails = false;
+  EXPECT_NE(bytes_of(*service_, large), "");
+}
+
+TEST_F(TileServiceTest, StoppingEndsTheBandsOfALargeTile) {
+  start({}, 3);
+  std::promise<TileAnswer> promise;
+  const TilePlan large = busy_plan({1, 0, 0}, 4);
+  service_->submit(large, large.key(), TileService::Cost::dear,
+                   [&promise](const TileAnswer& answer) { promise.set_value(answer); });
+  wait_until_drawing(3);
+  service_.reset();  // with the gate shut
+  EXPECT_EQ(promise.get_future().get().outcome, TileOutcome::saturated);
+}
+
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   TileService service({}, make_renderers({RendererKind::software, {}}, 4).renderers);
   std::vector<std::promise<TileAnswer>> answers(64);
