@@ -614,8 +614,9 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
     return;
   }
   int change = kMostChange;
-  for (double sum = paint(change, change, picture); sum > most;
-       sum = paint(change, change, picture)) {
+  while (true) {
+    const double sum = paint(change, change, picture);
+    if (sum <= most) break;
     // The mean grows with the most.
     change = std::min(change - 1, static_cast<int>(change * most / sum));
   }

@@ -84,10 +84,11 @@ class ColourReducer::Neighbourhood {
   static constexpr int kSide = 255 / kReach + 1;
 
   static std::size_t place_of(int r, int g) {
-    return static_cast<std::size_t>(r / kReach * kSide + g / kReach);
+    const int place = r / kReach * kSide + g / kReach;
+    return static_cast<std::size_t>(place);
   }
 
-  std::array<std::uint32_t, static_cast<std::size_t>(kSide* kSide)> first_;
+  std::array<std::uint32_t, std::size_t{kSide} * kSide> first_;
   std::vector<std::uint32_t> next_;  // by number
 };
 

@@ -33,7 +33,7 @@ constexpr Symbol symbol_of_length(std::uint32_t length) {
   if (length == kLongestMatch) return {285, 0, 0};
   const std::uint32_t offset = length - kLeastMatch;
   if (offset < 8) return {static_cast<std::uint16_t>(kFirstLength + offset), 0, 0};
-  const int extra_bits = std::bit_width(offset) - 3;
+  const int extra_bits = static_cast<int>(std::bit_width(offset)) - 3;
   const std::uint32_t symbol =
       kFirstLength + 4 * static_cast<std::uint32_t>(extra_bits) + (offset >> extra_bits);
   return {static_cast<std::uint16_t>(symbol), static_cast<std::uint8_t>(extra_bits),
@@ -43,7 +43,7 @@ constexpr Symbol symbol_of_length(std::uint32_t length) {
 constexpr Symbol symbol_of_distance(std::uint32_t distance) {
   const std::uint32_t offset = distance - 1;
   if (offset < 4) return {static_cast<std::uint16_t>(offset), 0, 0};
-  const int extra_bits = std::bit_width(offset) - 2;
+  const int extra_bits = static_cast<int>(std::bit_width(offset)) - 2;
   const std::uint32_t symbol = 2 * static_cast<std::uint32_t>(extra_bits) + (offset >> extra_bits);
   return {static_cast<std::uint16_t>(symbol), static_cast<std::uint8_t>(extra_bits),
           static_cast<std::uint16_t>(offset & ((1u << extra_bits) - 1))};

@@ -75,8 +75,8 @@ class RunDeflater {
   void begin_block();
   void end_block(bool is_last);
   void write_tokens();
-  void write_code_lengths(std::span<const Code, kLiterals> literals,
-                          std::span<const Code, kDistances> distances);
+  void write_code_lengths(std::span<const Code, kLiterals> literal_codes,
+                          std::span<const Code, kDistances> distance_codes);
   template <std::size_t size>
   static std::array<Code, size> make_codes(const std::array<std::uint32_t, size>& counts,
                                            int most_bits);
