@@ -179,7 +179,9 @@ void RunDeflater::add_pixels(std::span<const PixelRun> runs) {
     return;
   }
   // The filter goes with what is the same after it.
-  if (is_worth_it(same_as_above(place))) {
+  Same first = same_as_above(place);
+  first.bits += kBitsOfLiteral;
+  if (is_worth_it(first)) {
     length_above_ += 1;
   } else {
     end_match_above();

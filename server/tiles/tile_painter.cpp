@@ -10,7 +10,6 @@
 #include "render/picture/debug_marks.h"
 #include "render/picture/webp.h"
 #include "render/text/label.h"
-#include "server/tiles/paint_stages.h"
 
 namespace trapeze {
 namespace {
@@ -39,10 +38,13 @@ View band_of(const TilePlan& plan, int band) {
   return view;
 }
 
+/// Of a band to those of its tile.
 void add_times(const PaintTimes& more, PaintTimes& times) {
-  for (const PaintStage& stage : kPaintStages) {
-    times.*stage.milliseconds += more.*stage.milliseconds;
-  }
+  times.select_ms += more.select_ms;
+  times.draw_ms += more.draw_ms;
+  times.read_ms += more.read_ms;
+  times.resolve_ms += more.resolve_ms;
+  times.compose_ms += more.compose_ms;
 }
 
 }  // namespace

@@ -146,9 +146,13 @@ TEST(RunDeflaterTest, CodesAreNoLongerThanTheyMayBe) {
 
 TEST(RunDeflaterTest, APictureOfOneColourTakesNextToNothing) {
   RunDeflater deflater;
-  const Pixels pixels{256, 1, std::vector<Row>(256, Row{{256, 7}})};
-  expect_back(deflater, pixels);
-  EXPECT_LT(compressed(deflater, pixels).size(), 90u);
+  // Of 8 bits, and of 1 bit, which is what it has as PNG.
+  const Pixels bytes{256, 1, std::vector<Row>(256, Row{{256, 7}})};
+  const Pixels bits{32, 1, std::vector<Row>(256, Row{{32, 0}})};
+  expect_back(deflater, bytes);
+  expect_back(deflater, bits);
+  EXPECT_LT(compressed(deflater, bytes).size(), 320u);
+  EXPECT_LT(compressed(deflater, bits).size(), 60u);
 }
 
 TEST(RunDeflaterTest, TheBytesDoNotDependOnWhatWasCompressedBefore) {

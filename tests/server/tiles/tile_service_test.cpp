@@ -275,8 +275,7 @@ TilePlan busy_plan(TileId tile, int scale) {
   request.layers = {"rings", "west"};
   request.tile = tile;
   request.scale = scale;
-  request.style =
-      testing::style_of("quality=exact&rings.fill=teal&west.fill=orange&west.fill-opacity=0.5");
+  request.style = testing::style_of("quality=exact&opacity=0.8");
   return *plan_tile(request, testing::sample_dataset());
 }
 
