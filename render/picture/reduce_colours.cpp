@@ -275,7 +275,12 @@ void ColourReducer::apply(RunPicture& picture) const {
   }
   picture.runs.resize(kept);
   picture.colours = colours_;
-  picture.origins.assign(colours_.size(), Origin::flat);
+  std::vector<Origin> origins(colours_.size(), Origin::mixed);
+  for (std::size_t k = 0; k < becomes_.size(); ++k) {
+    if (pixels_[k] == 0) continue;
+    origins[becomes_[k]] = std::min(origins[becomes_[k]], picture.origins[k]);
+  }
+  picture.origins = std::move(origins);
 }
 
 }  // namespace trapeze

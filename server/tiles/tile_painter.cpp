@@ -38,6 +38,18 @@ View band_of(const TilePlan& plan, int band) {
   return view;
 }
 
+/// Of an exact picture, within the bounds (see reduce_colours.h).
+void make_colours_fewer(RunPicture& picture) {
+  const double most = 4 * kMostMeanChange * static_cast<double>(picture.pixel_count());
+  ColourReducer reducer;
+  for (int change = kMostChange; change > 0; --change) {
+    RunPicture fewer = picture;
+    if (static_cast<double>(reducer.reduce(fewer, change)) > most) continue;
+    picture = std::move(fewer);
+    return;
+  }
+}
+
 /// Of a band to those of its tile.
 void add_times(const PaintTimes& more, PaintTimes& times) {
   times.select_ms += more.select_ms;
@@ -91,7 +103,9 @@ std::optional<PaintedBand> TilePainter::paint_band(const Job& job, int band) {
   Sketch sketch = this->sketch(job, band_of(*job.plan, band));
   note_times(draw({&job, 1}, {&sketch, 1}), sketch);
   if (sketch.is_cancelled) return std::nullopt;
-  const bool is_constant = !compose(*job.plan, sketch);
+  TilePlan exact = *job.plan;  // colours become fewer in all bands alike, when they are joined
+  exact.quality = Quality::exact;
+  const bool is_constant = !compose(exact, sketch);
   PaintedBand painted;
   painted.hint = picture_.colours.size() == 1 ? hint_of(sketch) : TileHint::none;
   if (is_constant) {
@@ -112,6 +126,7 @@ PaintedTile TilePainter::join(const TilePlan& plan, std::span<const PaintedBand>
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
   picture_ = joined(pictures);
+  if (plan.quality == Quality::bounded) make_colours_fewer(picture_);
   const bool are_alike = std::ranges::all_of(
       bands, [&](const PaintedBand& band) { return band.hint == bands.front().hint; });
   if (picture_.colours.size() == 1 && are_alike) tile.hint = bands.front().hint;

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "render/make_renderer.h"
+#include "render/picture/channels.h"
 #include "render/picture/png.h"
 #include "tests/server/service/sample_site.h"
 
@@ -295,6 +296,21 @@ TEST_F(TileServiceTest, ALargeTileHasTheSameBytesHoweverManyWorkersThereAre) {
   const std::string bytes = bytes_of(one, plan);
   ASSERT_FALSE(bytes.empty());
   for (int i = 0; i < 20; ++i) ASSERT_EQ(bytes_of(several, plan), bytes);
+}
+
+TEST_F(TileServiceTest, ALargeTileIsWithinTheBoundsOfTheExactOne) {
+  TilePlan plan = busy_plan({1, 0, 0}, 4);
+  TileService service({}, make_renderers({RendererKind::software, {}}, 2).renderers);
+  const Picture exact = decode_png(bytes_of(service, plan));
+  plan.quality = Quality::bounded;
+  const Picture bounded = decode_png(bytes_of(service, plan));
+  ASSERT_EQ(bounded.pixels.size(), exact.pixels.size());
+  int most = 0;
+  for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+    most = std::max(most,
+                    difference(channels_of(exact.pixels[i]), channels_of(bounded.pixels[i])).most);
+  }
+  EXPECT_LE(most, kMostChange);
 }
 
 TEST_F(TileServiceTest, ALargeTileIsThatOfItsFourChildren) {
