@@ -9,7 +9,6 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kLeastMatch = 3;
-constexpr std::uint32_t kLongestMatch = 258;
 constexpr std::uint32_t kMostDistance = 32768;
 constexpr std::uint32_t kEndOfBlock = 256;
 constexpr std::uint32_t kFirstLength = 257;      // symbol of the shortest match

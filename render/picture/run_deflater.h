@@ -13,6 +13,8 @@
 
 namespace trapeze {
 
+constexpr std::uint32_t kLongestMatch = 258;  // of Deflate, in bytes
+
 /// Equal pixels of a row.
 struct PixelRun {
   std::uint32_t end = 0;    // the column after the last of them
@@ -40,11 +42,10 @@ class RunDeflater {
   };
   static constexpr std::size_t kLiterals = 286;  // and lengths, and the end of a block
   static constexpr std::size_t kDistances = 30;
-  static constexpr std::size_t kMostMatch = 258;
   // Tokens: literals; then, by their length, matches with the pixel before, and with the row above.
   static constexpr std::uint32_t kRepeat = 256;
-  static constexpr std::uint32_t kAbove = kRepeat + kMostMatch + 1;
-  static constexpr std::size_t kTokens = kAbove + kMostMatch + 1;
+  static constexpr std::uint32_t kAbove = kRepeat + kLongestMatch + 1;
+  static constexpr std::size_t kTokens = kAbove + kLongestMatch + 1;
 
   /// Where in a row.
   struct Place {
