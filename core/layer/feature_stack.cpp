@@ -1,6 +1,7 @@
 #include "core/layer/feature_stack.h"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 namespace trapeze {
@@ -8,6 +9,7 @@ namespace trapeze {
 void FeatureStack::Feature::begin(std::uint32_t feature_row) {
   row = feature_row;
   box = {};
+  is_in_a_pair = false;
   is_over_others = false;
   covers.clear();
   trapezoids.clear();
@@ -26,7 +28,7 @@ void FeatureStack::begin(const OverlapTable& overlaps, const MeshView& mesh,
   options_ = options;
   count_ = 0;
   std::ranges::fill(slots_, kNone);
-  last_row_ = last_ = kNone;
+  last_noted_ = last_row_ = last_ = kNone;
 }
 
 /// Holds the trapezoid: as high as that is, and as wide as its sides are from end to end.
@@ -75,15 +77,14 @@ void FeatureStack::grow() {
   }
 }
 
-bool FeatureStack::settle(const Cancellation* cancellation) {
+bool FeatureStack::find_covers(const Cancellation* cancellation) {
   constexpr unsigned kStepsBetweenChecks = 4096;
   CancellationCheck check(cancellation, kStepsBetweenChecks);
-  bool are_all_opaque = true;
-  for (std::uint32_t number = 0; number < count_; ++number) {
-    are_all_opaque = are_all_opaque && features_[number].paint.is_opaque();
-  }
-  bool is_any_cut = false;
-  for (std::uint32_t number = 0; number < count_; ++number) {
+  const auto of_all = std::views::iota(std::uint32_t{0}, count_);
+  const bool are_all_opaque = std::ranges::all_of(
+      of_all, [this](std::uint32_t number) { return features_[number].paint.is_opaque(); });
+  bool are_any = false;
+  for (const std::uint32_t number : of_all) {
     Feature& feature = features_[number];
     for (const FeatureOverlap& overlap : overlaps_->of(feature.row)) {
       check();
@@ -93,19 +94,39 @@ bool FeatureStack::settle(const Cancellation* cancellation) {
       Feature& other = features_[other_number];
       const bool are_alike = are_all_opaque && other.paint.colour == feature.paint.colour;
       if (are_alike && overlap.along == 0) continue;
-      const bool is_over = other.paint.opacity > 0 && feature.is_below(other) &&
-                           (options_.cuts_whole_features || feature.box.intersects(other.box));
-      if (!is_over) continue;
+      if (other.paint.opacity <= 0 || !feature.is_below(other)) continue;
       feature.covers.push_back(other_number);
-      other.is_over_others = true;
-      is_any_cut = true;
+      feature.is_in_a_pair = other.is_in_a_pair = true;
+      are_any = true;
     }
+  }
+  return are_any;
+}
+
+void FeatureStack::note_place(std::uint32_t row, std::uint32_t trapezoid) {
+  const std::uint32_t number = find(row);
+  if (number == kNone || !features_[number].is_in_a_pair) return;
+  features_[number].box.include(box_around(trapezoid));
+}
+
+bool FeatureStack::settle() {
+  bool is_any_cut = false;
+  by_row_.clear();
+  for (std::uint32_t number = 0; number < count_; ++number) {
+    by_row_.push_back(number);
+    Feature& feature = features_[number];
+    if (!options_.cuts_whole_features) {
+      std::erase_if(feature.covers, [&](std::uint32_t cover) {
+        return !feature.box.intersects(features_[cover].box);
+      });
+    }
+    if (feature.covers.empty()) continue;
+    is_any_cut = true;
+    for (const std::uint32_t cover : feature.covers) features_[cover].is_over_others = true;
     std::ranges::sort(feature.covers, {}, [this](std::uint32_t cover) {
       return std::pair(features_[cover].box.min_y, features_[cover].row);
     });
   }
-  by_row_.clear();
-  for (std::uint32_t number = 0; number < count_; ++number) by_row_.push_back(number);
   std::ranges::sort(by_row_, {}, [this](std::uint32_t number) { return features_[number].row; });
   return is_any_cut;
 }

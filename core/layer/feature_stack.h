@@ -15,8 +15,9 @@
 
 namespace trapeze {
 
-/// Use for one picture: note() every trapezoid that is seen, settle(), add() them again, resolve().
-/// Holds working memory for reuse; one thread at a time.
+/// Use for one picture: note() the feature of every trapezoid that is seen, find_covers(), and if
+/// there are any, note_place() of every trapezoid, settle(), add() them again, resolve(). Holds
+/// working memory for reuse; one thread at a time.
 class FeatureStack {
  public:
   /// How a feature is painted.
@@ -44,13 +45,19 @@ class FeatureStack {
   /// other, as there their areas together are more than what they cover.
   void begin(const OverlapTable& overlaps, const MeshView& mesh, const Options& options);
 
-  /// Takes notice of a trapezoid of a feature; paint_of(row) is called once for each feature.
+  /// Takes notice of a feature, as often as one likes; paint_of(row) is called once for each.
   template <typename PaintOf>
-  void note(std::uint32_t row, std::uint32_t trapezoid, const PaintOf& paint_of);
+  void note(std::uint32_t row, const PaintOf& paint_of);
 
-  /// Finds out which features lie over which: whether there are any. A feature lies over those of
-  /// lower rows, unless only the other is raised. Throws Cancelled.
-  bool settle(const Cancellation* cancellation);
+  /// Finds out which of the features lie over which, somewhere: whether there are any. A feature
+  /// lies over those of lower rows, unless only the other is raised. Throws Cancelled.
+  bool find_covers(const Cancellation* cancellation);
+
+  /// After find_covers(): where a trapezoid of a feature is.
+  void note_place(std::uint32_t row, std::uint32_t trapezoid);
+
+  /// Finds out which features lie over which where they are seen: whether there are any.
+  bool settle();
 
   /// After settle(): whether something lies over a feature.
   bool is_cut(std::uint32_t row) const;
@@ -68,7 +75,8 @@ class FeatureStack {
   struct Feature {
     std::uint32_t row = 0;
     Paint paint;
-    Box box;  // of what is seen of it
+    Box box;                    // of what is seen of it
+    bool is_in_a_pair = false;  // it lies over another one, or another one over it
     bool is_over_others = false;
     std::vector<std::uint32_t> covers;      // numbers of the features over it, by the tops of boxes
     std::vector<std::uint32_t> trapezoids;  // all of them, if it lies over others
@@ -102,6 +110,7 @@ class FeatureStack {
   std::deque<Feature> features_;  // the first count_
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> slots_;  // numbers of features by row, open addressing
+  std::uint32_t last_noted_ = kNone;
   mutable std::uint32_t last_row_ = kNone;
   mutable std::uint32_t last_ = kNone;
   std::vector<std::uint32_t> by_row_;  // numbers of features in order of rows
@@ -110,14 +119,10 @@ class FeatureStack {
 };
 
 template <typename PaintOf>
-void FeatureStack::note(std::uint32_t row, std::uint32_t trapezoid, const PaintOf& paint_of) {
-  if (row != last_row_ && !can_matter(row)) return;
-  std::uint32_t number = find(row);
-  if (number == kNone) {
-    number = insert(row);
-    features_[number].paint = paint_of(row);
-  }
-  features_[number].box.include(box_around(trapezoid));
+void FeatureStack::note(std::uint32_t row, const PaintOf& paint_of) {
+  if (row == last_noted_) return;
+  last_noted_ = row;
+  if (can_matter(row) && find(row) == kNone) features_[insert(row)].paint = paint_of(row);
 }
 
 template <typename Parts>

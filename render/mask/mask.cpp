@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -111,46 +112,85 @@ bool is_all_zero(const Element* differences) {
   return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
 }
 
+/// Goes along a row of differences, and sets them to 0.
+template <class Element>
+class RowSum {
+ public:
+  explicit RowSum(Element whole) : values_per_unit_(255.0f / static_cast<float>(whole)) {}
+
+  /// Takes so many of them.
+  void take(Element* differences, std::size_t count, std::uint8_t* values) {
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) take_four(differences + i, values + i);
+    if (i < count) take_rest(differences + i, count - i, values + i);
+    if (count > 0) last_ = values[count - 1];
+  }
+  /// Takes so many that are all 0.
+  void pass(std::size_t count, std::uint8_t* values) const { std::memset(values, last_, count); }
+
+ private:
+  void take_four(Element* from, std::uint8_t* to) {
+    FourOf<Element> sums;
+    std::memcpy(&sums, from, sizeof sums);
+    sums = before_ + sums_of<Element>(sums);
+    before_ = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
+    put_values(__builtin_convertvector(sums, FourOf<float>) * values_per_unit_, to);
+    std::memset(from, 0, sizeof sums);
+  }
+  void take_rest(Element* from, std::size_t count, std::uint8_t* to) {
+    std::array<Element, 4> rest{};
+    std::array<std::uint8_t, 4> values;
+    std::copy_n(from, count, rest.data());
+    take_four(rest.data(), values.data());
+    std::copy_n(values.data(), count, to);
+    std::fill_n(from, count, Element{0});
+  }
+
+  float values_per_unit_;
+  FourOf<Element> before_{};
+  std::uint8_t last_ = 0;
+};
+
 // Differences are 0 except at the boundaries of polygons: blocks of zeros repeat the last value.
 template <class Element>
 void resolve_row_by(Element whole, std::span<Element> differences, std::uint8_t* values) {
-  const float values_per_unit = 255.0f / static_cast<float>(whole);
-  FourOf<Element> before{};
-  std::uint8_t value_before = 0;
-  const auto take_four = [&](Element* from, std::uint8_t* to) {
-    FourOf<Element> sums;
-    std::memcpy(&sums, from, sizeof sums);
-    sums = before + sums_of<Element>(sums);
-    before = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
-    put_values(__builtin_convertvector(sums, FourOf<float>) * values_per_unit, to);
-    std::memset(from, 0, sizeof sums);
-  };
+  RowSum<Element> sum(whole);
   std::size_t i = 0;
   for (; i + kBlock <= differences.size(); i += kBlock) {
     Element* begin = differences.data() + i;
     if (is_all_zero(begin)) {
-      std::memset(values + i, value_before, kBlock);
-      continue;
+      sum.pass(kBlock, values + i);
+    } else {
+      sum.take(begin, kBlock, values + i);
     }
-    take_four(begin, values + i);
-    take_four(begin + 4, values + i + 4);
-    value_before = values[i + kBlock - 1];
   }
-  for (; i < differences.size(); i += 4) {
-    const std::size_t count = std::min<std::size_t>(4, differences.size() - i);
-    std::array<Element, 4> rest{};
-    std::array<std::uint8_t, 4> values_of_rest;
-    std::copy_n(differences.data() + i, count, rest.data());
-    take_four(rest.data(), values_of_rest.data());
-    std::copy_n(values_of_rest.data(), count, values + i);
-    std::fill_n(differences.data() + i, count, Element{0});
-  }
+  sum.take(differences.data() + i, differences.size() - i, values + i);
 }
 
 }  // namespace
 
 void resolve_row(std::span<float> differences, std::uint8_t* values) {
   resolve_row_by(1.0f, differences, values);
+}
+
+void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift,
+                 std::uint8_t* values) {
+  RowSum<float> sum(1.0f);
+  std::size_t i = 0;
+  const auto column_of = [&](int bit) {
+    return std::min(static_cast<std::size_t>(bit) << shift, differences.size());
+  };
+  while (touched != 0) {
+    const int first = std::countr_zero(touched);
+    const int count = std::countr_one(touched >> first);
+    const std::size_t begin = column_of(first);
+    const std::size_t end = column_of(first + count);
+    sum.pass(begin - i, values + i);
+    sum.take(differences.data() + begin, end - begin, values + begin);
+    i = end;
+    touched = first + count < 64 ? touched >> (first + count) << (first + count) : 0;
+  }
+  sum.pass(differences.size() - i, values + i);
 }
 
 void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* values) {

@@ -80,8 +80,12 @@ class Mask {
 /// covered of each pixel, 1 being a whole pixel; it is clamped and rounded once. `values` has room
 /// for as many values as there are differences. Sets the differences to 0.
 void resolve_row(std::span<float> differences, std::uint8_t* values);
-/// The same for integer differences, `whole` being a whole pixel. Precondition: every running sum
-/// fits into 32 bits.
+/// The same where it is known in which blocks of columns there are differences other than 0: bit b
+/// of `touched` stands for the columns from b << shift on. Precondition: shift >= 3.
+void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift,
+                 std::uint8_t* values);
+/// The same as the first for integer differences, `whole` being a whole pixel. Precondition: every
+/// running sum fits into 32 bits.
 void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* values);
 
 /// Some trapezoids of one mesh; a view of the caller's memory. The ranges lie within the mesh.

@@ -32,6 +32,10 @@ Block zeros() {
   return _mm_setzero_si128();
 }
 
+Block all_set() {
+  return _mm_set1_epi8(-1);
+}
+
 std::uint64_t different(Block a, Block b) {
   return static_cast<std::uint16_t>(~_mm_movemask_epi8(_mm_cmpeq_epi8(a, b)));
 }
@@ -56,6 +60,10 @@ Block before_first(Block block, std::uint8_t first) {
 
 Block zeros() {
   return {0, 0};
+}
+
+Block all_set() {
+  return {~std::uint64_t{0}, ~std::uint64_t{0}};
 }
 
 /// A bit for each byte that is not 0.
@@ -113,6 +121,17 @@ bool mark_covered(std::span<const std::uint8_t> values, std::span<std::uint64_t>
       0, values.size(), bits,
       [row](std::size_t i) { return different(block_at(row + i), zeros()); },
       [row](std::size_t i) { return row[i] != 0; });
+}
+
+bool mark_partial(std::span<const std::uint8_t> values, std::span<std::uint64_t> bits) {
+  const std::uint8_t* const row = values.data();
+  return mark_blocks(
+      0, values.size(), bits,
+      [row](std::size_t i) {
+        const Block block = block_at(row + i);
+        return different(block, zeros()) & different(block, all_set());
+      },
+      [row](std::size_t i) { return row[i] != 0 && row[i] != 255; });
 }
 
 }  // namespace trapeze

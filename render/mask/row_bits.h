@@ -19,4 +19,7 @@ bool mark_changes(std::span<const std::uint8_t> values, std::span<std::uint64_t>
 /// The same, of the pixels whose value is not 0.
 bool mark_covered(std::span<const std::uint8_t> values, std::span<std::uint64_t> bits);
 
+/// The same, of the pixels that are covered in part: whose value is neither 0 nor 255.
+bool mark_partial(std::span<const std::uint8_t> values, std::span<std::uint64_t> bits);
+
 }  // namespace trapeze

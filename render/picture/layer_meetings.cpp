@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/mask/row_bits.h"
+
 namespace trapeze {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr int kAll = 255;
 // Layers that fill a pixel together by chance are hardly ever as alike around it.
 constexpr double kLeastOfNested = 0.5;
 
-// So many pixels at once, by the vector extensions of g++ and clang: few of them are contested.
+// So many pixels at once, by the vector extensions of g++ and clang.
 constexpr std::size_t kBlock = 16;
 using Bytes __attribute__((vector_size(kBlock))) = std::uint8_t;
 
@@ -20,21 +22,6 @@ Bytes bytes_at(const std::uint8_t* values) {
   Bytes bytes;
   std::memcpy(&bytes, values, kBlock);
   return bytes;
-}
-
-/// Calls visit(i) for every byte that is set, in order, of bytes all or none of whose bits are.
-template <typename Visit>
-void for_each_set(Bytes bytes, const Visit& visit) {
-  static_assert(std::endian::native == std::endian::little);
-  std::uint64_t halves[2];
-  std::memcpy(halves, &bytes, kBlock);
-  for (std::size_t half = 0; half < 2; ++half) {
-    for (std::uint64_t left = halves[half]; left != 0;) {
-      const auto bit = static_cast<std::size_t>(std::countr_zero(left));
-      visit(8 * half + bit / 8);
-      left &= ~(std::uint64_t{kAll} << bit);
-    }
-  }
 }
 
 /// Adds values to sums, as far as there is room in them.
@@ -50,10 +37,6 @@ void add(std::span<const std::uint8_t> values, std::span<std::uint8_t> sums) {
   for (; i < sums.size(); ++i) {
     sums[i] = static_cast<std::uint8_t>(std::min(sums[i] + values[i], kAll));
   }
-}
-
-bool is_partial(std::uint8_t value) {
-  return value != 0 && value != kAll;
 }
 
 // In as few steps as differences can be seen in, so that few colours come of it.
@@ -105,8 +88,12 @@ void LayerMeetings::find(std::span<PaintedLayer> layers, std::span<const double>
       layers[k].meetings = meetings;
     }
     if (k + 1 == layers.size()) return;
+    if (below.empty() && above.data() != sum_.data()) {
+      below = above;
+      continue;
+    }
     if (below.empty()) {
-      union_.assign(above.begin(), above.end());
+      union_.swap(sum_);
     } else {
       add_to_union(below, above, meetings);
     }
@@ -128,20 +115,19 @@ LayerMeetings::Values LayerMeetings::cover_of(const PaintedLayer& layer) {
   return sum_;
 }
 
+// In few places both have a part of a pixel: one is looked at only where the other one has.
 void LayerMeetings::find_contested(Values below, Values above) {
   contested_.clear();
-  std::size_t i = 0;
-  for (; i + kBlock <= pixels_; i += kBlock) {
-    // Values from 1 to 254 become 0 to 253.
-    const Bytes a = bytes_at(below.data() + i) - 1;
-    const Bytes b = bytes_at(above.data() + i) - 1;
-    const auto are_partial = reinterpret_cast<Bytes>((a < kAll - 1) & (b < kAll - 1));
-    for_each_set(are_partial,
-                 [&](std::size_t k) { contested_.push_back(static_cast<std::uint32_t>(i + k)); });
-  }
-  for (; i < pixels_; ++i) {
-    if (is_partial(below[i]) && is_partial(above[i])) {
-      contested_.push_back(static_cast<std::uint32_t>(i));
+  partial_.assign(words_for(pixels_), 0);
+  if (!mark_partial(above, partial_)) return;
+  for (std::size_t word = 0; word < partial_.size(); ++word) {
+    if (partial_[word] == 0) continue;
+    const std::size_t first = word * 64;
+    std::uint64_t both = 0;
+    mark_partial(below.subspan(first, std::min<std::size_t>(64, pixels_ - first)), {&both, 1});
+    for (both &= partial_[word]; both != 0; both &= both - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(both));
+      contested_.push_back(static_cast<std::uint32_t>(first + bit));
     }
   }
 }

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "render/picture/compose.h"
+#include "render/picture/painted_layer.h"
 
 namespace trapeze {
 
@@ -37,6 +37,7 @@ class LayerMeetings {
   int width_ = 0;
   int height_ = 0;
   std::size_t pixels_ = 0;
+  std::vector<std::uint64_t> partial_;  // a bit for each pixel
   std::vector<std::uint32_t> contested_;
   std::vector<std::uint8_t> sum_;    // of the classes of a layer
   std::vector<std::uint8_t> union_;  // of the layers so far, where it is not that of a mask

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/picture/number_table.h"
+#include "render/picture/colour_numbers.h"
 
 namespace trapeze {
 
@@ -34,7 +34,7 @@ Picture to_pixels(const RunPicture& picture) {
 
 RunPicture to_runs(const Picture& picture) {
   RunPicture made{picture.width, picture.height, {}, {}, {}, {}};
-  NumberTable<ColourKey> numbers;
+  ColourNumbers numbers;
   const Rgba* pixel = picture.pixels.data();
   for (int row = 0; row < picture.height; ++row) {
     for (std::uint32_t column = 0; column < static_cast<std::uint32_t>(picture.width);) {
@@ -44,40 +44,50 @@ RunPicture to_runs(const Picture& picture) {
         ++column;
         ++pixel;
       }
-      std::uint32_t& number = numbers[ColourKey(colour)];
-      if (number == NumberTable<ColourKey>::kNone) {
-        number = static_cast<std::uint32_t>(made.colours.size());
-        made.colours.push_back(colour);
-      }
-      if (column > begin) made.runs.push_back({column, number});
+      if (column > begin) made.runs.push_back({column, numbers.number_of(colour, Origin::flat)});
     }
     made.row_end.push_back(static_cast<std::uint32_t>(made.runs.size()));
   }
-  made.origins.resize(made.colours.size());
+  made.colours = numbers.colours();
+  made.origins = numbers.origins();
   return made;
+}
+
+void recolour(std::span<const Run> runs, std::span<const std::uint32_t> row_end,
+              std::span<const std::uint32_t> becomes, RunPicture& picture) {
+  picture.runs.clear();
+  picture.row_end.clear();
+  std::size_t i = 0;
+  for (const std::uint32_t end : row_end) {
+    const std::size_t first = picture.runs.size();
+    for (; i < end; ++i) {
+      const Run run{runs[i].end, becomes[runs[i].colour]};
+      if (picture.runs.size() > first && picture.runs.back().colour == run.colour) {
+        picture.runs.back().end = run.end;
+      } else {
+        picture.runs.push_back(run);
+      }
+    }
+    picture.row_end.push_back(static_cast<std::uint32_t>(picture.runs.size()));
+  }
 }
 
 RunPicture joined(std::span<const RunPicture* const> pictures) {
   RunPicture all;
   all.width = pictures.front()->width;
-  NumberTable<ColourKey> numbers;
+  ColourNumbers numbers;
   for (const RunPicture* picture : pictures) {
     std::vector<std::uint32_t> becomes;
     for (std::size_t i = 0; i < picture->colours.size(); ++i) {
-      std::uint32_t& number = numbers[ColourKey(picture->colours[i])];
-      if (number == NumberTable<ColourKey>::kNone) {
-        number = static_cast<std::uint32_t>(all.colours.size());
-        all.colours.push_back(picture->colours[i]);
-        all.origins.push_back(picture->origins[i]);
-      }
-      all.origins[number] = std::min(all.origins[number], picture->origins[i]);
-      becomes.push_back(number);
+      becomes.push_back(numbers.number_of(picture->colours[i], picture->origins[i]));
     }
     const auto before = static_cast<std::uint32_t>(all.runs.size());
     for (const Run& run : picture->runs) all.runs.push_back({run.end, becomes[run.colour]});
     for (const std::uint32_t end : picture->row_end) all.row_end.push_back(before + end);
     all.height += picture->height;
   }
+  all.colours = numbers.colours();
+  all.origins = numbers.origins();
   return all;
 }
 

@@ -62,6 +62,10 @@ struct RunPicture {
 Picture to_pixels(const RunPicture& picture);
 /// Every colour of it is flat.
 RunPicture to_runs(const Picture& picture);
+/// Sets the runs of the picture to those, in other colours: `becomes` has the new number of each.
+/// Neighbours that become equal are joined.
+void recolour(std::span<const Run> runs, std::span<const std::uint32_t> row_end,
+              std::span<const std::uint32_t> becomes, RunPicture& picture);
 /// Pictures of one width, one below the other. There is at least one.
 RunPicture joined(std::span<const RunPicture* const> pictures);
 

@@ -6,8 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "render/picture/number_table.h"
-
 namespace trapeze {
 namespace {
 
@@ -17,15 +15,16 @@ constexpr std::uint32_t kNone = 0xffffffff;
 /// those close to them, so that what is as opaque everywhere remains so.
 class Lattice {
  public:
-  Lattice(const RunPicture& picture, int most_change) : step_(2 * most_change + 1) {
+  Lattice(std::span<const Rgba> colours, std::span<const Origin> origins, int most_change)
+      : step_(2 * most_change + 1) {
     // What is opaque remains so, and nothing else becomes so.
     for (int a = 0; a < 255; ++a)
       opacities_[static_cast<std::size_t>(a)] = std::min(middle(a), 254);
     opacities_[255] = 255;
     std::array<int, 256> distances;
     distances.fill(most_change + 1);
-    for (std::size_t i = 0; i < picture.colours.size(); ++i) {
-      if (picture.origins[i] == Origin::flat) attract(picture.colours[i].a, distances);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+      if (origins[i] == Origin::flat) attract(colours[i].a, distances);
     }
   }
 
@@ -122,102 +121,93 @@ class ColourReducer::Box {
   int most_side_;
 };
 
-/// The new colours while they are found, each once.
-class ColourReducer::NewColours {
- public:
-  explicit NewColours(ColourReducer& reducer) : reducer_(reducer) {
-    reducer_.colours_.clear();
-    reducer_.new_channels_.clear();
+std::uint64_t ColourReducer::reduce(std::span<const Rgba> colours, std::span<const Origin> origins,
+                                    std::span<const std::uint32_t> pixels, int most_change) {
+  const Given given{colours, origins, pixels};
+  channels_.clear();
+  for (const Rgba colour : colours) channels_.push_back(channels_of(colour));
+  put_into_lattice(given, most_change);
+  if (made_.size() > kPaletteColours && most_change > 0 && may_be_gathered(given) &&
+      !gather(given, most_change)) {
+    put_into_lattice(given, most_change);
   }
-
-  std::uint32_t number_of(Rgba colour) {
-    std::uint32_t& number = numbers_[ColourKey(colour)];
-    if (number == NumberTable<ColourKey>::kNone) {
-      number = static_cast<std::uint32_t>(reducer_.colours_.size());
-      reducer_.colours_.push_back(colour);
-      reducer_.new_channels_.push_back(channels_of(colour));
-    }
-    return number;
-  }
-
- private:
-  ColourReducer& reducer_;
-  NumberTable<ColourKey> numbers_;
-};
-
-std::uint64_t ColourReducer::reduce(RunPicture& picture, int most_change) {
-  count_pixels(picture);
-  put_into_lattice(picture, most_change);
-  if (colours_.size() > kPaletteColours && most_change > 0 && may_be_gathered(picture) &&
-      !gather(picture, most_change)) {
-    put_into_lattice(picture, most_change);
-  }
-  apply(picture);
-  return change();
+  return change(given);
 }
 
-void ColourReducer::count_pixels(const RunPicture& picture) {
-  channels_.clear();
-  for (const Rgba colour : picture.colours) channels_.push_back(channels_of(colour));
-  pixels_.assign(picture.colours.size(), 0);
+void ColourReducer::reduce(RunPicture& picture) {
+  std::vector<std::uint32_t> pixels(picture.colours.size(), 0);
   std::uint32_t begin = 0;
   for (const Run& run : picture.runs) {
-    pixels_[run.colour] += run.end - begin;
+    pixels[run.colour] += run.end - begin;
     begin = run.end == static_cast<std::uint32_t>(picture.width) ? 0 : run.end;
   }
+  reduce_within(most_change_of(picture.pixel_count()), [&](int change) {
+    return reduce(picture.colours, picture.origins, pixels, change);
+  });
+  const RunPicture before = std::move(picture);
+  picture = {before.width, before.height, colours(), origins(), {}, {}};
+  recolour(before.runs, before.row_end, becomes_, picture);
 }
 
-void ColourReducer::keep_all_but_mixed(const RunPicture& picture, NewColours& made) {
-  becomes_.assign(picture.colours.size(), kNone);
+// All but mixed colours remain.
+void ColourReducer::begin(const Given& given) {
+  made_.clear();
+  new_channels_.clear();
+  becomes_.assign(given.colours.size(), kNone);
   for (std::size_t i = 0; i < becomes_.size(); ++i) {
-    if (pixels_[i] == 0 || picture.origins[i] == Origin::mixed) continue;
-    becomes_[i] = made.number_of(picture.colours[i]);
+    if (given.pixels[i] == 0 || given.origins[i] == Origin::mixed) continue;
+    becomes_[i] = make(given.colours[i], given.origins[i]);
   }
 }
 
-void ColourReducer::put_into_lattice(const RunPicture& picture, int most_change) {
-  NewColours made(*this);
-  keep_all_but_mixed(picture, made);
-  const Lattice lattice(picture, most_change);
+std::uint32_t ColourReducer::make(Rgba colour, Origin origin) {
+  const std::uint32_t number = made_.number_of(colour, origin);
+  if (number == new_channels_.size()) new_channels_.push_back(channels_of(colour));
+  return number;
+}
+
+void ColourReducer::put_into_lattice(const Given& given, int most_change) {
+  begin(given);
+  const Lattice lattice(given.colours, given.origins, most_change);
   for (std::size_t i = 0; i < becomes_.size(); ++i) {
-    if (pixels_[i] == 0 || becomes_[i] != kNone) continue;
-    becomes_[i] = made.number_of(most_change == 0 ? picture.colours[i]
-                                                  : straight(lattice.middle_of(channels_[i])));
+    if (given.pixels[i] == 0 || becomes_[i] != kNone) continue;
+    const Rgba colour =
+        most_change == 0 ? given.colours[i] : straight(lattice.middle_of(channels_[i]));
+    becomes_[i] = make(colour, Origin::mixed);
   }
 }
 
 /// Boxes around colours take about half as many as the cells of the lattice.
-bool ColourReducer::may_be_gathered(const RunPicture& picture) const {
+bool ColourReducer::may_be_gathered(const Given& given) const {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    kept += pixels_[i] > 0 && picture.origins[i] != Origin::mixed ? 1 : 0;
+  for (std::size_t i = 0; i < given.pixels.size(); ++i) {
+    kept += given.pixels[i] > 0 && given.origins[i] != Origin::mixed ? 1 : 0;
   }
-  return kept + (colours_.size() - std::min(kept, colours_.size())) / 2 <= kPaletteColours;
+  return kept + (made_.size() - std::min(kept, made_.size())) / 2 <= kPaletteColours;
 }
 
 // Boxes are begun with the colour that most pixels have among those that are left. False if there
 // are too many.
-bool ColourReducer::gather(const RunPicture& picture, int most_change) {
-  NewColours made(*this);
-  keep_all_but_mixed(picture, made);
-  if (colours_.size() > kPaletteColours) return false;
+bool ColourReducer::gather(const Given& given, int most_change) {
+  begin(given);
+  if (made_.size() > kPaletteColours) return false;
   Neighbourhood kept;
   for (const Channels& channels : new_channels_) kept.add(channels);
   std::vector<std::uint32_t> left;
-  for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
-    if (pixels_[i] == 0 || becomes_[i] != kNone) continue;
+  for (std::uint32_t i = 0; i < given.pixels.size(); ++i) {
+    if (given.pixels[i] == 0 || becomes_[i] != kNone) continue;
     becomes_[i] = nearest(kept, channels_[i], most_change);
     if (becomes_[i] == kNone) left.push_back(i);
   }
   std::ranges::sort(left, {}, [&](std::uint32_t i) {
-    return std::tuple(~pixels_[i], ColourKey(picture.colours[i]).bits);
+    return std::tuple(~given.pixels[i], bits_of(given.colours[i]));
   });
   Neighbourhood others;
   for (const std::uint32_t i : left) others.add(channels_[i]);
   std::vector<std::uint32_t> near;
   for (std::uint32_t first = 0; first < left.size(); ++first) {
     if (becomes_[left[first]] != kNone) continue;
-    if (colours_.size() >= kPaletteColours) return false;
+    if (made_.size() >= kPaletteColours) return false;
     near.clear();
     others.for_each_near(channels_[left[first]], [&](std::uint32_t k) {
       if (k > first && becomes_[left[k]] == kNone) near.push_back(k);
@@ -225,7 +215,7 @@ bool ColourReducer::gather(const RunPicture& picture, int most_change) {
     std::ranges::sort(near);
     Box box(channels_[left[first]], 2 * most_change);
     std::erase_if(near, [&](std::uint32_t k) { return !box.take(channels_[left[k]]); });
-    const std::uint32_t colour = made.number_of(straight(box.middle()));
+    const std::uint32_t colour = make(straight(box.middle()), Origin::mixed);
     becomes_[left[first]] = colour;
     for (const std::uint32_t k : near) becomes_[left[k]] = colour;
   }
@@ -248,39 +238,14 @@ std::uint32_t ColourReducer::nearest(const Neighbourhood& kept, const Channels& 
   return nearest;
 }
 
-std::uint64_t ColourReducer::change() const {
+std::uint64_t ColourReducer::change(const Given& given) const {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < becomes_.size(); ++i) {
-    if (pixels_[i] == 0) continue;
+    if (given.pixels[i] == 0) continue;
     const Difference change = difference(new_channels_[becomes_[i]], channels_[i]);
-    sum += std::uint64_t{pixels_[i]} * static_cast<std::uint64_t>(change.sum);
+    sum += std::uint64_t{given.pixels[i]} * static_cast<std::uint64_t>(change.sum);
   }
   return sum;
-}
-
-void ColourReducer::apply(RunPicture& picture) const {
-  std::size_t kept = 0;
-  std::size_t i = 0;
-  for (std::uint32_t& row_end : picture.row_end) {
-    const std::size_t first = kept;
-    for (; i < row_end; ++i) {
-      const Run run{picture.runs[i].end, becomes_[picture.runs[i].colour]};
-      if (kept > first && picture.runs[kept - 1].colour == run.colour) {
-        picture.runs[kept - 1].end = run.end;
-      } else {
-        picture.runs[kept++] = run;
-      }
-    }
-    row_end = static_cast<std::uint32_t>(kept);
-  }
-  picture.runs.resize(kept);
-  picture.colours = colours_;
-  std::vector<Origin> origins(colours_.size(), Origin::mixed);
-  for (std::size_t k = 0; k < becomes_.size(); ++k) {
-    if (pixels_[k] == 0) continue;
-    origins[becomes_[k]] = std::min(origins[becomes_[k]], picture.origins[k]);
-  }
-  picture.origins = std::move(origins);
 }
 
 }  // namespace trapeze

@@ -1,12 +1,15 @@
 // Fewer colours, at a loss that nobody can see, so that a palette holds them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/grid/name_table.h"
 #include "render/picture/channels.h"
+#include "render/picture/colour_numbers.h"
 #include "render/picture/picture.h"
 
 namespace trapeze {
@@ -26,6 +29,25 @@ inline constexpr NameTable<Quality, 2> kQualityNames({
 constexpr int kMostChange = 4;
 constexpr double kMostMeanChange = 0.5;
 
+/// Of all channels of so many pixels together.
+constexpr double most_change_of(std::size_t pixels) {
+  return 4 * kMostMeanChange * static_cast<double>(pixels);
+}
+
+/// Calls reduce(change), which returns the sum of the changes of all channels of all pixels, with
+/// kMostChange first and then with less, until that sum is at most `most`. The last change.
+/// Precondition: reduce(0) returns 0.
+template <typename Reduce>
+int reduce_within(double most, const Reduce& reduce) {
+  int change = kMostChange;
+  while (true) {
+    const double sum = static_cast<double>(reduce(change));
+    if (sum <= most) return change;
+    // The mean grows with the most.
+    change = std::min(change - 1, static_cast<int>(change * most / sum));
+  }
+}
+
 /// Lets colours of mixed origin that are close to each other become one, none by more than
 /// kMostChange: each becomes the middle of its cell in a lattice, and so the same in neighbouring
 /// tiles. Where more than kPaletteColours are left by that, it becomes another colour of the
@@ -34,29 +56,44 @@ constexpr double kMostMeanChange = 0.5;
 /// Thread-safety: one thread at a time.
 class ColourReducer {
  public:
-  /// `most_change` is from 0 to kMostChange. What is opaque remains so, runs that become equal are
-  /// joined, and colours that no pixel has are left out. The sum of the changes of all channels of
-  /// all pixels.
-  std::uint64_t reduce(RunPicture& picture, int most_change);
+  /// Of colours, how they came about, and how many pixels have each: those that none has are left
+  /// out. `most_change` is from 0 to kMostChange. The sum of the changes of all channels of all
+  /// pixels.
+  std::uint64_t reduce(std::span<const Rgba> colours, std::span<const Origin> origins,
+                       std::span<const std::uint32_t> pixels, int most_change);
+
+  /// What was found last: the new colours, and by old colour the index of its new one, which is
+  /// unspecified if no pixel has it.
+  const std::vector<Rgba>& colours() const { return made_.colours(); }
+  const std::vector<Origin>& origins() const { return made_.origins(); }
+  std::span<const std::uint32_t> becomes() const { return becomes_; }
+
+  /// Of an exact picture, as far as kMostChange and kMostMeanChange allow. Runs that become equal
+  /// are joined.
+  void reduce(RunPicture& picture);
 
  private:
   class Box;
   class Neighbourhood;
-  class NewColours;
 
-  void count_pixels(const RunPicture& picture);
-  void keep_all_but_mixed(const RunPicture& picture, NewColours& made);
-  void put_into_lattice(const RunPicture& picture, int most_change);
-  bool may_be_gathered(const RunPicture& picture) const;
-  bool gather(const RunPicture& picture, int most_change);
+  // Of the picture at hand, by colour.
+  struct Given {
+    std::span<const Rgba> colours;
+    std::span<const Origin> origins;
+    std::span<const std::uint32_t> pixels;
+  };
+
+  void begin(const Given& given);
+  void put_into_lattice(const Given& given, int most_change);
+  bool may_be_gathered(const Given& given) const;
+  bool gather(const Given& given, int most_change);
+  std::uint32_t make(Rgba colour, Origin origin);
   std::uint32_t nearest(const Neighbourhood& kept, const Channels& channels, int most_change) const;
-  std::uint64_t change() const;
-  void apply(RunPicture& picture) const;
+  std::uint64_t change(const Given& given) const;
 
   std::vector<Channels> channels_;      // by colour
-  std::vector<std::uint32_t> pixels_;   // by colour: how many have it
   std::vector<std::uint32_t> becomes_;  // by colour: index of a new one
-  std::vector<Rgba> colours_;           // the new ones
+  ColourNumbers made_;                  // the new ones
   std::vector<Channels> new_channels_;  // of the new ones
 };
 

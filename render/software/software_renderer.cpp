@@ -92,7 +92,9 @@ void SoftwareRenderer::prepare(const View& view) {
   width_ = height_ = 0;  // what there is no memory for is prepared anew the next time
   stride_ = static_cast<std::size_t>(view.width) + 2;
   differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0.0f);
-  touched_.assign(static_cast<std::size_t>(view.height), Touched{view.width, -1});
+  touched_.assign(static_cast<std::size_t>(view.height), 0);
+  touched_shift_ = 3;
+  while ((stride_ - 1) >> touched_shift_ >= 64) ++touched_shift_;
   width_ = view.width;
   height_ = view.height;
 }
@@ -184,9 +186,10 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign
   const double high = std::max(piece.x_from, piece.x_to);
   const int first = truncate(low);
   const int last = truncate(high);
-  Touched& touched = touched_[static_cast<std::size_t>(row)];
-  touched.first = std::min(touched.first, first);
-  touched.last = std::max(touched.last, last);
+  // The column after the last one is written too.
+  const std::uint64_t from_first = ~std::uint64_t{0} << (first >> touched_shift_);
+  const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - ((last + 1) >> touched_shift_));
+  touched_[static_cast<std::size_t>(row)] |= from_first & to_last;
   float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
 
   const auto add_to = [cells, sign](int column, double part, double middle) {
@@ -239,17 +242,13 @@ void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
 // Sums the rows and clears the differences for the next picture.
 void SoftwareRenderer::resolve(Mask& out) {
   for (int row = 0; row < height_; ++row) {
-    Touched& touched = touched_[static_cast<std::size_t>(row)];
-    std::uint8_t* values = out.row_begin(row);
-    std::memset(values, 0, static_cast<std::size_t>(width_));
-    if (touched.first > touched.last) continue;
-    // Beyond the column after the last touched one all edges are passed and nothing is covered.
-    const int end = std::min(touched.last + 2, width_);
-    float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
-    if (touched.first < end)
-      resolve_row({cells + touched.first, cells + end}, values + touched.first);
-    std::fill(cells + std::max(end, touched.first), cells + touched.last + 2, 0.0f);
-    touched = {width_, -1};
+    const auto i = static_cast<std::size_t>(row);
+    const auto width = static_cast<std::size_t>(width_);
+    float* cells = differences_.data() + i * stride_;
+    resolve_row({cells, width}, touched_[i], touched_shift_, out.row_begin(row));
+    // On the east border and beyond nothing is to be seen.
+    cells[width] = cells[width + 1] = 0;
+    touched_[i] = 0;
   }
 }
 

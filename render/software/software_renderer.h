@@ -31,12 +31,6 @@ class SoftwareRenderer final : public MaskRenderer {
   struct Piece;
   struct RowPiece;
 
-  // The range of columns written in a row; first > last if none.
-  struct Touched {
-    int first;
-    int last;
-  };
-
   void draw(const MaskTask& task, DrawTimes& times);
   void prepare(const View& view);
   /// False if it ended early because the mask is not wanted any longer.
@@ -55,7 +49,9 @@ class SoftwareRenderer final : public MaskRenderer {
   // Differences along each row, see above; all zero between two draws. Each row has two columns
   // more than the picture, for what falls on or to the right of its east border.
   std::vector<float> differences_;
-  std::vector<Touched> touched_;
+  // By row, the blocks of columns that have been written: bit b for those from b << shift on.
+  std::vector<std::uint64_t> touched_;
+  unsigned touched_shift_ = 0;
 };
 
 }  // namespace trapeze

@@ -246,13 +246,17 @@ bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Select
                                number == style().classing.class_of_highlighted()};
   };
   CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
-  for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
-    check();
-    const std::uint32_t row = layer_->feature_of(i);
-    if (row == Layer::kNoFeature || number_of(classes, row) == kNotDrawn) return;
-    tools.stack.note(row, i, paint_of);
-  });
-  return tools.stack.settle(tools.cancellation);
+  const auto for_each_row = [&](const auto& visit) {
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      check();
+      const std::uint32_t row = layer_->feature_of(i);
+      if (row != Layer::kNoFeature && number_of(classes, row) != kNotDrawn) visit(row, i);
+    });
+  };
+  for_each_row([&](std::uint32_t row, std::uint32_t) { tools.stack.note(row, paint_of); });
+  if (!tools.stack.find_covers(tools.cancellation)) return false;
+  for_each_row([&](std::uint32_t row, std::uint32_t i) { tools.stack.note_place(row, i); });
+  return tools.stack.settle();
 }
 
 // Where the layer's features lie over each other, each is drawn as far as it is seen.

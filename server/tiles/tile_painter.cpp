@@ -38,18 +38,6 @@ View band_of(const TilePlan& plan, int band) {
   return view;
 }
 
-/// Of an exact picture, within the bounds (see reduce_colours.h).
-void make_colours_fewer(RunPicture& picture) {
-  const double most = 4 * kMostMeanChange * static_cast<double>(picture.pixel_count());
-  ColourReducer reducer;
-  for (int change = kMostChange; change > 0; --change) {
-    RunPicture fewer = picture;
-    if (static_cast<double>(reducer.reduce(fewer, change)) > most) continue;
-    picture = std::move(fewer);
-    return;
-  }
-}
-
 /// Of a band to those of its tile.
 void add_times(const PaintTimes& more, PaintTimes& times) {
   times.select_ms += more.select_ms;
@@ -126,7 +114,7 @@ PaintedTile TilePainter::join(const TilePlan& plan, std::span<const PaintedBand>
   }
   const Stopwatch stopwatch(tile.times.encode_ms);
   picture_ = joined(pictures);
-  if (plan.quality == Quality::bounded) make_colours_fewer(picture_);
+  if (plan.quality == Quality::bounded) ColourReducer().reduce(picture_);
   const bool are_alike = std::ranges::all_of(
       bands, [&](const PaintedBand& band) { return band.hint == bands.front().hint; });
   if (picture_.colours.size() == 1 && are_alike) tile.hint = bands.front().hint;

@@ -53,9 +53,12 @@ class SeenAreas {
     FeatureStack stack;
     stack.begin(layer_->overlaps(), mesh, {narrowest_, cuts_whole_features_, is_plain_});
     for_each_trapezoid(ranges, [&](std::uint32_t i) {
-      stack.note(layer_->feature_of(i), i, [this](std::uint32_t row) { return paints_[row]; });
+      stack.note(layer_->feature_of(i), [this](std::uint32_t row) { return paints_[row]; });
     });
-    stack.settle(cancellation);
+    stack.find_covers(cancellation);
+    for_each_trapezoid(ranges,
+                       [&](std::uint32_t i) { stack.note_place(layer_->feature_of(i), i); });
+    stack.settle();
     cut_up_ = 0;
     for_each_trapezoid(ranges, [&](std::uint32_t i) {
       const std::uint32_t row = layer_->feature_of(i);

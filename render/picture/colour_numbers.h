@@ -1,0 +1,53 @@
+// Numbers of colours.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/picture/number_table.h"
+#include "render/picture/picture.h"
+
+namespace trapeze {
+
+inline std::uint32_t bits_of(Rgba colour) {
+  return std::bit_cast<std::uint32_t>(colour);
+}
+
+/// Colours, each once, in the order in which they were met.
+class ColourNumbers {
+ public:
+  void clear() {
+    numbers_.clear();
+    colours_.clear();
+    origins_.clear();
+  }
+
+  /// From 0 on. Of several origins a colour keeps the first of the enumeration.
+  std::uint32_t number_of(Rgba colour, Origin origin) {
+    const std::uint64_t bits = bits_of(colour);
+    std::uint32_t& number =
+        numbers_.find(hash_of({&bits, 1}), [&](std::uint32_t i) { return colours_[i] == colour; });
+    if (number == NumberTable::kNone) {
+      number = static_cast<std::uint32_t>(colours_.size());
+      colours_.push_back(colour);
+      origins_.push_back(origin);
+    }
+    origins_[number] = std::min(origins_[number], origin);
+    return number;
+  }
+
+  std::size_t size() const { return colours_.size(); }
+  // By number.
+  const std::vector<Rgba>& colours() const { return colours_; }
+  const std::vector<Origin>& origins() const { return origins_; }
+
+ private:
+  NumberTable numbers_;
+  std::vector<Rgba> colours_;
+  std::vector<Origin> origins_;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,99 @@
+// The colours that mixtures of masks show.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/picture/colour_numbers.h"
+#include "render/picture/mixtures.h"
+#include "render/picture/number_table.h"
+#include "render/picture/paint.h"
+#include "render/picture/reduce_colours.h"
+
+namespace trapeze {
+
+/// Colours the mixtures of one picture after the other. One thread at a time.
+class MixtureColours {
+ public:
+  /// Of a picture over that background. Both arguments are looked at until the next call.
+  void begin(const PictureParts& parts, const Mixtures& mixtures, Rgba background);
+
+  /// The sum of the changes of all channels of all pixels, if along edges they become at most so
+  /// far from the exact ones.
+  double change_along_edges(int most_change);
+  /// Chooses colours by that; all are exact if it is 0.
+  void colour(int most_change);
+
+  /// As they became last: each once, and the number of each mixture's.
+  const ColourNumbers& colours() const { return colours_; }
+  std::span<const std::uint32_t> numbers() const { return numbers_; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  // An edge is where one mask has a part of the pixel, or where two lie side by side and have all
+  // of it together. Whatever the others show, colours go in even steps from one side to the other.
+  struct Edge {
+    Paint from;
+    Paint to;
+    bool is_on_line = false;  // else colours between the two are others
+    float most_apart = 0;     // of both sides: the greatest difference of a channel, of 255
+    float sum_apart = 0;      // the sum of the differences
+    // For the change at hand:
+    std::uint32_t steps = 1;
+    float step = 1;                // the share of one
+    std::uint32_t first_step = 0;  // index of its colour in step_colours_
+
+    std::uint32_t nearest_step(std::uint8_t value) const { return (2 * value * steps + 255) / 510; }
+  };
+
+  // What is known of a mixture whatever the change.
+  struct Kind {
+    std::uint32_t edge = kNone;
+    std::uint8_t value = 0;  // of the mask whose edge it is
+    bool is_exact_known = false;
+    Origin origin = Origin::mixed;
+    Rgba exact;
+  };
+
+  Kind kind_of(std::size_t mixture);
+  bool is_edge_at_hand() const;
+  std::uint32_t edge_at_hand();
+  Edge make_edge();
+  bool is_on_line(const Edge& edge);
+  void set_steps(int most_change);
+  Rgba exact_colour(std::size_t mixture);
+  std::uint32_t colour_along(const Edge& edge, std::uint8_t value);
+
+  void take_values(std::size_t mixture);
+  std::array<std::uint8_t, 2> exchange_values(std::array<std::uint8_t, 2> values);
+  Paint mixture_with(std::array<std::uint8_t, 2> values);
+  Paint mixture_at_hand() const;
+  Paint with_layer(const PictureParts::Layer& layer, const Paint& below) const;
+  Paint of_layer(const PictureParts::Layer& layer) const;
+  Paint with_lines(const PictureParts::Layer& layer, Paint sum) const;
+  Paint laid_over(const PictureParts::Layer& layer, const Paint& above, const Paint& below) const;
+  Meeting meeting_of(const PictureParts::Layer& layer) const;
+  float share_of(std::uint32_t channel) const { return static_cast<float>(values_[channel]) / 255; }
+
+  const PictureParts* parts_ = nullptr;
+  const Mixtures* mixtures_ = nullptr;
+  Paint background_;
+  std::vector<Kind> kinds_;  // by mixture
+  std::vector<Edge> edges_;
+  std::vector<std::uint64_t> edge_words_;  // by edge: its key
+  NumberTable edge_numbers_;
+  std::vector<std::uint32_t> step_colours_;  // of all edges; kNone: not met yet
+  ColourNumbers colours_;
+  std::vector<std::uint32_t> numbers_;
+  // Of the mixture at hand.
+  std::vector<std::uint64_t> words_;
+  std::uint8_t* values_ = nullptr;      // in the words
+  std::vector<std::uint32_t> partial_;  // channels that have a part of the pixel
+  std::size_t meeting_count_ = 0;
+};
+
+}  // namespace trapeze
