@@ -1,6 +1,5 @@
 #include "core/adapt/history.h"
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -70,12 +69,11 @@ std::uint64_t HistoryRecorder::most_work(std::size_t vertices) {
   return kAlways + kPerVertexAndDoubling * vertices * std::bit_width(vertices);
 }
 
-std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
-                                              std::span<const std::uint32_t> rows,
+std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph, const FaceFeatures& rows,
                                               const GeneralizationOptions& options,
                                               History& history, WorkShare* share,
                                               unsigned threads) {
-  rows_ = rows;
+  rows_ = &rows;
   for_each_in_parallel(2, threads, [&](std::size_t i) {
     if (i == 0) stack_.assign(graph, options, threads);
     if (i == 1) begin(graph, history);
@@ -118,7 +116,7 @@ std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
 std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph,
                                               const GeneralizationOptions& options,
                                               History& history) {
-  return record(graph, std::array<std::uint32_t, 1>{0}, options, history);
+  return record(graph, FaceFeatures({0}), options, history);
 }
 
 void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
@@ -209,21 +207,25 @@ void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level)
   for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
 }
 
-/// A hole is subtracted from the feature that fills it.
+/// Features of one face only have lost the area, or gained it.
 void HistoryRecorder::note_taken(const Taken& taken, Level level) {
-  if (taken.face == kOutside) {
-    history_->grains.push_back(
-        {taken.axis, -taken.area, level, row_of(taken.taker), Grain::kNobody});
-  } else {
-    history_->grains.push_back({taken.axis, taken.area, level, row_of(taken.face),
-                                taken.taker == kOutside ? Grain::kNobody : row_of(taken.taker)});
-  }
+  add_grains(taken.axis, taken.area, level, taken.face, taken.taker);
+  add_grains(taken.axis, -taken.area, level, taken.taker, taken.face);
+}
+
+void HistoryRecorder::add_grains(const Axis& axis, double area, Level level, FaceId face,
+                                 FaceId other) {
+  bool is_covered = other != kOutside;
+  for_each_apart(rows_->of(face), rows_->of(other), [&](std::uint32_t row) {
+    history_->grains.push_back({axis, area, level, row, is_covered});
+    is_covered = true;  // by the first one
+  });
 }
 
 void HistoryRecorder::note_lost_loop(Level level) {
   const Loop& loop = loops_[loop_of_[stack_.last_corner()]];
   history_->grains.push_back(
-      {loop.axis, loop.is_hole ? -loop.area : loop.area, level, rows_.front(), Grain::kNobody});
+      {loop.axis, loop.is_hole ? -loop.area : loop.area, level, rows_->of(1).front()});
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
@@ -276,12 +278,30 @@ void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level 
   std::uint32_t& version = node_version_[n];
   const bool is_inside = node.is_alive() && graph.face(node) != kOutside;
   const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
-  const std::uint32_t row = is_inside ? row_of(graph.face(node)) : 0;
+  const auto rows = is_inside ? rows_of(graph, node, now) : std::span<const std::uint32_t>();
   if (version != kNoVersion) {
-    if (is_inside && is_open(version, now, row)) return;
-    lifespan_of(*history_, version).dies = level;
+    if (is_inside && is_open(version, now, rows)) return;
+    const std::uint32_t first = version;
+    do lifespan_of(*history_, version++).dies = level;
+    while (is_copy(version, first));
   }
-  version = is_inside ? open_node(now, row, level) : kNoVersion;
+  version = rows.empty() ? kNoVersion : open_node(now, rows, level);
+}
+
+/// The features that have the node, or whose boundary the edge of one without height is: on both
+/// sides of that there may be others.
+std::span<const std::uint32_t> HistoryRecorder::rows_of(const TrapezoidalGraph& graph,
+                                                        const Node& node,
+                                                        const MeshTrapezoid& trapezoid) {
+  const auto rows = rows_->of(graph.face(node));
+  if (rows_->shared().empty() || has_height(*history_, trapezoid)) return rows;
+  const std::optional<std::uint32_t> edge = horizontal_edge_of(*history_, trapezoid);
+  if (!edge) return {};
+  const Side side = *edge == trapezoid.left ? kLeft : kRight;
+  apart_.clear();
+  for_each_apart(rows, rows_->of(graph.edge(node.edge[side]).face[side]),
+                 [this](std::uint32_t row) { apart_.push_back(row); });
+  return apart_;
 }
 
 MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
@@ -290,34 +310,60 @@ MeshTrapezoid HistoryRecorder::trapezoid_of(const Node& node) const {
 }
 
 bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapezoid,
-                              std::uint32_t row) const {
-  if ((version & kHorizontalBit) == 0) {
-    return history_->rows[version] == row &&
-           covers_the_same(*history_, history_->trapezoids[version], trapezoid);
+                              std::span<const std::uint32_t> rows) const {
+  const std::uint32_t i = version & ~kHorizontalBit;
+  const auto row_at = [&](std::uint32_t k) {
+    return i == version ? history_->rows[k] : history_->horizontal_edges[k].row;
+  };
+  const bool is_same = i == version ? covers_the_same(*history_, history_->trapezoids[i], trapezoid)
+                                    : !has_height(*history_, trapezoid) &&
+                                          horizontal_edge_of(*history_, trapezoid) ==
+                                              history_->horizontal_edges[i].edge;
+  if (!is_same) return false;
+  if (rows_->shared().empty()) return row_at(i) == rows.front();
+  for (std::uint32_t k = 0; k < rows.size(); ++k) {
+    if ((k > 0 && !is_copy(version + k, version)) || row_at(i + k) != rows[k]) return false;
   }
-  const HorizontalEdge& open = history_->horizontal_edges[version ^ kHorizontalBit];
-  return open.row == row && !has_height(*history_, trapezoid) &&
-         horizontal_edge_of(*history_, trapezoid) == open.edge;
+  return !is_copy(version + static_cast<std::uint32_t>(rows.size()), version);
+}
+
+/// Whether both are of one node at one time, for several features.
+bool HistoryRecorder::is_copy(std::uint32_t version, std::uint32_t of) const {
+  if (rows_->shared().empty()) return false;
+  const std::uint32_t i = version & ~kHorizontalBit;
+  const std::uint32_t k = of & ~kHorizontalBit;
+  if ((of & kHorizontalBit) == 0) {
+    return i < history_->trapezoids.size() && history_->trapezoids[i] == history_->trapezoids[k] &&
+           history_->lifespans[i].born == history_->lifespans[k].born;
+  }
+  return i < history_->horizontal_edges.size() && history_->horizontal_edges[i].is_copy;
 }
 
 // A trapezoid between two vertices of the same y has no area and is never drawn; the edge along it
 // may be.
-std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid, std::uint32_t row,
-                                         Level level) {
+std::uint32_t HistoryRecorder::open_node(const MeshTrapezoid& trapezoid,
+                                         std::span<const std::uint32_t> rows, Level level) {
   const Lifespan lifespan{level, kNeverDies};
   if (has_height(*history_, trapezoid)) {
-    history_->trapezoids.push_back(trapezoid);
-    history_->lifespans.push_back(lifespan);
-    history_->rows.push_back(row);
+    const auto first = static_cast<std::uint32_t>(history_->trapezoids.size());
+    for (const std::uint32_t row : rows) {
+      history_->trapezoids.push_back(trapezoid);
+      history_->lifespans.push_back(lifespan);
+      history_->rows.push_back(row);
+    }
     require_countable(history_->trapezoids.size(), "versions of trapezoids", kMostVersions);
-    return static_cast<std::uint32_t>(history_->trapezoids.size() - 1);
+    return first;
   }
   const std::optional<std::uint32_t> edge = horizontal_edge_of(*history_, trapezoid);
   if (!edge) return kNoVersion;
-  history_->horizontal_edges.push_back({*edge, lifespan, row});
+  const auto first = static_cast<std::uint32_t>(history_->horizontal_edges.size());
+  for (const std::uint32_t row : rows) {
+    const bool is_copy = history_->horizontal_edges.size() > first;
+    history_->horizontal_edges.push_back({*edge, lifespan, row, is_copy});
+  }
   require_countable(history_->horizontal_edges.size(), "versions of horizontal edges",
                     kMostVersions);
-  return static_cast<std::uint32_t>(history_->horizontal_edges.size() - 1) | kHorizontalBit;
+  return first | kHorizontalBit;
 }
 
 }  // namespace trapeze

@@ -15,6 +15,7 @@
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/adapt/milestones.h"
+#include "core/borders/face_features.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/area_moments.h"
 #include "core/grid/tolerance.h"
@@ -26,15 +27,13 @@ namespace trapeze {
 /// A loop that became too small to keep: its area stays on the map as dust where it was. A
 /// rectangle of that area stands for the place; one that winds leaves several.
 struct Grain {
-  static constexpr std::uint32_t kNobody = 0xffffffff;
-
   Axis axis;              // of the rectangle
   double area = 0;        // cells squared; negative if the loop was a hole
   Level born = 0;         // the first level without the loop
   std::uint32_t row = 0;  // of the feature
-  /// The feature that covers the place from then on; kNobody if there is none. If there is one, the
-  /// area is to be subtracted from its own.
-  std::uint32_t taker = kNobody;
+  /// Whether other features cover the place before and after, so that nothing is lost or gained
+  /// where features are not told apart.
+  bool is_covered = false;
 };
 
 /// A version of a horizontal edge, and when it is part of the boundary of a feature. The trapezoid
@@ -43,6 +42,7 @@ struct HorizontalEdge {
   std::uint32_t edge = 0;
   Lifespan lifespan;
   std::uint32_t row = 0;  // of the feature
+  bool is_copy = false;   // of the one before it, for another feature
 };
 
 /// Versions of many graphs, one after another; indices are relative to the beginning of the arrays.
@@ -53,7 +53,9 @@ struct History {
   std::vector<MilestoneNote> milestones;
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;  // by trapezoid
-  std::vector<std::uint32_t> rows;  // by trapezoid: the feature that it is a part of
+  // By trapezoid: the feature that it is a part of. A place that several features cover has a
+  // trapezoid for each, one after the other, in order of rows.
+  std::vector<std::uint32_t> rows;
   std::vector<HorizontalEdge> horizontal_edges;
   std::vector<Grain> grains;
 };
@@ -61,7 +63,7 @@ struct History {
 /// Reusable memory for recording; one call at a time.
 class HistoryRecorder {
  public:
-  /// Appends the history of `graph` to `history`; face f is the feature of rows[f - 1]. Afterwards
+  /// Appends the history of `graph` to `history`; its faces are those of the rows. Afterwards
   /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
   /// many of the vertices have gone. Throws std::length_error if there are more versions than 32
   /// bits count. On up to `threads` threads; the history does not depend on their number.
@@ -70,7 +72,7 @@ class HistoryRecorder {
   /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end
   /// after most_work() of it: levels from then on have the vertices that were left. Returns the
   /// tolerance at which that was (cells), and none as a rule.
-  std::optional<double> record(TrapezoidalGraph& graph, std::span<const std::uint32_t> rows,
+  std::optional<double> record(TrapezoidalGraph& graph, const FaceFeatures& rows,
                                const GeneralizationOptions& options, History& history,
                                WorkShare* share = nullptr, unsigned threads = 1);
   /// The same of a single polygon, which is the feature of row 0.
@@ -92,26 +94,33 @@ class HistoryRecorder {
   void note_lost_area(const TrapezoidalGraph& graph, Level level);
   void note_lost_loop(Level level);
   void note_taken(const Taken& taken, Level level);
+  void add_grains(const Axis& axis, double area, Level level, FaceId face, FaceId other);
   void end_level(const TrapezoidalGraph& graph, Level level);
   void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
   void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
   MeshTrapezoid trapezoid_of(const Node& node) const;
-  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid, std::uint32_t row) const;
-  std::uint32_t open_node(const MeshTrapezoid& trapezoid, std::uint32_t row, Level level);
-  std::uint32_t row_of(FaceId face) const { return rows_[face - 1]; }
+  std::span<const std::uint32_t> rows_of(const TrapezoidalGraph& graph, const Node& node,
+                                         const MeshTrapezoid& trapezoid);
+  bool is_open(std::uint32_t version, const MeshTrapezoid& trapezoid,
+               std::span<const std::uint32_t> rows) const;
+  std::uint32_t open_node(const MeshTrapezoid& trapezoid, std::span<const std::uint32_t> rows,
+                          Level level);
+  bool is_copy(std::uint32_t version, std::uint32_t of) const;
   void open_edge(const TrapezoidalGraph& graph, EdgeId e);
   void touch(NodeId n);
 
   History* history_ = nullptr;
-  std::span<const std::uint32_t> rows_;  // by face - 1
+  const FaceFeatures* rows_ = nullptr;
   std::uint32_t vertex_base_ = 0;
   PriorityStack stack_;
   // The version that is open at present, by edge and by node; kNoVersion if there is none. That of
-  // a node without height is a horizontal edge, flagged with kHorizontalBit, if it has one.
+  // a node without height is a horizontal edge, flagged with kHorizontalBit, if it has one. Where
+  // several features have one, it is that of the first.
   Table<EdgeId, std::uint32_t> edge_version_;
   Table<NodeId, std::uint32_t> node_version_;
   Table<EdgeId, LoopSize> loop_sizes_;  // as it was at first
   Milestones milestones_;
+  std::vector<std::uint32_t> apart_;  // for rows_of()
   // Touched since the last level.
   std::vector<EdgeId> touched_edges_;
   std::vector<NodeId> touched_nodes_;

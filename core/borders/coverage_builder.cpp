@@ -1,7 +1,9 @@
 #include "core/borders/coverage_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -191,21 +193,82 @@ void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outc
   outcome.apart = features;
 }
 
-/// By number of a set: the feature that is drawn, the last one that is not left out.
-std::vector<FaceId> faces_of(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
-  std::vector<FaceId> faces;
-  faces.reserve(sets.size());
-  for (std::uint32_t i = 0; i < sets.size(); ++i) {
-    const std::vector<std::uint32_t>& set = sets[i];
-    const auto last = std::find_if(set.rbegin(), set.rend(), [&left_out](std::uint32_t feature) {
-      return !std::binary_search(left_out.begin(), left_out.end(), feature);
-    });
-    faces.push_back(last == set.rend() ? kOutside : *last + 1);
+/// The faces of a subdivision by sets.
+class SetFaces {
+ public:
+  /// Of sets without the features that are left out.
+  SetFaces(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+    std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < sets.size(); ++i) {
+      const auto& all = sets[i];
+      std::vector<std::uint32_t> set;
+      std::ranges::set_difference(all, left_out, std::back_inserter(set));
+      if (set.size() > kMostTogether) {
+        set.erase(set.begin(), set.end() - static_cast<std::ptrdiff_t>(kMostTogether));
+      }
+      face_of_.push_back(set.empty() ? kOutside : set.back() + 1);
+      place_of_.push_back(kNone);
+      if (set.size() < 2) continue;
+      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
+      place_of_.back() = known->second;
+      if (is_new) places_.push_back({known->first});
+    }
   }
-  return faces;
-}
 
-Sides sides_of(const TrapezoidalGraph& g, const std::vector<FaceId>& faces, std::size_t edges) {
+  /// Gives places of their own faces to wide ones.
+  void tell_apart(const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
+    if (places_.empty()) return;
+    measure(g);
+    for (Place& place : places_) {
+      const double width = place.border > 0 ? 2 * place.area / place.border : 0;
+      if (width > narrowest) place.face = faces.add(place.features);
+    }
+    for (std::size_t set = 0; set < face_of_.size(); ++set) {
+      if (place_of_[set] == kNone) continue;
+      const FaceId face = places_[place_of_[set]].face;
+      if (face != kOutside) face_of_[set] = face;
+    }
+  }
+
+  FaceId operator[](FaceId set) const { return face_of_[set]; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  // Of more features over each other, the lower ones are nowhere to be seen.
+  static constexpr std::size_t kMostTogether = 64;
+
+  // What the same features cover.
+  struct Place {
+    std::vector<std::uint32_t> features;
+    double area = 0;    // cells squared
+    double border = 0;  // its length
+    FaceId face = kOutside;
+  };
+
+  void measure(const TrapezoidalGraph& g) {
+    for (std::size_t i = 0; i < g.edges().size(); ++i) {
+      if (g.is_frame(EdgeId(i))) continue;
+      const Edge& edge = g.edge(EdgeId(i));
+      const std::uint32_t left = place_of_[edge.face[kLeft]];
+      const std::uint32_t right = place_of_[edge.face[kRight]];
+      if (left == right) continue;
+      const double strip = static_cast<double>(doubled_strip(g, edge)) / 2;
+      const double length = length_of(g, edge);
+      if (left != kNone) add(strip, length, places_[left]);
+      if (right != kNone) add(-strip, length, places_[right]);
+    }
+  }
+  static void add(double strip, double length, Place& place) {
+    place.area += strip;
+    place.border += length;
+  }
+
+  std::vector<FaceId> face_of_;          // by set
+  std::vector<std::uint32_t> place_of_;  // by set
+  std::vector<Place> places_;
+};
+
+Sides sides_of(const TrapezoidalGraph& g, const SetFaces& faces, std::size_t edges) {
   Sides sides;
   sides.reserve(edges);
   for (std::size_t e = 0; e < edges; ++e) {
@@ -274,6 +337,16 @@ bool keep_borders(Boundary& boundary, Sides& sides) {
   return true;
 }
 
+/// Whether there are features on both sides, and others on either.
+bool parts_features(const FaceFeatures& faces, const Edge& edge) {
+  const auto left = faces.of(edge.face[kLeft]);
+  const auto right = faces.of(edge.face[kRight]);
+  return !left.empty() && !right.empty() &&
+         std::ranges::none_of(left, [right](std::uint32_t feature) {
+           return std::ranges::binary_search(right, feature);
+         });
+}
+
 void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOutcome& outcome) {
   outcome.vertices = g.vertex_count();
   std::vector<FaceId> first_beside(regions.face.size(), kOutside);
@@ -281,7 +354,7 @@ void count_borders(const TrapezoidalGraph& g, const Regions& regions, CoverageOu
   for (std::size_t i = 0; i < g.edges().size(); ++i) {
     const Edge& edge = g.edge(EdgeId(i));
     if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
-    outcome.shared_edges += edge.face[kLeft] != kOutside && edge.face[kRight] != kOutside;
+    outcome.shared_edges += parts_features(outcome.faces, edge);
     for (const Side s : {kLeft, kRight}) {
       if (edge.face[s] != kOutside) continue;
       const RegionId hole = regions.beside[EdgeId(i)][s];
@@ -374,7 +447,12 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
     if (features.size() - outcome.apart.size() < 2) return outcome;
   }
   tell(0.6);
-  Sides sides = sides_of(graph, faces_of(map.sets(), outcome.apart), boundary_.edges.size());
+  outcome.faces = FaceFeatures::in_order(features.size());
+  SetFaces faces(map.sets(), outcome.apart);
+  if (std::isfinite(tolerance.narrowest_overlap)) {
+    faces.tell_apart(graph, tolerance.narrowest_overlap, outcome.faces);
+  }
+  Sides sides = sides_of(graph, faces, boundary_.edges.size());
   if (!keep_what_divides(sides, graph, threads)) return outcome;
   if (tolerance.widest_gap > 0) {
     outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
@@ -382,7 +460,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   }
   tell(0.8);
   const Regions regions(graph);
-  arcs_.trace(boundary_, static_cast<FaceId>(features.size()), regions, graph);
+  arcs_.trace(boundary_, static_cast<FaceId>(outcome.faces.face_count()), regions, graph);
   const std::vector<VertexId> ends = ends_of_arcs(graph);
   outcome.failure = crowd_at_a_junction(ends, graph.edges().size());
   if (!outcome.failure.empty()) return outcome;
@@ -394,20 +472,20 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
 
 namespace {
 
-/// Where an arc of the boundary of a face begins or ends.
+/// Where an arc of the boundary of a feature begins or ends.
 struct ArcEnd {
-  FaceId face;
+  std::uint32_t feature;
   VertexId vertex;
   CornerId corner;  // the first or the last one of the arc
   CornerId other;   // at the other end
   auto operator<=>(const ArcEnd&) const = default;
 };
 
-/// Sorts the boundary of each face into closed rings.
-class FaceRings {
+/// Sorts the boundary of each feature into closed rings.
+class FeatureRings {
  public:
-  explicit FaceRings(const TrapezoidalGraph& graph)
-      : g_(graph), rings_(graph.face_count()), seen_(graph.corners().size(), false) {
+  FeatureRings(const TrapezoidalGraph& graph, const FaceFeatures& faces, std::size_t features)
+      : g_(graph), faces_(faces), rings_(features), seen_(graph.corners().size(), false) {
     for (const bool is_loop : {false, true}) {
       for (std::size_t i = 0; i < g_.corners().size(); ++i) {
         const CornerId c(i);
@@ -434,32 +512,36 @@ class FaceRings {
       seen_[c.value] = true;
       last = c;
     }
-    for (const FaceId face : g_.edge(g_.corner(first).edge).face) {
-      if (face == kOutside) continue;
+    const auto add_to = [&](std::uint32_t feature) {
       if (is_loop) {
-        append(first, last, rings_[face - 1]);
-        rings_[face - 1].points.push_back(g_.point(g_.corner(last).vertex));
-        rings_[face - 1].close_ring();
+        append(first, last, rings_[feature]);
+        rings_[feature].points.push_back(g_.point(g_.corner(last).vertex));
+        rings_[feature].close_ring();
       } else {
-        ends_.push_back({face, g_.corner(first).vertex, first, last});
-        ends_.push_back({face, g_.corner(last).vertex, last, first});
+        ends_.push_back({feature, g_.corner(first).vertex, first, last});
+        ends_.push_back({feature, g_.corner(last).vertex, last, first});
       }
-    }
+    };
+    const Edge& edge = g_.edge(g_.corner(first).edge);
+    const auto left = faces_.of(edge.face[kLeft]);
+    const auto right = faces_.of(edge.face[kRight]);
+    for_each_apart(left, right, add_to);
+    for_each_apart(right, left, add_to);
   }
 
-  /// Walks from arc to arc until there is none to continue by. At each vertex a face has an even
+  /// Walks from arc to arc until there is none to continue by. At each vertex a feature has an even
   /// number of ends of arcs, so the walk ends where the ring began.
   void walk(ArcEnd at) {
-    Rings& rings = rings_[at.face - 1];
+    Rings& rings = rings_[at.feature];
     for (;;) {
       append(at.corner, at.other, rings);
       use(at);
-      at = {at.face, g_.corner(at.other).vertex, at.other, at.corner};
+      at = {at.feature, g_.corner(at.other).vertex, at.other, at.corner};
       use(at);
       auto next = std::lower_bound(ends_.begin(), ends_.end(),
-                                   ArcEnd{at.face, at.vertex, CornerId(0), CornerId(0)});
+                                   ArcEnd{at.feature, at.vertex, CornerId(0), CornerId(0)});
       const auto is_there = [&] {
-        return next != ends_.end() && next->face == at.face && next->vertex == at.vertex;
+        return next != ends_.end() && next->feature == at.feature && next->vertex == at.vertex;
       };
       while (is_there() && is_used_[static_cast<std::size_t>(next - ends_.begin())]) ++next;
       if (!is_there()) break;
@@ -482,6 +564,7 @@ class FaceRings {
   }
 
   const TrapezoidalGraph& g_;
+  const FaceFeatures& faces_;
   std::vector<Rings> rings_;
   std::vector<bool> seen_;
   std::vector<ArcEnd> ends_;
@@ -491,7 +574,12 @@ class FaceRings {
 }  // namespace
 
 std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph) {
-  return FaceRings(graph).take();
+  const std::size_t faces = graph.face_count();
+  return FeatureRings(graph, FaceFeatures::in_order(faces), faces).take();
+}
+
+std::vector<Rings> rings_of_features(const TrapezoidalGraph& graph, const FaceFeatures& faces) {
+  return FeatureRings(graph, faces, faces.face_count() - faces.shared().size()).take();
 }
 
 }  // namespace trapeze

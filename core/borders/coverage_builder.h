@@ -1,18 +1,21 @@
 // Builds one trapezoidal graph from the rings of several features that share borders.
 //
 // All rings are noded together (see set_map.h), so that a border that two features share occurs
-// once. A face that several features cover belongs to the one drawn last; edges that then have the
-// same feature on both sides are removed.
+// once. A place that several features cover is a face of its own if it is wide enough to be seen;
+// else it belongs to the one drawn last. Edges that then have the same face on both sides are
+// removed.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/borders/border_arcs.h"
+#include "core/borders/face_features.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"
@@ -39,6 +42,7 @@ struct CoverageOutcome {
   std::size_t filled = 0;         // gaps narrow enough to become a part of a neighbour
   std::vector<Overlap> overlaps;  // in order of their features
   std::vector<double> areas;      // of each feature by itself, cells squared
+  FaceFeatures faces;             // by position
   std::vector<std::uint32_t> apart;  // the features that were left out, in ascending order
   std::string failure;               // why it could not be built, empty otherwise
 };
@@ -47,6 +51,9 @@ struct CoverageOutcome {
 struct CoverageTolerance {
   double most_overlap = 0;  // as a share of the area of the smaller of two features
   double widest_gap = 0;    // metres on the ground
+  /// Places that the same features cover are faces of their own if their mean width (area over
+  /// half of the border) is greater than that, in cells.
+  double narrowest_overlap = std::numeric_limits<double>::infinity();
 };
 
 /// Where features lie over each other.
@@ -63,14 +70,14 @@ Overlay overlay(std::span<const Rings* const> features);
 class CoverageBuilder {
  public:
   /// Makes `graph` the graph of the features, each by even-odd of its own rings, which are clean
-  /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, the area
-  /// belongs to the last one. Gaps whose mean width (area over half of the border) is at most
-  /// `widest_gap` become a part of the feature with the longest border, if their area is at most
-  /// that border times `widest_gap`. Of features that overlap by more than is tolerated, those that
-  /// share the fewest edges with neighbours are left out. If fewer than two remain, nothing is
-  /// built. Never throws for bad geometry: `graph` is meaningful only if the outcome says built.
-  /// Tells `share`, if there is one, how far it is. On up to `threads` threads; the graph does not
-  /// depend on their number.
+  /// (see clean_rings.h). The face of features[i] is i + 1; where features overlap, it is one of
+  /// all of them together, or the last one's if it is narrow. Gaps whose mean width (area over half
+  /// of the border) is at most `widest_gap` become a part of the feature with the longest border,
+  /// if their area is at most that border times `widest_gap`. Of features that overlap by more than
+  /// is tolerated, those that share the fewest edges with neighbours are left out. If fewer than
+  /// two remain, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
+  /// outcome says built. Tells `share`, if there is one, how far it is. On up to `threads` threads;
+  /// the graph does not depend on their number.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
                         TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1);
 
@@ -88,5 +95,7 @@ class CoverageBuilder {
 /// The rings of every face of a coverage, by face - 1, read from its edges: closed, and the inside
 /// of the face by even-odd. Where a face touches itself, a ring may pass through a vertex twice.
 std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph);
+/// The same of every feature, by position.
+std::vector<Rings> rings_of_features(const TrapezoidalGraph& graph, const FaceFeatures& faces);
 
 }  // namespace trapeze

@@ -127,6 +127,10 @@ double most_overlap(CoverageMode coverage) {
   return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
 }
 
+// Half a metre at the equator, most of a pixel at zoom 18: slivers along borders that were drawn
+// twice are narrower.
+constexpr double kNarrowestOverlap = 32;
+
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
@@ -144,8 +148,8 @@ Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
                   CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share,
                   unsigned threads) {
   Assembly assembly;
-  assembly.outcome =
-      builder.build(features, {most_overlap(coverage), widest_gap}, graph, share, threads);
+  assembly.outcome = builder.build(
+      features, {most_overlap(coverage), widest_gap, kNarrowestOverlap}, graph, share, threads);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

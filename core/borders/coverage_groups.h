@@ -17,7 +17,7 @@ namespace trapeze {
 enum class CoverageMode : std::uint8_t {
   off,        // nothing: each is simplified as if it were alone
   automatic,  // those that have an edge in common, and do not overlap by more than a little
-  on,         // all that lie near each other: where they overlap, the last one is drawn
+  on,         // all that lie near each other, however much they overlap
 };
 
 /// The default.
@@ -39,9 +39,10 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
 /// A group, split into the features that share a graph and those that do not; by their positions,
 /// in ascending order.
 struct Assembly {
-  std::vector<std::uint32_t> together;  // in one graph, in which that of position i is face i + 1
+  std::vector<std::uint32_t> together;  // in one graph
   std::vector<std::uint32_t> apart;     // each to be built by itself
-  CoverageOutcome outcome;              // of those together; built if there are any
+  CoverageOutcome outcome;              // of those together; built if there are any; its faces are
+                                        // those of the graph
 };
 
 /// Makes `graph` the graph of those features of a group that can share one, see CoverageBuilder:

@@ -141,6 +141,12 @@ Polygons polygons_of_rings(Rings& rings) {
   return polygons;
 }
 
+std::vector<Polygons> polygons_of_each(std::vector<Rings> features) {
+  std::vector<Polygons> polygons;
+  for (Rings& rings : features) polygons.push_back(polygons_of_rings(rings));
+  return polygons;
+}
+
 }  // namespace
 
 // The corners of an adapted graph may not suffice: without the topological consistency test its
@@ -151,9 +157,12 @@ Polygons polygons_of(const TrapezoidalGraph& graph) {
 }
 
 std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph) {
-  std::vector<Polygons> polygons;
-  for (Rings& rings : rings_of_faces(graph)) polygons.push_back(polygons_of_rings(rings));
-  return polygons;
+  return polygons_of_each(rings_of_faces(graph));
+}
+
+std::vector<Polygons> polygons_of_features(const TrapezoidalGraph& graph,
+                                           const FaceFeatures& faces) {
+  return polygons_of_each(rings_of_features(graph, faces));
 }
 
 }  // namespace trapeze

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/borders/face_features.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
 
@@ -45,5 +46,8 @@ Polygons polygons_of(const TrapezoidalGraph& graph);
 /// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common
 /// border in common.
 std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph);
+/// The same for each feature of a coverage, by position; features may overlap.
+std::vector<Polygons> polygons_of_features(const TrapezoidalGraph& graph,
+                                           const FaceFeatures& faces);
 
 }  // namespace trapeze

@@ -83,12 +83,14 @@ bool FeatureStack::find_covers(const Cancellation* cancellation) {
   const auto of_all = std::views::iota(std::uint32_t{0}, count_);
   const bool are_all_opaque = std::ranges::all_of(
       of_all, [this](std::uint32_t number) { return features_[number].paint.is_opaque(); });
+  covers_in_common_ = !are_all_opaque || options_.cuts_whole_features;
   bool are_any = false;
   for (const std::uint32_t number : of_all) {
     Feature& feature = features_[number];
     for (const FeatureOverlap& overlap : overlaps_->of(feature.row)) {
       check();
       if (overlap.width < options_.narrowest) continue;
+      if (overlap.is_in_common() && !covers_in_common_) continue;
       const std::uint32_t other_number = find(overlap.other);
       if (other_number == kNone) continue;
       Feature& other = features_[other_number];

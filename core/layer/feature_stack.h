@@ -53,6 +53,11 @@ class FeatureStack {
   /// lies over those of lower rows, unless only the other is raised. Throws Cancelled.
   bool find_covers(const Cancellation* cancellation);
 
+  /// After find_covers(): whether it deals with places that features have in common (see
+  /// FeatureOverlap::in_common()). Where all are opaque and none is cut up as a whole, the caller
+  /// does, which takes no more than leaving out the trapezoids below the uppermost one.
+  bool covers_in_common() const { return covers_in_common_; }
+
   /// After find_covers(): where a trapezoid of a feature is.
   void note_place(std::uint32_t row, std::uint32_t trapezoid);
 
@@ -110,6 +115,7 @@ class FeatureStack {
   std::deque<Feature> features_;  // the first count_
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> slots_;  // numbers of features by row, open addressing
+  bool covers_in_common_ = true;
   std::uint32_t last_noted_ = kNone;
   mutable std::uint32_t last_row_ = kNone;
   mutable std::uint32_t last_ = kNone;

@@ -42,6 +42,7 @@ struct Stock {
   History history;
   std::vector<Outline> outlines;
   Rings outline_rings;
+  std::vector<FeatureOverlap> shared;  // of features with a face of a coverage in common
 };
 
 /// A part of a builder, and what leads from indices of its stock to indices of the layer; wraps
@@ -84,11 +85,6 @@ std::vector<PartOf> in_order_of_rows(const std::vector<Stock>& stocks) {
   return parts;
 }
 
-FeatureGrain grain_of(const Grain& grain, double area, std::uint32_t row) {
-  const double doubled = std::clamp(2 * area, -kMostDoubledArea, kMostDoubledArea);
-  return {grain.axis.from, grain.axis.to, std::llround(doubled), row, grain.born};
-}
-
 /// The arrays of a layer while they grow.
 struct GrowingLayer {
   std::vector<Point> vertices;
@@ -104,17 +100,15 @@ struct GrowingLayer {
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
   std::vector<std::uint32_t> graph_of;  // by row
+  std::vector<FeatureOverlap> shared;   // of features of one graph
 };
 
-/// An area that one feature has taken over from another is the dust of one and less of the other;
-/// where features are not told apart, it is as it was.
+/// Where features are not told apart, a place that others cover is as it was.
 void add_grain(const Grain& grain, GrowingLayer& layer) {
-  layer.feature_grains.push_back(grain_of(grain, grain.area, grain.row));
-  if (grain.taker == Grain::kNobody) {
-    layer.grains.push_back(grain);
-  } else {
-    layer.feature_grains.push_back(grain_of(grain, -grain.area, grain.taker));
-  }
+  const double doubled = std::clamp(2 * grain.area, -kMostDoubledArea, kMostDoubledArea);
+  layer.feature_grains.push_back(
+      {grain.axis.from, grain.axis.to, std::llround(doubled), grain.row, grain.born});
+  if (!grain.is_covered) layer.grains.push_back(grain);
 }
 
 /// Concatenates one array of the histories, and frees it there: so no more than one of them is held
@@ -166,6 +160,17 @@ void note_graphs(const std::vector<PartOf>& parts, std::vector<std::uint32_t>& g
       graph_of[row] = graph;
     }
     ++graph;
+  }
+}
+
+/// Of every two features of it that have a face in common.
+void note_shared(const FaceFeatures& rows, std::vector<FeatureOverlap>& shared) {
+  for (const std::vector<std::uint32_t>& features : rows.shared()) {
+    for (const std::uint32_t row : features) {
+      for (const std::uint32_t other : features) {
+        if (row != other) shared.push_back(FeatureOverlap::in_common(row, other));
+      }
+    }
   }
 }
 
@@ -227,6 +232,9 @@ GrowingLayer concatenate(std::vector<Stock> stocks) {
   GrowingLayer layer;
   concatenate_histories(stocks, layer);
   concatenate_outlines(stocks, layer);
+  for (const Stock& stock : stocks) {
+    layer.shared.insert(layer.shared.end(), stock.shared.begin(), stock.shared.end());
+  }
   return layer;
 }
 
@@ -457,7 +465,7 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
   state_->begin_part(row);
   state_->add_outline(row, rings_of(state_->graph));
   state_->most_tolerance = state_->recorder.record(
-      state_->graph, std::span(&row, 1), state_->options, state_->stock.history, state_->share);
+      state_->graph, FaceFeatures({row}), state_->options, state_->stock.history, state_->share);
   return outcome;
 }
 
@@ -468,10 +476,12 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
                                state_->coverage_builder, state_->graph, state_->share, threads);
   if (assembly.together.empty()) return assembly;
   state_->begin_part(rows[assembly.together.front()]);
-  const std::vector<Rings> outlines = rings_of_faces(state_->graph);
+  const FaceFeatures faces = assembly.outcome.faces.named(rows);
+  note_shared(faces, state_->stock.shared);
+  const std::vector<Rings> outlines = rings_of_features(state_->graph, assembly.outcome.faces);
   for (const std::uint32_t i : assembly.together) state_->add_outline(rows[i], outlines[i]);
   if (state_->share != nullptr) state_->share->enter(kAssemblyShare, 1);
-  state_->most_tolerance = state_->recorder.record(state_->graph, rows, state_->options,
+  state_->most_tolerance = state_->recorder.record(state_->graph, faces, state_->options,
                                                    state_->stock.history, state_->share, threads);
   return assembly;
 }
@@ -498,7 +508,8 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   FeatureOverlaps overlaps = find_overlaps({{0, arrays.vertices, arrays.edges, arrays.trapezoids},
                                             arrays.lifespans,
                                             arrays.feature_of,
-                                            arrays.graph_of});
+                                            arrays.graph_of},
+                                           std::move(arrays.shared));
   layer->has_all_overlaps = overlaps.is_complete;
   layer->overlaps = OverlapTable(std::move(overlaps.pairs), arrays.graph_of.size());
   append_horizontal_edges(arrays);

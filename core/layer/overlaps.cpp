@@ -309,6 +309,10 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
   for (const FeatureOverlap& pair : pairs_) ++begins_[pair.row + 1];
   for (std::size_t row = 0; row < rows; ++row) begins_[row + 1] += begins_[row];
   for (const FeatureOverlap& pair : pairs_) {
+    if (pair.is_in_common()) {
+      in_common_.resize(rows);
+      in_common_[pair.row] = 1;
+    }
     if (pair.along == 0) continue;
     runs_along_.resize(rows);
     runs_along_[pair.row] = 1;
@@ -316,9 +320,15 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
   }
 }
 
-FeatureOverlaps find_overlaps(const OverlapInput& input) {
-  OverlapSearch search(input);
-  return search.run();
+FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known) {
+  FeatureOverlaps found = OverlapSearch(input).run();
+  if (known.empty()) return found;
+  const auto by_rows = [](const FeatureOverlap& pair) { return std::pair(pair.row, pair.other); };
+  found.pairs.insert(found.pairs.end(), known.begin(), known.end());
+  std::ranges::sort(found.pairs, {}, by_rows);
+  const auto again = std::ranges::unique(found.pairs, {}, by_rows);
+  found.pairs.erase(again.begin(), again.end());
+  return found;
 }
 
 }  // namespace trapeze

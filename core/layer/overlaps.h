@@ -23,6 +23,15 @@ struct FeatureOverlap {
   /// in cells.
   std::uint32_t along = 0;
 
+  /// Of features of a coverage that have a face of it in common: however much their borders are
+  /// simplified, it is the same place for both, with the same trapezoids.
+  static FeatureOverlap in_common(std::uint32_t row, std::uint32_t other) {
+    return {row, other, kInCommon, kInCommon};
+  }
+  bool is_in_common() const { return width == kInCommon; }
+
+  static constexpr std::uint32_t kInCommon = 0xffffffff;
+
   friend bool operator==(const FeatureOverlap&, const FeatureOverlap&) = default;
 };
 
@@ -41,6 +50,11 @@ class OverlapTable {
     if (begins_.empty()) return {};
     return std::span(pairs()).subspan(begins_[row], begins_[row + 1] - begins_[row]);
   }
+  /// Whether the feature has places in common with others, see FeatureOverlap::in_common().
+  bool has_in_common(std::uint32_t row) const {
+    return !in_common_.empty() && in_common_[row] != 0;
+  }
+  bool are_any_in_common() const { return !in_common_.empty(); }
   /// Whether the feature overlaps one along whose boundary its own runs.
   bool runs_along_another(std::uint32_t row) const {
     return !runs_along_.empty() && runs_along_[row] != 0;
@@ -49,13 +63,15 @@ class OverlapTable {
   /// How many of them are of features whose boundaries run along each other.
   std::size_t pairs_along() const { return pairs_along_; }
   std::size_t memory() const {
-    return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t) + runs_along_.capacity();
+    return pairs_.memory() + begins_.capacity() * sizeof(std::uint32_t) + runs_along_.capacity() +
+           in_common_.capacity();
   }
 
  private:
   StoredArray<FeatureOverlap> pairs_;
   std::vector<std::uint32_t> begins_;  // by row, and the end of the last; empty if there are none
   std::vector<std::uint8_t> runs_along_;  // by row; empty if none does
+  std::vector<std::uint8_t> in_common_;   // by row; empty if none has
   std::size_t pairs_along_ = 0;
 };
 
@@ -64,7 +80,7 @@ struct OverlapInput {
   MeshView mesh;
   std::span<const Lifespan> lifespans;        // by trapezoid, as many as feature_of
   std::span<const std::uint32_t> feature_of;  // row, by trapezoid; others of the mesh do not count
-  std::span<const std::uint32_t> graph_of;    // by row: features of one graph do not overlap
+  std::span<const std::uint32_t> graph_of;    // by row: features of one graph are not compared
 };
 
 struct FeatureOverlaps {
@@ -73,7 +89,8 @@ struct FeatureOverlaps {
 };
 
 /// Overlaps wider than two cells, which is more than what snapping borders to the grid makes of
-/// neighbours. Does not depend on the order of trapezoids.
-FeatureOverlaps find_overlaps(const OverlapInput& input);
+/// neighbours. Does not depend on the order of trapezoids. With those that are known, of features
+/// of one graph, each once or more often.
+FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {});
 
 }  // namespace trapeze

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace trapeze {
@@ -147,6 +148,20 @@ void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidP
   made_trapezoids.push_back({v + 4, v + 5, e, e + 1});
 }
 
+// The edges of which a feature has one side only, and no place in common with others on the other.
+void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uint32_t>& edges) {
+  std::ranges::sort(sides);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i;
+    while (end < sides.size() && sides[end].row == sides[i].row &&
+           sides[end].edge == sides[i].edge) {
+      ++end;
+    }
+    if (sides[i].is_right == sides[end - 1].is_right) edges.push_back(sides[i].edge);
+    i = end;
+  }
+}
+
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Stroke& stroke = paint.style.stroke;
   const double reach = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
@@ -214,22 +229,45 @@ LayerDrawing::ClassDrawing& LayerDrawing::drawing_beneath(std::uint8_t number, s
 void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
                                  DrawingTools& tools) {
   has_stack_ = find_stack(classes, selection, tools);
-  if (classes == nullptr && !has_stack_) {
+  const bool are_in_common =
+      layer_->overlaps().are_any_in_common() && !(has_stack_ && tools.stack.covers_in_common());
+  if (classes == nullptr && !has_stack_ && !are_in_common) {
     if (!tools.ranges.empty()) {
       class_drawing(0).ranges.assign(tools.ranges.begin(), tools.ranges.end());
     }
     return;
   }
+  const auto add = [&](const Painted& one) {
+    const bool is_cut_up =
+        has_stack_ && one.row != Layer::kNoFeature && tools.stack.add(one.row, one.trapezoid);
+    if (!is_cut_up) append(one.trapezoid, class_drawing(one.number).ranges);
+  };
+  std::optional<Painted> uppermost;
   CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
   for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
     check();
-    const std::uint32_t row = layer_->feature_of(i);
-    const std::uint8_t number = number_of(classes, row);
-    if (number == kNotDrawn) return;
-    const bool is_cut_up = has_stack_ && row != Layer::kNoFeature && tools.stack.add(row, i);
-    if (!is_cut_up) append(i, class_drawing(number).ranges);
+    const Painted one{i, layer_->feature_of(i), number_of(classes, layer_->feature_of(i))};
+    if (one.number == kNotDrawn) return;
+    if (!are_in_common) return add(one);
+    if (uppermost && have_in_common(*uppermost, one)) {
+      if (!is_raised(uppermost->number) || is_raised(one.number)) uppermost = one;
+      return;
+    }
+    if (uppermost) add(*uppermost);
+    uppermost = one;
   });
+  if (uppermost) add(*uppermost);
   if (has_stack_) add_stack(classes, selection, tools);
+}
+
+// Of one place, for two features: the trapezoids follow one another, in order of rows.
+bool LayerDrawing::have_in_common(const Painted& one, const Painted& next) const {
+  return one.row != Layer::kNoFeature && next.row != Layer::kNoFeature && one.row != next.row &&
+         layer_->mesh().trapezoids[one.trapezoid] == layer_->mesh().trapezoids[next.trapezoid];
+}
+
+bool LayerDrawing::is_raised(std::uint8_t number) const {
+  return number == style().classing.class_of_highlighted();
 }
 
 // Whether features of the layer lie over each other here. Of one colour they are cut up as well:
@@ -243,7 +281,7 @@ bool LayerDrawing::find_stack(const FeatureClasses* classes, const Layer::Select
     const std::uint8_t number = number_of(classes, row);
     const Rgba fill = style().paints[number].fill;
     return FeatureStack::Paint{has_lines() ? row : number, static_cast<float>(fill.a) / 255.0f,
-                               number == style().classing.class_of_highlighted()};
+                               is_raised(number)};
   };
   CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
   const auto for_each_row = [&](const auto& visit) {
@@ -305,11 +343,10 @@ void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint
   const Rgba colour = style().paints[number].stroke;
   if (colour.a == 0) return;
   const MeshView& mesh = layer_->mesh();
+  std::vector<SideOf> sides;
+  for (const std::uint32_t i : trapezoids) add_sides_of(i, sides);
   std::vector<std::uint32_t> own;
-  for (const std::uint32_t i : trapezoids) {
-    own.push_back(mesh.trapezoids[i].left);
-    own.push_back(mesh.trapezoids[i].right);
-  }
+  append_outer(sides, own);
   sort_and_part(own);
   std::vector<SeenEdge>& seen = lines_of(colour).seen;
   append_seen_sides(mesh, own, parts, seen);
@@ -444,11 +481,22 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
   const MeshView& mesh = layer_->mesh();
+  std::vector<SideOf> in_common;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    if (layer_->feature_of(i) == Layer::kNoFeature) return;  // dust has no outline
+    const std::uint32_t row = layer_->feature_of(i);
+    if (row == Layer::kNoFeature) return;  // dust has no outline
+    if (layer_->overlaps().has_in_common(row)) return add_sides_of(i, in_common);
     lines.sides.push_back(mesh.trapezoids[i].left);
     lines.sides.push_back(mesh.trapezoids[i].right);
   });
+  append_outer(in_common, lines.sides);
+}
+
+void LayerDrawing::add_sides_of(std::uint32_t trapezoid, std::vector<SideOf>& sides) const {
+  const std::uint32_t row = layer_->feature_of(trapezoid);
+  const MeshTrapezoid& t = layer_->mesh().trapezoids[trapezoid];
+  sides.push_back({row, t.left, false});
+  if (t.left != t.right) sides.push_back({row, t.right, true});  // else it is a level edge
 }
 
 const LayerDrawing::ClassDrawing* LayerDrawing::only_class() const {

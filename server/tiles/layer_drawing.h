@@ -76,6 +76,15 @@ class LayerDrawing {
   bool is_empty() const;
   bool is_full() const;
 
+  /// An edge as a side of a trapezoid of a feature.
+  struct SideOf {
+    std::uint32_t row = 0;
+    std::uint32_t edge = 0;
+    bool is_right = false;
+
+    auto operator<=>(const SideOf&) const = default;
+  };
+
  private:
   // The features of one class, or what shines of them through others that lie over them.
   struct ClassDrawing {
@@ -110,6 +119,15 @@ class LayerDrawing {
     Mask mask;
   };
 
+  // A trapezoid with the feature that it is a part of, and the class of that.
+  struct Painted {
+    std::uint32_t trapezoid = 0;
+    std::uint32_t row = 0;
+    std::uint8_t number = 0;
+  };
+
+  bool have_in_common(const Painted& one, const Painted& next) const;
+  bool is_raised(std::uint8_t number) const;
   /// The only one of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
@@ -137,6 +155,7 @@ class LayerDrawing {
                      const FeatureClasses* classes, DrawingTools& tools);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
+  void add_sides_of(std::uint32_t trapezoid, std::vector<SideOf>& sides) const;
   void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
 
   const LayerPaint* paint_ = nullptr;

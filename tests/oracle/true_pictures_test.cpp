@@ -80,16 +80,10 @@ std::optional<Place> place_inside(const TrueFeature& feature) {
   return std::nullopt;
 }
 
-// In a coverage there is nothing below: of two countries that overlap by a little (0.1 % of their
-// area) the later one has that place, also if it is half opaque or the other one highlighted. One
-// tile lies in such a place.
-constexpr Limits kOnlyLast{50, 0.4, 25'000};
 constexpr Limits kLines{1, 0.002};
 
 // What is off there is about four fifths of these limits.
 const std::vector<Exception> kExceptions = {
-    {"europe_countries", "coverage auto, half opaque", kOnlyLast},
-    {"europe_countries", "coverage auto, highlight", kOnlyLast},
     // A line that is a quarter of a pixel off is off by up to half of its ink. And where lines are
     // nearer to each other than they are wide, the greatest value of a pixel counts, not what they
     // cover together (see render/mask/stroke.h). Lines of features that are narrower than the

@@ -88,10 +88,11 @@ class Exporter : public FeatureWorker {
 
   /// What the features of one graph have in common is counted with the first one that is written.
   void adapt_together(std::span<WaitingFeature* const> features, const Assembly& assembly) {
-    const std::vector<Rings> outlines = rings_of_faces(graph_);
+    const FaceFeatures& faces = assembly.outcome.faces;
+    const std::vector<Rings> outlines = rings_of_features(graph_, faces);
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
-    const std::vector<Polygons> polygons = polygons_of_faces(adaptable.graph());
+    const std::vector<Polygons> polygons = polygons_of_features(adaptable.graph(), faces);
     std::size_t held = count_held(adaptable);
     std::vector<PolygonGeometry> geometries = geometries_of_neighbours(polygons, options_.crs);
     for (const std::uint32_t i : assembly.together) {

@@ -17,7 +17,6 @@ namespace trapeze {
 namespace {
 
 /// Of the one feature.
-constexpr std::uint32_t kRow[] = {0};
 
 TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
   for (unsigned seed = 0; seed < 210; ++seed) {
@@ -34,7 +33,7 @@ TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
       recorder.record(graph, options, history);
       for (int level = 0; level <= kLastLevel; ++level) {
         adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph(), kRow))
+        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph(), FaceFeatures({0})))
             << "level " << level;
       }
     }

@@ -38,8 +38,9 @@ struct BuiltCoverage {
   CoverageOutcome outcome;
   TrapezoidalGraph graph;
 
-  explicit BuiltCoverage(const std::vector<Rings>& features) {
-    outcome = CoverageBuilder().build(pointers_to(features), {.most_overlap = kAll}, graph);
+  explicit BuiltCoverage(const std::vector<Rings>& features, double narrowest_overlap = kAll) {
+    const CoverageTolerance tolerance{.most_overlap = kAll, .narrowest_overlap = narrowest_overlap};
+    outcome = CoverageBuilder().build(pointers_to(features), tolerance, graph);
     EXPECT_EQ(outcome.failure, "");
     if (!outcome.built) return;
     EXPECT_EQ(check_graph(graph), "");
@@ -250,13 +251,112 @@ TEST(Coverage, WhatIsLostByOneFeatureIsLessOfTheOneThatTookIt) {
     std::vector<double> dust(rows.size(), 0);
     for (const Grain& grain : history.grains) {
       dust[grain.row / 10 - 1] += grain.area;
-      if (grain.taker != Grain::kNobody) dust[grain.taker / 10 - 1] -= grain.area;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double area = static_cast<double>(areas[i + 1]) / 2;
       EXPECT_NEAR(dust[i], area, 1e-6 * (1 + area)) << "feature " << i;
     }
   }
+}
+
+// Features with faces in common.
+
+constexpr double kNone = 0;  // narrower ones are not faces of their own
+
+TEST(CoverageInCommon, APlaceOfTwoFeaturesIsAFaceIfItIsWide) {
+  const Texts texts{"0 0, 12 0, 12 10, 0 10", "10 0, 20 0, 20 10, 10 10"};
+  // 2 x 10 cells: the mean width is 20 / 12.
+  const BuiltCoverage wide(features_from_text(texts), 1.6);
+  ASSERT_EQ(wide.outcome.faces.face_count(), 3u);
+  EXPECT_THAT(wide.outcome.faces.of(3), testing::ElementsAre(0, 1));
+  EXPECT_EQ(wide.doubled_area(1), 200);
+  EXPECT_EQ(wide.doubled_area(2), 160);
+  EXPECT_EQ(wide.doubled_area(3), 40);
+  EXPECT_EQ(wide.outcome.shared_edges, 0u) << "both go on beyond each of them";
+  const BuiltCoverage narrow(features_from_text(texts), 1.7);
+  EXPECT_EQ(narrow.outcome.faces.face_count(), 2u);
+  EXPECT_EQ(narrow.doubled_area(2), 200);
+}
+
+TEST(CoverageInCommon, AFeatureWithinAnotherIsNotLost) {
+  const BuiltCoverage c(features_from_text({"2 2, 8 2, 8 8, 2 8", "0 0, 10 0, 10 10, 0 10"}),
+                        kNone);
+  const std::vector<Rings> rings = rings_of_features(c.graph, c.outcome.faces);
+  ASSERT_EQ(rings.size(), 2u);
+  EXPECT_EQ(rings[0].size(), 1u);
+  EXPECT_EQ(rings[0].points.size(), 4u);
+  EXPECT_EQ(rings[1].size(), 1u) << "no hole where the other one is";
+}
+
+TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
+  int shared = 0;
+  for (unsigned seed = 0; seed < kShapes; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const BuiltCoverage c(random_coverage(seed), kNone);
+    if (!c.outcome.built) continue;
+    shared += c.outcome.faces.shared().empty() ? 0 : 1;
+    const std::vector<Rings> rings = rings_of_features(c.graph, c.outcome.faces);
+    const std::vector<const Rings*> pointers = pointers_to(rings);
+    const Overlay again = overlay(pointers);
+    ASSERT_EQ(again.areas.size(), c.outcome.areas.size());
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      EXPECT_DOUBLE_EQ(again.areas[i], c.outcome.areas[i]) << "feature " << i;
+    }
+  }
+  EXPECT_GT(shared, 20);
+}
+
+TEST(CoverageInCommon, LifespansGiveTheTrapezoidsOfAllFeaturesAtEveryLevel) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed), kNone);
+    if (!c.outcome.built || c.outcome.faces.shared().empty()) continue;
+    AdaptableGraph adaptable(c.graph);
+    History history;
+    HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
+    for (int level = 0; level <= kLastLevel; ++level) {
+      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
+      ASSERT_EQ(alive_at(history, static_cast<Level>(level)),
+                inside_of(adaptable.graph(), c.outcome.faces))
+          << "level " << level;
+    }
+  }
+}
+
+TEST(CoverageInCommon, AllOfAFeatureIsDustInTheEnd) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed), kNone);
+    if (!c.outcome.built || c.outcome.faces.shared().empty()) continue;
+    const double covered = static_cast<double>(c.graph.doubled_area()) / 2;
+    History history;
+    HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
+    std::vector<double> dust(c.outcome.areas.size(), 0);
+    double together = 0;
+    for (const Grain& grain : history.grains) {
+      dust[grain.row] += grain.area;
+      if (!grain.is_covered) together += grain.area;
+    }
+    EXPECT_NEAR(together, covered, 1e-6 * (1 + covered));
+    for (std::size_t i = 0; i < dust.size(); ++i) {
+      const double area = c.outcome.areas[i];
+      EXPECT_NEAR(dust[i], area, 1e-6 * (1 + area)) << "feature " << i;
+    }
+  }
+}
+
+// With horizontal borders, along which nodes have no height.
+TEST(CoverageInCommon, LevelEdgesAreThereForThoseWhoseBoundaryTheyAre) {
+  BuiltCoverage c(features_from_text({"0 0, 10 0, 10 10, 0 10", "0 5, 10 5, 10 20, 0 20"}), kNone);
+  History history;
+  HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
+  std::vector<std::pair<std::int32_t, std::uint32_t>> edges;
+  for (const HorizontalEdge& edge : history.horizontal_edges) {
+    if (edge.lifespan.born > 0) continue;
+    edges.emplace_back(history.vertices[history.edges[edge.edge].upper].y, edge.row);
+  }
+  EXPECT_THAT(edges, testing::UnorderedElementsAre(testing::Pair(0, 0), testing::Pair(10, 0),
+                                                   testing::Pair(5, 1), testing::Pair(20, 1)));
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ inline Drawn drawn(std::uint32_t row, int top, int bottom, Point lu, Point ll, P
 }
 
 /// The trapezoids of positive height inside the graph, whose face f is that of rows[f - 1].
-inline std::multiset<Drawn> inside_of(const TrapezoidalGraph& g,
-                                      std::span<const std::uint32_t> rows) {
+inline std::multiset<Drawn> inside_of(const TrapezoidalGraph& g, const FaceFeatures& rows) {
   std::multiset<Drawn> found;
   for (const NodeId n : g.inside_nodes()) {
     const Node& node = g.node(n);
@@ -29,8 +28,10 @@ inline std::multiset<Drawn> inside_of(const TrapezoidalGraph& g,
     const int top = g.point(node.end[kUp]).y;
     const int bottom = g.point(node.end[kDown]).y;
     if (top == bottom) continue;
-    found.insert(drawn(rows[g.face(node) - 1], top, bottom, at(kLeft, kUp), at(kLeft, kDown),
-                       at(kRight, kUp), at(kRight, kDown)));
+    for (const std::uint32_t row : rows.of(g.face(node))) {
+      found.insert(drawn(row, top, bottom, at(kLeft, kUp), at(kLeft, kDown), at(kRight, kUp),
+                         at(kRight, kDown)));
+    }
   }
   return found;
 }
