@@ -258,7 +258,10 @@ TEST_P(GeneratedOverlapsTest, AreTrueInEveryStyle) {
   const TrueLayer layer = read_layer(file.path(), "kind");
   Program off({file.path()}, CoverageMode::off);
   Program automatic({file.path()}, CoverageMode::automatic);
-  HeldToTruth held({{"shapes"}, {&layer}, {{"coverage off", &off}, {"coverage auto", &automatic}}});
+  Program on({file.path()}, CoverageMode::on);  // in one graph, with places in common
+  HeldToTruth held({{"shapes"},
+                    {&layer},
+                    {{"coverage off", &off}, {"coverage auto", &automatic}, {"coverage on", &on}}});
   look_at_all(held, classes_of(layer, "kind"));
   expect_true(held, kind.name, kExceptions);
 }

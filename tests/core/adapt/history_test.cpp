@@ -16,8 +16,6 @@
 namespace trapeze {
 namespace {
 
-/// Of the one feature.
-
 TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
   for (unsigned seed = 0; seed < 210; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -4,6 +4,7 @@
 
 #include <deque>
 
+#include "render/picture/compose.h"
 #include "render/software/software_renderer.h"
 #include "tests/core/shapes/layers.h"
 
