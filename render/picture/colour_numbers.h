@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/picture/colour.h"
 #include "render/picture/number_table.h"
-#include "render/picture/picture.h"
+#include "render/picture/origin.h"
 
 namespace trapeze {
 

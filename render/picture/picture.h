@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/picture/colour.h"
+#include "render/picture/origin.h"
 
 namespace trapeze {
 
@@ -21,13 +22,6 @@ struct Picture {
     return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(column)];
   }
-};
-
-/// How a colour of a picture came about.
-enum class Origin : std::uint8_t {
-  flat,   // as styles have it: of whole pixels, without any edge in them
-  edge,   // one of even steps between two flat ones, along an edge
-  mixed,  // otherwise
 };
 
 /// Pixels of one colour that lie side by side in a row.

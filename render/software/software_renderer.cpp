@@ -38,8 +38,7 @@ struct SoftwareRenderer::Piece {
 struct SoftwareRenderer::RowPiece {
   double x_from;
   double x_to;
-  double height;             // of it, in pixels
-  double height_per_column;  // that it rises or falls for each column; 0 if it is vertical
+  double height;  // of it, in pixels
 };
 
 namespace {
@@ -202,11 +201,12 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign
     return;
   }
   // The last column takes what is left, so that the sum is the height whatever is rounded.
+  const double height_per_column = piece.height / (high - low);
   double left = piece.height;
   double x = low;
   for (int column = first; column < last; ++column) {
     const double next_x = column + 1.0;
-    const double part = std::min((next_x - x) * piece.height_per_column, left);
+    const double part = std::min((next_x - x) * height_per_column, left);
     add_to(column, part, 0.5 * (x + next_x));
     left -= part;
     x = next_x;
@@ -220,9 +220,8 @@ void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
   const int first = truncate(piece.y_top);
   const double width = piece.x_bottom - piece.x_top;
   const double height = piece.y_bottom - piece.y_top;
-  const double height_per_column = width != 0 ? height / std::abs(width) : 0;
   if (piece.y_bottom <= first + 1) {
-    add_row(first, {piece.x_top, piece.x_bottom, height, height_per_column}, sign);
+    add_row(first, {piece.x_top, piece.x_bottom, height}, sign);
     return;
   }
   const double slope = width / height;
@@ -233,7 +232,7 @@ void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
   for (int row = first; y < piece.y_bottom; ++row) {
     const double next_y = std::min(row + 1.0, piece.y_bottom);
     const double next_x = std::clamp(piece.x_top + (next_y - piece.y_top) * slope, low, high);
-    add_row(row, {x, next_x, next_y - y, height_per_column}, sign);
+    add_row(row, {x, next_x, next_y - y}, sign);
     x = next_x;
     y = next_y;
   }

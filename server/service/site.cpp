@@ -31,6 +31,8 @@ namespace trapeze {
 
 namespace {
 
+constexpr std::size_t kKnownTargetBytes = std::size_t{8} << 20;
+
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
 
@@ -196,6 +198,12 @@ HttpResponse undrawn_response(TileOutcome outcome) {
   }
 }
 
+std::vector<std::size_t> layers_of(const TilePlan& plan) {
+  std::vector<std::size_t> layers;
+  for (const LayerPaint& paint : plan.layers) layers.push_back(paint.layer);
+  return layers;
+}
+
 }  // namespace
 
 Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, TileService& tiles,
@@ -209,6 +217,7 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       data_(data),
       tiles_(tiles),
       cache_(cache),
+      known_targets_(std::make_unique<KnownTargets>(kKnownTargetBytes)),
       styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)),
       documents_(std::make_unique<DocumentWorker>()) {}
 
@@ -425,6 +434,7 @@ HttpResponse Site::answer_file(const Target& target, const HttpRequest& request)
 
 void Site::handle_tiles(const Target& target, const HttpRequest& request,
                         const Respond& respond) const {
+  if (answer_known(request, respond)) return;
   const auto parsed = parse_tiles_target(target, *styles_);
   if (!parsed) return respond(problem_response(parsed.problem()));
   const auto& tiles = *parsed;
@@ -432,6 +442,25 @@ void Site::handle_tiles(const Target& target, const HttpRequest& request,
     return send_json(request, tile_json_of(*tile_json, request), respond);
   }
   handle_tile(std::get<TileRequest>(tiles), request, respond);
+}
+
+/// False if the target is not known, or the tile has to be drawn.
+bool Site::answer_known(const HttpRequest& request, const Respond& respond) const {
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return false;
+  const auto known = known_targets_->find(dataset, request.target);
+  if (known == nullptr) return false;
+  const bool is_whole = std::ranges::all_of(
+      known->layers, [&](std::size_t layer) { return dataset->layers()[layer].is_whole(); });
+  if (!is_whole) return false;
+  if (matches_entity_tag(request.if_none_match, known->entity_tag)) {
+    respond(tile_headers(304, known->entity_tag, options_.cache_control));
+    return true;
+  }
+  const auto kept = cache_.find(known->key);
+  if (kept.bytes == nullptr) return false;
+  respond(tile_response(kept, known->entity_tag, options_.cache_control, known->format, "HIT"));
+  return true;
 }
 
 void Site::handle_document(const Documents& documents, const Target& target,
@@ -514,11 +543,16 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (const ServedLayer* damaged = plan.damaged_layer()) {
     return respond(problem_response(damaged_layer(*damaged)));
   }
-  if (matches_entity_tag(request.if_none_match, entity_tag)) {
-    return respond(tile_headers(304, entity_tag, options_.cache_control));
-  }
-  if (const auto kept = cache_.find(key); kept.bytes != nullptr) {
-    return respond(tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
+  const bool is_held = matches_entity_tag(request.if_none_match, entity_tag);
+  const auto kept = is_held ? TileCache::Tile() : cache_.find(key);
+  if (is_held || kept.bytes != nullptr) {
+    if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
+      known_targets_->insert(plan.dataset, request.target,
+                             {key, entity_tag, tile.format, layers_of(plan)});
+    }
+    return respond(
+        is_held ? tile_headers(304, entity_tag, options_.cache_control)
+                : tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
   const std::uint64_t cost = drawing_cost(plan);

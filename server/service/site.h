@@ -24,6 +24,7 @@
 #include "server/http/rate_limit.h"
 #include "server/http/static_files.h"
 #include "server/service/document_worker.h"
+#include "server/service/known_targets.h"
 #include "server/styles/style_book.h"
 #include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_service.h"
@@ -98,6 +99,7 @@ class Site {
   void handle_tiles(const Target& target, const HttpRequest& request, const Respond& respond) const;
   void handle_document(const Documents& documents, const Target& target, const HttpRequest& request,
                        const Respond& respond) const;
+  bool answer_known(const HttpRequest& request, const Respond& respond) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;
   HttpResponse answer_metrics() const;
@@ -118,6 +120,7 @@ class Site {
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;
+  const std::unique_ptr<KnownTargets> known_targets_;
   const std::unique_ptr<StyleBook> styles_;
   const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the others
 };

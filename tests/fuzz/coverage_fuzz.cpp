@@ -136,7 +136,7 @@ void check_group(const std::vector<std::uint32_t>& group, const Input& input) {
   if (is_made(input.checks, Checks::tolerances)) check_tolerances(graph, input);
   if (!is_made(input.checks, Checks::history)) return;
   History history;
-  HistoryRecorder().record(graph, rows, {}, history);
+  HistoryRecorder().record(graph, assembly.outcome.faces.named(rows), {}, history);
 }
 
 void check(const std::uint8_t* data, std::size_t size) {

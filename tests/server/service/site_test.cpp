@@ -181,6 +181,41 @@ TEST_F(SiteTest, ATileIsDrawnOnceAndThenKept) {
   EXPECT_EQ(get("/tiles/rings/0/0/0.png?fill=f01").header("X-Cache"), "MISS");
 }
 
+// What a target means is remembered; only for as long as the data are the same.
+TEST_F(SiteTest, WhatIsAskedForAgainFollowsTheData) {
+  const std::string target = "/tiles/rings/0/0/0.png?fill=f02";
+  const auto drawn = get(target);
+  ASSERT_EQ(drawn.header("X-Cache"), "MISS");
+  const std::string tag(drawn.header("ETag"));
+  for (int i = 0; i < 3; ++i) {
+    const auto kept = get(target);
+    EXPECT_EQ(kept.header("X-Cache"), "HIT");
+    EXPECT_EQ(kept.body, drawn.body);
+    EXPECT_EQ(kept.header("ETag"), tag);
+    EXPECT_EQ(get(target, tag).status, 304);
+  }
+  sample_.data().set(Dataset::load(layers_of_files({testing::fixture("west.geojson")})));
+  EXPECT_EQ(get(target).status, 404);
+  EXPECT_EQ(get(target, tag).status, 404);
+  auto layers = layers_of_files({testing::fixture("west.geojson")});
+  layers[0].name = "rings";
+  sample_.data().set(Dataset::load(layers));
+  const auto other = get(target);
+  EXPECT_EQ(other.header("X-Cache"), "MISS");
+  EXPECT_NE(other.header("ETag"), tag);
+  EXPECT_NE(*other.body, *drawn.body);
+}
+
+// A style of that name may be another one tomorrow.
+TEST_F(SiteTest, TargetsThatNameAStyleAreNotRemembered) {
+  EXPECT_TRUE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?fill=f02"));
+  EXPECT_FALSE(KnownTargets::may_be_known("/tiles/rings/s/dark/0/0/0.png"));
+  EXPECT_FALSE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?style=dark"));
+  EXPECT_FALSE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?%73tyle=dark"));
+  EXPECT_TRUE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?filter=name%3D%27a%20b%27"));
+  EXPECT_FALSE(KnownTargets::may_be_known("/tiles/rings/0/0/0.png?fill=" + std::string(5000, 'f')));
+}
+
 TEST_F(SiteTest, EmptyAndFullTilesSaySo) {
   const auto hint = [this](const std::string& target) {
     const std::string first(get(target).header("OATiles-hint"));
