@@ -154,6 +154,7 @@ std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileI
         const Layer& layer = *pair.layers[mode];
         const Seconds seconds = timed([&] {
           layer.select({view.box(), level, level, SmallPolygons::dust}, ranges);
+          layer.keep_uppermost(ranges);
           renderer.draw(layer.mesh(), ranges, view, mask);
         });
         if (round > 0) shortest[mode].take_shorter(seconds);  // the first one uploads

@@ -94,6 +94,7 @@ void measure_layer(const Rings& rings, Screen& screen, GrowthPoint& point) {
   for (int i = 0; i < 2 * kRepetitions + 1; ++i) {
     time(draw, [&] {
       layer->select({view.box(), level, level, SmallPolygons::dust}, ranges[0]);
+      layer->keep_uppermost(ranges[0]);
       screen.draw(meshes, ranges, view, masks);
     });
   }

@@ -78,6 +78,7 @@ std::vector<StagedTile> selected_tiles(const Subject& subject, int zoom) {
     const Level level = nearest_level(kTolerance * tile.view.cells_per_pixel);
     tile.selection = {tile.view.box(), level, level, SmallPolygons::dust};
     subject.layer->select(tile.selection, tile.ranges);
+    subject.layer->keep_uppermost(tile.ranges);
     tiles.push_back(std::move(tile));
   }
   return tiles;

@@ -132,7 +132,7 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
   touched_nodes_.clear();
   edge_is_touched_.assign(graph.edges().size(), 0);
   node_is_touched_.assign(graph.nodes().size(), 0);
-  measure_loop_sizes(graph, loop_sizes_);
+  measure_loop_sizes(graph, *rows_, loop_sizes_);
   for (std::size_t e = 0; e < graph.edges().size(); ++e) {
     if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
   }

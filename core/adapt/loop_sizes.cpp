@@ -1,7 +1,6 @@
 #include "core/adapt/loop_sizes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -34,17 +33,24 @@ class Groups {
 /// A loop, or an arc between junctions: edges with the same faces on their sides.
 struct Piece {
   CornerId first;
-  // What it adds to twice the area of the boundary on one of its sides, and takes from that on the
-  // other; cells squared.
+  // What it adds to twice the area of the features on its left, as one walks along it, and takes
+  // from that of those on its right; cells squared.
   Int128 doubled_area = 0;
-  // By side, as one walks along it: the face, and its boundary with what that hangs together with.
-  std::array<FaceId, 2> faces;
-  std::array<std::uint32_t, 2> boundaries;
+  // In boundaries_: of the features that are on one of its sides only.
+  std::uint32_t first_boundary = 0;
+  std::uint32_t end_boundary = 0;
+};
+
+/// A part of the boundary of a feature.
+struct FeatureBoundary {
+  std::uint32_t feature = 0;
+  bool is_on_left = false;
 };
 
 class Measuring {
  public:
-  explicit Measuring(const TrapezoidalGraph& graph) : graph_(graph) {
+  Measuring(const TrapezoidalGraph& graph, const FaceFeatures& faces)
+      : graph_(graph), faces_(faces) {
     is_in_piece_.assign(graph.corners().size(), 0);
   }
 
@@ -62,7 +68,7 @@ class Measuring {
     join_at_junctions();
     sizes.assign(graph_.edges().size(), 0);
     for (const Piece& piece : pieces_) {
-      const LoopSize size = loop_size_of(std::max(area_on(piece, kLeft), area_on(piece, kRight)));
+      const LoopSize size = loop_size_of(greatest_area(piece));
       for_each_corner(piece.first, [&](CornerId, const Corner& corner) {
         if (!corner.edge.is_none()) sizes[corner.edge] = size;
       });
@@ -81,20 +87,22 @@ class Measuring {
   }
 
   void add_piece(CornerId first) {
-    Piece piece{first, 0, {}, {}};
+    Piece piece{first};
     const Corner& begin = graph_.corner(first);
     const Edge& edge = graph_.edge(begin.edge);
     const bool leads_down = begin.vertex == edge.end[kUp];
-    for (const Side side : {kLeft, kRight}) {
-      piece.faces[side] = edge.face[leads_down ? side : opposite(side)];
-      piece.boundaries[side] = static_cast<std::uint32_t>(2 * pieces_.size() + side);
-    }
+    const auto left = faces_.of(edge.face[leads_down ? kLeft : kRight]);
+    const auto right = faces_.of(edge.face[leads_down ? kRight : kLeft]);
+    piece.first_boundary = static_cast<std::uint32_t>(boundaries_.size());
+    for_each_apart(left, right, [this](std::uint32_t i) { boundaries_.push_back({i, true}); });
+    for_each_apart(right, left, [this](std::uint32_t i) { boundaries_.push_back({i, false}); });
+    piece.end_boundary = static_cast<std::uint32_t>(boundaries_.size());
     for_each_corner(first, [&](CornerId c, const Corner& corner) {
       is_in_piece_[c] = 1;
       if (!corner.next.is_none()) piece.doubled_area += doubled_area_from(corner);
       if (!corner.is_end()) return;
-      for (const Side side : {kLeft, kRight}) {
-        ends_.emplace_back(corner.vertex, piece.faces[side], piece.boundaries[side]);
+      for (std::uint32_t i = piece.first_boundary; i < piece.end_boundary; ++i) {
+        ends_.emplace_back(corner.vertex, boundaries_[i].feature, i);
       }
     });
     pieces_.push_back(piece);
@@ -109,38 +117,47 @@ class Measuring {
 
   void join_at_junctions() {
     std::sort(ends_.begin(), ends_.end());
-    groups_ = Groups(2 * pieces_.size());
+    groups_ = Groups(boundaries_.size());
     for (std::size_t i = 1; i < ends_.size(); ++i) {
-      const auto& [vertex, face, boundary] = ends_[i];
-      const auto& [vertex_before, face_before, boundary_before] = ends_[i - 1];
-      if (vertex == vertex_before && face == face_before) groups_.join(boundary, boundary_before);
+      const auto& [vertex, feature, boundary] = ends_[i];
+      const auto& [vertex_before, feature_before, boundary_before] = ends_[i - 1];
+      const bool hang_together = vertex == vertex_before && feature == feature_before;
+      if (hang_together) groups_.join(boundary, boundary_before);
     }
-    doubled_areas_.assign(2 * pieces_.size(), 0);
+    doubled_areas_.assign(boundaries_.size(), 0);
     for (const Piece& piece : pieces_) {
-      doubled_areas_[groups_.first_of(piece.boundaries[kLeft])] += piece.doubled_area;
-      doubled_areas_[groups_.first_of(piece.boundaries[kRight])] -= piece.doubled_area;
+      for (std::uint32_t i = piece.first_boundary; i < piece.end_boundary; ++i) {
+        Int128& doubled_area = doubled_areas_[groups_.first_of(i)];
+        doubled_area += boundaries_[i].is_on_left ? piece.doubled_area : -piece.doubled_area;
+      }
     }
   }
 
-  // Outside, features that touch have one boundary together, which is that of none of them.
-  double area_on(const Piece& piece, Side side) {
-    if (piece.faces[side] == kOutside) return 0;
-    const std::uint32_t boundary = groups_.first_of(piece.boundaries[side]);
-    return std::abs(static_cast<double>(doubled_areas_[boundary])) / 2;
+  double greatest_area(const Piece& piece) {
+    double greatest = 0;
+    for (std::uint32_t i = piece.first_boundary; i < piece.end_boundary; ++i) {
+      const Int128 doubled_area = doubled_areas_[groups_.first_of(i)];
+      greatest = std::max(greatest, std::abs(static_cast<double>(doubled_area)) / 2);
+    }
+    return greatest;
   }
 
   const TrapezoidalGraph& graph_;
+  const FaceFeatures& faces_;
   std::vector<Piece> pieces_;
+  std::vector<FeatureBoundary> boundaries_;  // by piece
   Table<CornerId, std::uint8_t> is_in_piece_;
-  std::vector<std::tuple<VertexId, FaceId, std::uint32_t>> ends_;  // of arcs, and boundaries there
+  std::vector<std::tuple<VertexId, std::uint32_t, std::uint32_t>>
+      ends_;  // of arcs, and boundaries there
   Groups groups_{0};
   std::vector<Int128> doubled_areas_;  // by first boundary of a group
 };
 
 }  // namespace
 
-void measure_loop_sizes(const TrapezoidalGraph& graph, Table<EdgeId, LoopSize>& sizes) {
-  Measuring(graph).measure(sizes);
+void measure_loop_sizes(const TrapezoidalGraph& graph, const FaceFeatures& faces,
+                        Table<EdgeId, LoopSize>& sizes) {
+  Measuring(graph, faces).measure(sizes);
 }
 
 }  // namespace trapeze

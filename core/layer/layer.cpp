@@ -1,6 +1,7 @@
 #include "core/layer/layer.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/layer/layer_contents.h"
@@ -36,6 +37,21 @@ void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>&
   const LayerContents& c = *contents_;
   c.mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
   c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
+}
+
+void Layer::keep_uppermost(std::vector<TrapezoidRange>& ranges) const {
+  if (!overlaps().are_any_in_common()) return;
+  std::vector<TrapezoidRange> kept;
+  std::optional<std::uint32_t> uppermost;
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const bool is_above = uppermost && feature_of(*uppermost) != kNoFeature &&
+                          feature_of(i) != kNoFeature &&
+                          mesh().trapezoids[*uppermost] == mesh().trapezoids[i];
+    if (uppermost && !is_above) append_trapezoid(*uppermost, kept);
+    uppermost = i;
+  });
+  if (uppermost) append_trapezoid(*uppermost, kept);
+  ranges.swap(kept);
 }
 
 void Layer::select_horizontal_edges(const Box& box, Level level,

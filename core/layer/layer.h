@@ -70,7 +70,15 @@ class Layer {
   /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
   /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
   /// that stands for holes, left and right edges are swapped: its area is negative.
+  ///
+  /// A place that several features of a coverage have in common (FeatureOverlap::in_common()) has a
+  /// trapezoid for each, one after the other, the uppermost last; see keep_uppermost().
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+
+  /// Of places that features have in common, leaves the trapezoid of the uppermost feature only:
+  /// for drawing all features alike, in which each place counts once. `ranges` as select() found
+  /// them.
+  void keep_uppermost(std::vector<TrapezoidRange>& ranges) const;
 
   /// Replaces `ranges` by the horizontal edges of the boundary at the level that may touch the box,
   /// as trapezoids without height whose left and right sides are the edge. All other edges of the

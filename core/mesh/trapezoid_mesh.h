@@ -93,4 +93,13 @@ void for_each_trapezoid(std::span<const TrapezoidRange> ranges, const Visit& vis
   }
 }
 
+/// To ranges in ascending order, all below it.
+inline void append_trapezoid(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
+  if (!ranges.empty() && ranges.back().first + ranges.back().count == trapezoid) {
+    ++ranges.back().count;
+  } else {
+    ranges.push_back({trapezoid, 1});
+  }
+}
+
 }  // namespace trapeze

@@ -91,15 +91,6 @@ void sort_and_part(std::vector<std::uint32_t>& items) {
   }
 }
 
-/// To ranges in ascending order.
-void append(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
-  if (!ranges.empty() && ranges.back().first + ranges.back().count == trapezoid) {
-    ++ranges.back().count;
-  } else {
-    ranges.push_back({trapezoid, 1});
-  }
-}
-
 /// The number of a feature's class; 0 if all are drawn alike.
 std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
   return classes == nullptr ? std::uint8_t{0} : (*classes)[row];
@@ -229,18 +220,19 @@ LayerDrawing::ClassDrawing& LayerDrawing::drawing_beneath(std::uint8_t number, s
 void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
                                  DrawingTools& tools) {
   has_stack_ = find_stack(classes, selection, tools);
-  const bool are_in_common =
-      layer_->overlaps().are_any_in_common() && !(has_stack_ && tools.stack.covers_in_common());
-  if (classes == nullptr && !has_stack_ && !are_in_common) {
+  if (classes == nullptr && !has_stack_) {
+    layer_->keep_uppermost(tools.ranges);
     if (!tools.ranges.empty()) {
       class_drawing(0).ranges.assign(tools.ranges.begin(), tools.ranges.end());
     }
     return;
   }
+  const bool are_in_common =
+      layer_->overlaps().are_any_in_common() && !(has_stack_ && tools.stack.covers_in_common());
   const auto add = [&](const Painted& one) {
     const bool is_cut_up =
         has_stack_ && one.row != Layer::kNoFeature && tools.stack.add(one.row, one.trapezoid);
-    if (!is_cut_up) append(one.trapezoid, class_drawing(one.number).ranges);
+    if (!is_cut_up) append_trapezoid(one.trapezoid, class_drawing(one.number).ranges);
   };
   std::optional<Painted> uppermost;
   CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
@@ -410,7 +402,7 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfL
     const std::uint32_t row = layer_->feature_of(i);
     const std::uint8_t number = number_of(classes, row);
     const bool is_cut = has_stack_ && tools.stack.is_cut(row);
-    if (number != kNotDrawn && !is_cut) append(i, by_class[number]);
+    if (number != kNotDrawn && !is_cut) append_trapezoid(i, by_class[number]);
   });
   for (std::size_t number = 0; number < by_class.size(); ++number) {
     add_edges(by_class[number], static_cast<std::uint8_t>(number));

@@ -29,6 +29,7 @@ class GlAgreementTest : public ::testing::TestWithParam<std::string> {
 
   Difference compare(const TileId& tile, const Layer::Selection& selection) {
     real_->layer->select(selection, ranges_);
+    real_->layer->keep_uppermost(ranges_);
     return compare_renderers(software_, *gl_, real_->layer->mesh(), ranges_, View::of_tile(tile));
   }
 

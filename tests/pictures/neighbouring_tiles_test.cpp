@@ -18,6 +18,7 @@ constexpr int kPlacesPerZoom = 6;
 void draw(const RealLayer& real, const View& view, MaskRenderer& renderer, Mask& out) {
   std::vector<TrapezoidRange> ranges;
   real.layer->select(default_selection(view), ranges);
+  real.layer->keep_uppermost(ranges);
   renderer.draw(real.layer->mesh(), ranges, view, out);
 }
 
