@@ -57,8 +57,9 @@ std::vector<TileId> tiles_around_vertices(const RealLayer& real, int zoom, int c
   std::vector<TileId> tiles;
   if (points.empty()) return tiles;
   std::mt19937 random(seed);
-  // Where there are fewer tiles than wanted, the same ones come up again and again.
-  for (int i = 0; i < 4 * count && static_cast<int>(tiles.size()) < count; ++i) {
+  // Where there are fewer tiles than wanted, the same ones come up again and again, until those
+  // with few vertices have come up too.
+  for (int i = 0; i < 256 * count && static_cast<int>(tiles.size()) < count; ++i) {
     // Not by a distribution: those differ between standard libraries.
     const TileId tile = tile_around(points[random() % points.size()], zoom);
     if (std::ranges::find(tiles, tile) == tiles.end()) tiles.push_back(tile);

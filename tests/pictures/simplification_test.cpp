@@ -98,7 +98,6 @@ class SimplificationTest : public ::testing::TestWithParam<std::string> {
     for (const TileId& tile : tiles_around_vertices(*real_, zoom, kTilesPerZoom, 3)) {
       const View view = View::of_tile(tile);
       real_->layer->select(select(view), ranges);
-      real_->layer->keep_uppermost(ranges);
       software_.draw(real_->layer->mesh(), ranges, view, drawn);
       add_tile(real_->outlines.draw(view), drawn, tile, distance);
     }
