@@ -31,7 +31,8 @@ TEST(History, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
       recorder.record(graph, options, history);
       for (int level = 0; level <= kLastLevel; ++level) {
         adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-        ASSERT_EQ(alive_at(history, static_cast<Level>(level)), inside_of(adaptable.graph(), FaceFeatures({0})))
+        ASSERT_EQ(alive_at(history, static_cast<Level>(level)),
+                  inside_of(adaptable.graph(), FaceFeatures({0})))
             << "level " << level;
       }
     }

@@ -21,7 +21,9 @@ TEST(RowBitsTest, AreThoseOfEveryPixelByItself) {
       std::vector<std::uint8_t> values;
       while (values.size() < width) {
         const std::size_t length = 1 + random() % 40;
-        const auto value = static_cast<std::uint8_t>(random() % 3 == 0 ? 0 : random() % 3 == 1 ? 255 : random());
+        const auto value = static_cast<std::uint8_t>(random() % 3 == 0   ? 0
+                                                     : random() % 3 == 1 ? 255
+                                                                         : random());
         values.resize(std::min(width, values.size() + length), value);
       }
       std::vector<std::uint64_t> changes(words_for(width), 0);
