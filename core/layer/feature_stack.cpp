@@ -1,7 +1,6 @@
 #include "core/layer/feature_stack.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 namespace trapeze {
@@ -80,12 +79,13 @@ void FeatureStack::grow() {
 bool FeatureStack::find_covers(const Cancellation* cancellation) {
   constexpr unsigned kStepsBetweenChecks = 4096;
   CancellationCheck check(cancellation, kStepsBetweenChecks);
-  const auto of_all = std::views::iota(std::uint32_t{0}, count_);
-  const bool are_all_opaque = std::ranges::all_of(
-      of_all, [this](std::uint32_t number) { return features_[number].paint.is_opaque(); });
+  bool are_all_opaque = true;
+  for (std::uint32_t number = 0; number < count_; ++number) {
+    are_all_opaque = are_all_opaque && features_[number].paint.is_opaque();
+  }
   covers_in_common_ = !are_all_opaque || options_.cuts_whole_features;
   bool are_any = false;
-  for (const std::uint32_t number : of_all) {
+  for (std::uint32_t number = 0; number < count_; ++number) {
     Feature& feature = features_[number];
     for (const FeatureOverlap& overlap : overlaps_->of(feature.row)) {
       check();

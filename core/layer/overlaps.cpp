@@ -326,8 +326,11 @@ FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOver
   const auto by_rows = [](const FeatureOverlap& pair) { return std::pair(pair.row, pair.other); };
   found.pairs.insert(found.pairs.end(), known.begin(), known.end());
   std::ranges::sort(found.pairs, {}, by_rows);
-  const auto again = std::ranges::unique(found.pairs, {}, by_rows);
-  found.pairs.erase(again.begin(), again.end());
+  const auto are_of_the_same = [&](const FeatureOverlap& one, const FeatureOverlap& other) {
+    return by_rows(one) == by_rows(other);
+  };
+  found.pairs.erase(std::unique(found.pairs.begin(), found.pairs.end(), are_of_the_same),
+                    found.pairs.end());
   return found;
 }
 
