@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <utility>
 
 #include "render/mask/stopwatch.h"
 
@@ -124,16 +125,21 @@ PictureError compare(std::span<const ScaledView> views, std::span<const std::vec
   std::uint64_t covered_in_full = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
     for (std::size_t layer = 0; layer < pictures[v].size(); ++layer) {
-      const auto drawn = pictures[v][layer].pixels();
-      const auto truth = full_detail[v][layer].pixels();
-      for (std::size_t i = 0; i < drawn.size(); ++i) {
-        if (drawn[i] == 0 && truth[i] == 0) continue;
-        const int off = std::abs(drawn[i] - truth[i]);
-        ++error.pixels;
-        difference += static_cast<std::uint64_t>(off);
-        plainly_different += off > kPlainlyDifferent ? 1 : 0;
-        covered += drawn[i];
-        covered_in_full += truth[i];
+      const Mask& drawn = pictures[v][layer];
+      const Mask& truth = full_detail[v][layer];
+      for (int row = 0; row < drawn.height(); ++row) {
+        std::uint64_t begin = 0;
+        const auto add = [&](std::uint64_t end, int value, int true_value) {
+          const std::uint64_t count = end - std::exchange(begin, end);
+          if (value == 0 && true_value == 0) return;
+          const auto off = static_cast<std::uint64_t>(std::abs(value - true_value));
+          error.pixels += count;
+          difference += count * off;
+          plainly_different += off > kPlainlyDifferent ? count : 0;
+          covered += count * static_cast<std::uint64_t>(value);
+          covered_in_full += count * static_cast<std::uint64_t>(true_value);
+        };
+        for_each_run_of_both(drawn.row(row), truth.row(row), add);
       }
     }
   }

@@ -44,6 +44,7 @@ Json to_json(const Figure& figure) {
   json["tiles_per_second"] = rounded(figure.tiles_per_second());
   json["best_tiles_per_second"] = rounded(figure.best_tiles_per_second());
   json["cpu_ms_per_tile"] = rounded(figure.cpu_ms_per_tile());
+  if (figure.bytes_per_tile() > 0) json["bytes_per_tile"] = rounded(figure.bytes_per_tile());
   json.update(to_json(figure.percentiles()));
   Json& zooms = json["by_zoom"] = Json::array();
   for (const auto& [zoom, percentiles] : figure.percentiles_by_zoom()) {
@@ -110,6 +111,16 @@ double Figure::cpu_ms_per_tile() const {
   return least;
 }
 
+double Figure::bytes_per_tile() const {
+  double bytes = 0;
+  std::size_t tiles = 0;
+  for (const TileRun& run : runs_) {
+    for (const TileTime& tile : run.tiles) bytes += tile.bytes;
+    tiles += run.tiles.size();
+  }
+  return tiles == 0 ? 0 : bytes / static_cast<double>(tiles);
+}
+
 Percentiles Figure::percentiles() const {
   std::vector<double> times;
   for (const TileRun& run : runs_) {
@@ -129,16 +140,17 @@ std::map<int, Percentiles> Figure::percentiles_by_zoom() const {
 }
 
 void print_table_head() {
-  std::printf("%-48s %7s %9s %9s %8s %8s %8s %8s %8s\n", "", "tiles", "tiles/s", "best", "cpu ms",
-              "p50 ms", "p95 ms", "p99 ms", "max ms");
+  std::printf("%-48s %7s %9s %9s %8s %8s %8s %8s %8s %8s\n", "", "tiles", "tiles/s", "best",
+              "cpu ms", "bytes", "p50 ms", "p95 ms", "p99 ms", "max ms");
 }
 
 void print_line(const Figure& figure) {
   if (figure.has_runs()) {
     const Percentiles p = figure.percentiles();
-    std::printf("%-48s %7zu %9.0f %9.0f %8.3f %8.2f %8.2f %8.2f %8.2f\n", figure.name().c_str(),
-                p.count, figure.tiles_per_second(), figure.best_tiles_per_second(),
-                figure.cpu_ms_per_tile(), p.p50, p.p95, p.p99, p.max);
+    std::printf("%-48s %7zu %9.0f %9.0f %8.3f %8.0f %8.2f %8.2f %8.2f %8.2f\n",
+                figure.name().c_str(), p.count, figure.tiles_per_second(),
+                figure.best_tiles_per_second(), figure.cpu_ms_per_tile(), figure.bytes_per_tile(),
+                p.p50, p.p95, p.p99, p.max);
   }
   if (!figure.note().empty()) {
     std::printf("%-48s %s\n", figure.name().c_str(), figure.note().c_str());
@@ -151,7 +163,7 @@ void print_line(const Figure& figure) {
 
 void print_zooms(const Figure& figure) {
   for (const auto& [zoom, p] : figure.percentiles_by_zoom()) {
-    std::printf("  zoom %2d %66zu %26.2f %8.2f %8.2f %8.2f\n", zoom, p.count, p.p50, p.p95, p.p99,
+    std::printf("  zoom %2d %75zu %26.2f %8.2f %8.2f %8.2f\n", zoom, p.count, p.p50, p.p95, p.p99,
                 p.max);
   }
   std::fflush(stdout);

@@ -10,6 +10,7 @@ namespace trapeze {
 struct TileTime {
   int zoom = 0;
   double ms = 0;
+  double bytes = 0;  // of the picture; 0: not counted
 };
 
 /// One run over a list of tiles.
@@ -49,6 +50,8 @@ class Figure {
   double best_tiles_per_second() const;
   /// Processor time of the run that took least, by tile.
   double cpu_ms_per_tile() const;
+  /// In the mean.
+  double bytes_per_tile() const;
   /// Over the tiles of all runs.
   Percentiles percentiles() const;
   std::map<int, Percentiles> percentiles_by_zoom() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -154,9 +155,31 @@ Trip usa48_trip(const std::string& data_folder) {
   return trip;
 }
 
+Trip layer_trip(const std::string& layer, const std::string& data_folder) {
+  constexpr int kZooms = 8;
+  constexpr int kViews = 3;
+  constexpr int kLastZoom = 18;
+  Trip trip{layer, {{layer, data_folder + "/" + layer + ".fgb", "a05040"}}, {}};
+  const Places places = read_places(trip.layers);
+  const std::int64_t width = std::int64_t{places.box.max_x} - places.box.min_x;
+  int first = 0;
+  while (first < kLastZoom && width * kTileSide < Screen().width * (kGridSize >> first)) ++first;
+  trip.tiles = make_trip(places, first, std::min(first + kZooms - 1, kLastZoom), kViews);
+  return trip;
+}
+
 std::vector<std::string> trip_names() {
   std::vector<std::string> names;
   for (const auto& [name, make] : kTrips) names.emplace_back(name);
+  return names;
+}
+
+std::vector<std::string> layer_names(const std::string& data_folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(data_folder)) {
+    if (entry.path().extension() == ".fgb") names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
   return names;
 }
 
@@ -164,7 +187,10 @@ Trip named_trip(const std::string& name, const std::string& data_folder) {
   for (const auto& [known, make] : kTrips) {
     if (name == known) return make(data_folder);
   }
-  throw std::runtime_error("there is no trip " + name);
+  if (!std::filesystem::exists(data_folder + "/" + name + ".fgb")) {
+    throw std::runtime_error("there is no trip " + name + ", and no such layer in " + data_folder);
+  }
+  return layer_trip(name, data_folder);
 }
 
 std::string real_data_folder() {

@@ -65,7 +65,14 @@ Trip shenzhen_from_afar(const std::string& data_folder);
 /// Tiles of all zooms that the boundary of one polygon with 488,034 vertices goes through.
 Trip usa48_trip(const std::string& data_folder);
 
-/// The names of these trips, and the trip of a name. Throws std::runtime_error for others.
+/// Any layer of the folder by itself: three views of each of eight zooms, the first one that at
+/// which the layer is as wide as a screen.
+Trip layer_trip(const std::string& layer, const std::string& data_folder);
+/// The layers that there are, in order.
+std::vector<std::string> layer_names(const std::string& data_folder);
+
+/// The names of the trips that have one, and the trip of a name, which may also be that of a layer.
+/// Throws std::runtime_error for others.
 std::vector<std::string> trip_names();
 Trip named_trip(const std::string& name, const std::string& data_folder);
 

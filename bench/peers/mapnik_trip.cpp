@@ -40,6 +40,7 @@ struct Tile {
   double x = 0;
   double y = 0;
   double ms = 0;
+  std::size_t bytes = 0;
 };
 
 struct Arguments {
@@ -104,6 +105,7 @@ void draw_all(const Arguments& arguments, std::vector<mapnik::Map>& maps,
         const auto begin = Clock::now();
         const std::string png = draw(map, tiles[i], arguments.format);
         tiles[i].ms = 1000 * seconds_since(begin);
+        tiles[i].bytes = png.size();
         if (!arguments.pictures.empty()) keep(tiles[i], png, arguments.pictures);
       }
     });
@@ -126,7 +128,9 @@ void run(const Arguments& arguments) {
   const double seconds = seconds_since(begin);
   std::ofstream result(arguments.result);
   result << seconds << ' ' << cpu_seconds() - cpu_before << '\n';
-  for (const Tile& tile : tiles) result << tile.z << ' ' << tile.ms << '\n';
+  for (const Tile& tile : tiles) {
+    result << tile.z << ' ' << tile.ms << ' ' << tile.bytes << '\n';
+  }
   if (!result.flush()) throw std::runtime_error("cannot write " + arguments.result);
 }
 

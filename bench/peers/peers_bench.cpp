@@ -3,6 +3,7 @@
 //
 //   TRAPEZE_DATA=folder peers_bench                  all trips
 //   peers_bench --trip malta --rounds 1              one of them, once
+//   peers_bench --layers --rounds 1                  every layer of the folder by itself
 //   peers_bench --pictures out/bench/pictures        pictures of all three side by side, no times
 //
 // Mapnik draws within its process (mapnik_trip), without HTTP; Trapeze and MapServer are asked over
@@ -70,7 +71,7 @@ TileRun read_mapnik_result(const std::string& path) {
   std::ifstream file(path);
   TileRun run;
   file >> run.seconds >> run.cpu_seconds;
-  for (TileTime tile; file >> tile.zoom >> tile.ms;) run.tiles.push_back(tile);
+  for (TileTime tile; file >> tile.zoom >> tile.ms >> tile.bytes;) run.tiles.push_back(tile);
   if (run.tiles.empty()) throw std::runtime_error("Mapnik left no result in " + path);
   return run;
 }
@@ -171,6 +172,7 @@ class Contest {
       const std::string name = "as " + them.name().substr(trip_.name.size() + 1);
       ratios.set(name, us.tiles_per_second() / them.tiles_per_second());
       ratios.set(name + ", by processor time", them.cpu_ms_per_tile() / us.cpu_ms_per_tile());
+      ratios.set("bytes of " + name, us.bytes_per_tile() / them.bytes_per_tile());
     }
     return ratios;
   }
@@ -275,10 +277,11 @@ void measure_all(const Options& options, const std::string& command) {
 int run(int argc, char** argv) {
   Options options;
   CLI::App app("Trapeze beside Mapnik and MapServer, on trips over real maps (TRAPEZE_DATA)");
-  app.add_option("--trip", options.trips, "Which ones")
+  app.add_option("--trip", options.trips, "Which ones, or names of layers")
       ->delimiter(',')
-      ->check(CLI::IsMember(trip_names()))
       ->capture_default_str();
+  bool by_layer = false;
+  app.add_flag("--layers", by_layer, "Every layer by itself");
   app.add_option("--server", options.program, "The program trapeze")->capture_default_str();
   app.add_option("--rounds", options.rounds, "How often all is measured")
       ->check(CLI::Range(1, 1000))
@@ -290,6 +293,7 @@ int run(int argc, char** argv) {
                  "Measure nothing; write tiles of all three side by side into this folder");
   app.add_option("--json", options.json, "Where the figures go")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  if (by_layer) options.trips = layer_names(real_data_folder());
   if (options.pictures.empty()) {
     measure_all(options, command_line(argc, argv));
     return 0;

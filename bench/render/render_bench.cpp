@@ -133,7 +133,7 @@ void draw(benchmark::State& state, RendererKind kind, MakeMesh make) {
   renderer->draw(mesh.view(), ranges, kView, mask);  // uploads
   for (auto _ : state) {
     renderer->draw(mesh.view(), ranges, kView, mask);
-    benchmark::DoNotOptimize(mask.row_begin(0));
+    benchmark::DoNotOptimize(mask.row(0).data());
   }
   state.counters["trapezoids"] = mesh.all().count;
 }

@@ -134,7 +134,7 @@ void draw(benchmark::State& state, const std::string& layer, RendererKind kind) 
   draw_all(subject, *renderer, tiles);  // uploads
   go_round(state, tiles, [&](StagedTile& tile) {
     renderer->draw(subject.layer->mesh(), tile.ranges, tile.view, tile.mask);
-    benchmark::DoNotOptimize(tile.mask.row_begin(0));
+    benchmark::DoNotOptimize(tile.mask.row(0).data());
   });
 }
 

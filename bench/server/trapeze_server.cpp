@@ -143,7 +143,8 @@ TileRun tile_run(const Trip& trip, const LoadResult& result, bool uncached) {
     if (uncached && exchange.from_cache) {
       throw std::runtime_error("a tile that should have been drawn came from the cache");
     }
-    run.tiles.push_back({trip.tiles[exchange.request % trip.tiles.size()].z, exchange.ms});
+    run.tiles.push_back({trip.tiles[exchange.request % trip.tiles.size()].z, exchange.ms,
+                         static_cast<double>(exchange.bytes)});
   }
   return run;
 }

@@ -6,6 +6,7 @@
 
 #include "render/gl/gl_program.h"
 #include "render/gl/gl_shader.h"
+#include "render/mask/resolve_row.h"
 #include "render/mask/stopwatch.h"
 
 namespace trapeze {
@@ -162,7 +163,7 @@ void GlRenderer::release_device_memory() {
 }
 
 void GlRenderer::draw_task(const MaskTask& task, DrawTimes& times) {
-  task.out->resize(task.view.width, task.view.height);
+  task.out->begin(task.view.width, task.view.height);
   const int most_rows = static_cast<int>(room_) / task.view.width;
   for (int row = 0; row < task.view.height; row += most_rows) {
     draw_band({&task, row, std::min(most_rows, task.view.height - row), 0}, times);
@@ -308,16 +309,15 @@ void GlRenderer::resolve(const Band& band) {
   const std::span<std::int32_t> differences = differences_.subspan(band.place, band.pixels());
   for (int row = 0; row < band.rows; ++row) {
     const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
-    std::uint8_t* values = band.task->out->row_begin(band.first_row + row);
     if (sums_.empty()) {
-      resolve_row(of_row, gl_shader::kUnitsPerPixel, values);
+      resolve_row(of_row, gl_shader::kUnitsPerPixel, *band.task->out);
       continue;
     }
     const auto sums = std::span(sums_).subspan(static_cast<std::size_t>(row) * width, width);
     take_units(of_row, sums);
     row_.resize(width);
     to_pixels(sums, row_);
-    resolve_row(row_, values);
+    resolve_row(row_, *band.task->out);
   }
   sums_.clear();
 }

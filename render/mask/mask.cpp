@@ -1,8 +1,6 @@
 #include "render/mask/mask.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -56,145 +54,67 @@ void View::check() const {
   }
 }
 
-void Mask::resize(int width, int height) {
-  width_ = width;
-  height_ = height;
-  pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+Mask::Mask(int width, int height, std::uint8_t value) {
+  begin(width, height);
+  for (int row = 0; row < height; ++row) {
+    append(static_cast<std::size_t>(width), value);
+    end_row();
+  }
 }
 
-void Mask::fill(std::uint8_t value) {
-  std::fill(pixels_.begin(), pixels_.end(), value);
+void Mask::begin(int width, int height) {
+  width_ = width;
+  height_ = height;
+  used_ = row_begin_ = 0;
+  row_end_.clear();
+  make_room_for_row();
+}
+
+void Mask::make_room_for_row() {
+  const std::size_t least = used_ + static_cast<std::size_t>(width_);
+  if (runs_.size() < least) runs_.resize(std::max(least, 2 * runs_.size()));
+}
+
+void Mask::append_row(std::span<const std::uint8_t> values) {
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] == values[begin]) continue;
+    append(i, values[begin]);
+    begin = i;
+  }
+  append(values.size(), values[begin]);
+  end_row();
+}
+
+void Mask::end_row() {
+  row_end_.push_back(static_cast<std::uint32_t>(used_));
+  row_begin_ = used_;
+  if (row_end_.size() < static_cast<std::size_t>(height_)) make_room_for_row();
+}
+
+std::uint8_t Mask::at(int column, int row) const {
+  const auto runs = this->row(row);
+  return std::ranges::upper_bound(runs, column, {}, &MaskRun::end)->value;
+}
+
+void Mask::copy_row(int row, std::uint8_t* values) const {
+  std::size_t begin = 0;
+  for (const MaskRun& run : this->row(row)) {
+    // Most runs are short: what is written beyond one is overwritten by the next.
+    for (; begin < run.end; begin += kCopyRoom) std::memset(values + begin, run.value, kCopyRoom);
+    begin = run.end;
+  }
 }
 
 bool Mask::is_all(std::uint8_t value) const {
-  return std::all_of(pixels_.begin(), pixels_.end(),
-                     [value](std::uint8_t p) { return p == value; });
+  return used_ == row_end_.size() &&
+         std::all_of(runs_.begin(), runs_.begin() + static_cast<std::ptrdiff_t>(used_),
+                     [value](const MaskRun& run) { return run.value == value; });
 }
 
-namespace {
-
-// Four pixels at once, by the vector extensions of g++ and clang.
-template <class Element>
-struct Four {
-  using Type __attribute__((vector_size(4 * sizeof(Element)))) = Element;
-};
-template <class Element>
-using FourOf = typename Four<Element>::Type;
-
-constexpr std::size_t kBlock = 8;  // pixels that are looked at together
-
-// Sums of the first 1, 2, 3, 4 elements.
-template <class Element>
-FourOf<Element> sums_of(FourOf<Element> differences) {
-  const FourOf<Element> none{};
-  const FourOf<Element> pairs =
-      differences + __builtin_shufflevector(none, differences, 0, 4, 5, 6);
-  return pairs + __builtin_shufflevector(none, pairs, 0, 1, 4, 5);
-}
-
-void put_values(FourOf<float> shares_of_255, std::uint8_t* values) {
-  const FourOf<float> none{};
-  const FourOf<float> all = none + 255.0f;
-  shares_of_255 = shares_of_255 < none ? none : shares_of_255;
-  shares_of_255 = shares_of_255 > all ? all : shares_of_255;
-  const auto rounded = __builtin_convertvector(shares_of_255 + 0.5f, FourOf<std::int32_t>);
-  const auto bytes = __builtin_convertvector(rounded, FourOf<std::uint8_t>);
-  std::memcpy(values, &bytes, sizeof bytes);
-}
-
-template <class Element>
-bool is_all_zero(const Element* differences) {
-  const auto pair = [differences](std::size_t i) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, differences + 2 * i, sizeof bits);
-    return bits;
-  };
-  return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
-}
-
-/// Goes along a row of differences, and sets them to 0.
-template <class Element>
-class RowSum {
- public:
-  explicit RowSum(Element whole) : values_per_unit_(255.0f / static_cast<float>(whole)) {}
-
-  /// Takes so many of them.
-  void take(Element* differences, std::size_t count, std::uint8_t* values) {
-    std::size_t i = 0;
-    for (; i + 4 <= count; i += 4) take_four(differences + i, values + i);
-    if (i < count) take_rest(differences + i, count - i, values + i);
-    if (count > 0) last_ = values[count - 1];
-  }
-  /// Takes so many that are all 0.
-  void pass(std::size_t count, std::uint8_t* values) const { std::memset(values, last_, count); }
-
- private:
-  void take_four(Element* from, std::uint8_t* to) {
-    FourOf<Element> sums;
-    std::memcpy(&sums, from, sizeof sums);
-    sums = before_ + sums_of<Element>(sums);
-    before_ = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
-    put_values(__builtin_convertvector(sums, FourOf<float>) * values_per_unit_, to);
-    std::memset(from, 0, sizeof sums);
-  }
-  void take_rest(Element* from, std::size_t count, std::uint8_t* to) {
-    std::array<Element, 4> rest{};
-    std::array<std::uint8_t, 4> values;
-    std::copy_n(from, count, rest.data());
-    take_four(rest.data(), values.data());
-    std::copy_n(values.data(), count, to);
-    std::fill_n(from, count, Element{0});
-  }
-
-  float values_per_unit_;
-  FourOf<Element> before_{};
-  std::uint8_t last_ = 0;
-};
-
-// Differences are 0 except at the boundaries of polygons: blocks of zeros repeat the last value.
-template <class Element>
-void resolve_row_by(Element whole, std::span<Element> differences, std::uint8_t* values) {
-  RowSum<Element> sum(whole);
-  std::size_t i = 0;
-  for (; i + kBlock <= differences.size(); i += kBlock) {
-    Element* begin = differences.data() + i;
-    if (is_all_zero(begin)) {
-      sum.pass(kBlock, values + i);
-    } else {
-      sum.take(begin, kBlock, values + i);
-    }
-  }
-  sum.take(differences.data() + i, differences.size() - i, values + i);
-}
-
-}  // namespace
-
-void resolve_row(std::span<float> differences, std::uint8_t* values) {
-  resolve_row_by(1.0f, differences, values);
-}
-
-void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift,
-                 std::uint8_t* values) {
-  RowSum<float> sum(1.0f);
-  std::size_t i = 0;
-  const auto column_of = [&](int bit) {
-    return std::min(static_cast<std::size_t>(bit) << shift, differences.size());
-  };
-  while (touched != 0) {
-    const int first = std::countr_zero(touched);
-    const int count = std::countr_one(touched >> first);
-    const std::size_t begin = column_of(first);
-    const std::size_t end = column_of(first + count);
-    sum.pass(begin - i, values + i);
-    sum.take(differences.data() + begin, end - begin, values + begin);
-    i = end;
-    touched = first + count < 64 ? touched >> (first + count) << (first + count) : 0;
-  }
-  sum.pass(differences.size() - i, values + i);
-}
-
-void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* values) {
-  resolve_row_by(whole, differences, values);
+bool operator==(const Mask& a, const Mask& b) {
+  return a.width_ == b.width_ && a.height_ == b.height_ && a.row_end_ == b.row_end_ &&
+         std::ranges::equal(std::span(a.runs_).first(a.used_), std::span(b.runs_).first(b.used_));
 }
 
 }  // namespace trapeze

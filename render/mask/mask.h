@@ -7,6 +7,7 @@
 // right edges have been swapped has negative area, which is subtracted.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -44,49 +45,85 @@ struct View {
   void check() const;
 };
 
-/// An alpha mask: one value a pixel, from 0 (not covered) to 255 (wholly covered). Row 0 is the
-/// northernmost.
+/// Pixels of a row, side by side, that have the same value.
+struct MaskRun {
+  std::uint16_t end = 0;  // the column after the last of them
+  std::uint8_t value = 0;
+
+  friend bool operator==(const MaskRun&, const MaskRun&) = default;
+};
+
+/// An alpha mask: one value a pixel, from 0 (not covered) to 255 (wholly covered), kept as runs of
+/// equal values, so that it takes memory and time by the boundaries in it and not by its pixels.
+/// Row 0 is the northernmost; neighbouring runs of a row have different values.
 class Mask {
  public:
   Mask() = default;
-  Mask(int width, int height) { resize(width, height); }
+  /// Every pixel has that value.
+  Mask(int width, int height, std::uint8_t value = 0);
 
-  /// Sets the size in pixels; the values are unspecified afterwards.
-  void resize(int width, int height);
+  /// Begins anew, with a mask of width x height pixels, both at most kMaxPicturePixels. Then its
+  /// rows are to be made one after the other, the northernmost first: from the west to the east,
+  /// and each of them ended.
+  void begin(int width, int height);
+  /// Adds pixels to the row at hand: all up to that column, which are at least one.
+  void append(std::size_t end, std::uint8_t value) {
+    if (used_ > row_begin_ && runs_[used_ - 1].value == value) {
+      runs_[used_ - 1].end = static_cast<std::uint16_t>(end);
+    } else {
+      append_new(end, value);
+    }
+  }
+  /// The same where the value is known to differ from that of the pixels before.
+  void append_new(std::size_t end, std::uint8_t value) {
+    runs_[used_++] = {static_cast<std::uint16_t>(end), value};
+  }
+  /// Adds a whole row of that many values.
+  void append_row(std::span<const std::uint8_t> values);
+  void end_row();
 
   int width() const { return width_; }
   int height() const { return height_; }
-  std::uint8_t at(int column, int row) const { return row_begin(row)[column]; }
-  std::span<const std::uint8_t> pixels() const { return pixels_; }
-  std::uint8_t* row_begin(int row) {
-    return pixels_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
+  std::span<const MaskRun> row(int row) const {
+    const auto i = static_cast<std::size_t>(row);
+    const std::uint32_t begin = i == 0 ? 0 : row_end_[i - 1];
+    return std::span(runs_).subspan(begin, row_end_[i] - begin);
   }
-  const std::uint8_t* row_begin(int row) const {
-    return pixels_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
-  }
-  void fill(std::uint8_t value);
+  /// For few pixels: the run is searched for.
+  std::uint8_t at(int column, int row) const;
+  /// Writes the values of a row; `values` has room for width() of them and kCopyRoom more.
+  void copy_row(int row, std::uint8_t* values) const;
+  static constexpr std::size_t kCopyRoom = 16;
   /// Whether every pixel has that value.
   bool is_all(std::uint8_t value) const;
 
-  friend bool operator==(const Mask&, const Mask&) = default;
+  friend bool operator==(const Mask& a, const Mask& b);
 
  private:
+  void make_room_for_row();
+
   int width_ = 0;
   int height_ = 0;
-  std::vector<std::uint8_t> pixels_;
+  std::vector<MaskRun> runs_;  // the first used_ of them, and room for one more row
+  std::size_t used_ = 0;
+  std::size_t row_begin_ = 0;           // of the row at hand
+  std::vector<std::uint32_t> row_end_;  // by row, the index after its last run
 };
 
-/// Turns one row of differences into mask values: the running sum of the differences is the area
-/// covered of each pixel, 1 being a whole pixel; it is clamped and rounded once. `values` has room
-/// for as many values as there are differences. Sets the differences to 0.
-void resolve_row(std::span<float> differences, std::uint8_t* values);
-/// The same where it is known in which blocks of columns there are differences other than 0: bit b
-/// of `touched` stands for the columns from b << shift on. Precondition: shift >= 3.
-void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift,
-                 std::uint8_t* values);
-/// The same as the first for integer differences, `whole` being a whole pixel. Precondition: every
-/// running sum fits into 32 bits.
-void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, std::uint8_t* values);
+/// Calls act(end, value in a, value in b) for the pixels of two rows that are equally long, run by
+/// run, as far as both values go on.
+template <typename Act>
+void for_each_run_of_both(std::span<const MaskRun> a, std::span<const MaskRun> b, const Act& act) {
+  const MaskRun* next_b = b.data();
+  for (const MaskRun& run : a) {
+    while (next_b->end < run.end) {
+      act(next_b->end, run.value, next_b->value);
+      ++next_b;
+    }
+    act(run.end, run.value, next_b->value);
+    if (next_b->end == run.end) ++next_b;
+  }
+}
 
 /// Some trapezoids of one mesh; a view of the caller's memory. The ranges lie within the mesh.
 struct MeshPart {
@@ -98,7 +135,7 @@ struct MeshPart {
 struct MaskTask {
   std::span<const MeshPart> parts;  // drawn as if they were one mesh
   View view;
-  Mask* out = nullptr;                         // is resized to the view
+  Mask* out = nullptr;                         // becomes as large as the view
   const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
 };
 

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -125,11 +124,11 @@ Stroker::Line Stroker::Line::between(PicturePlace new_from, PicturePlace new_to)
 // A line's width and dashes, in pixels of one picture.
 class Stroker::Pen {
  public:
-  Pen(const Stroke& stroke, int scale, Mask& mask)
+  Pen(const Stroke& stroke, int scale, Canvas& canvas)
       : half_(stroke.width * scale / 2),
         most_(std::min(1.0f, static_cast<float>(2 * half_))),
         join_(stroke.join),
-        mask_(mask) {
+        canvas_(canvas) {
     if (!stroke.is_dashed()) return;
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
       dashes_.push_back({period_, stroke.dashes[i] * scale});
@@ -147,8 +146,8 @@ class Stroker::Pen {
   void draw_round_line(const Line& line) {
     const auto [west, east] = std::minmax(line.from.x, line.to.x);
     const auto [north, south] = std::minmax(line.from.y, line.to.y);
-    const Columns rows = columns_between(north - reach(), south + reach(), mask_.height());
-    const Columns columns = columns_between(west - reach(), east + reach(), mask_.width());
+    const Columns rows = columns_between(north - reach(), south + reach(), canvas_.height());
+    const Columns columns = columns_between(west - reach(), east + reach(), canvas_.width());
     if (rows.is_empty() || columns.is_empty()) return;
     const RoundLine round(line, *this);
     if (columns.end - columns.begin <= 2 * kBlock) {
@@ -162,7 +161,7 @@ class Stroker::Pen {
       near.narrow(-(row + 0.5 - line.from.y) * line.dx, min, max);
       if (min > max) continue;
       draw_round_row(round, row,
-                     columns_between(min + line.from.x, max + line.from.x, mask_.width()));
+                     columns_between(min + line.from.x, max + line.from.x, canvas_.width()));
     }
   }
 
@@ -170,13 +169,13 @@ class Stroker::Pen {
   void draw_line(const Line& line) {
     const double top = std::min(line.from.y, line.to.y) - reach();
     const double bottom = std::max(line.from.y, line.to.y) + reach();
-    const Columns rows = columns_between(top, bottom, mask_.height());
+    const Columns rows = columns_between(top, bottom, canvas_.height());
     const Slab beside(line.dx, -kOverlap, line.length + kOverlap);
     const Slab near(line.dy, -reach(), reach());
     for (int row = rows.begin; row < rows.end; ++row) {
       const double y = row + 0.5 - line.from.y;
       double min = -line.from.x;
-      double max = mask_.width() - line.from.x;
+      double max = canvas_.width() - line.from.x;
       beside.narrow(y * line.dy, min, max);
       near.narrow(-y * line.dx, min, max);
       if (min <= max) draw_row(line, row, y, min + line.from.x, max + line.from.x);
@@ -281,8 +280,11 @@ class Stroker::Pen {
     values_ += static_cast<std::uint64_t>(columns.end - columns.begin);
     const Line& line = round.line;
     const double y = row + 0.5 - line.from.y;
-    const int last = std::max(mask_.width() - kBlock, 0);
-    std::uint8_t* const out = mask_.row_begin(row);
+    if (columns.is_empty()) return;
+    const int last = std::max(canvas_.width() - kBlock, 0);
+    // Of the last block, what lies beyond the columns may be written too.
+    const int end = std::min(columns.end + kBlock, canvas_.width());
+    std::uint8_t* const out = canvas_.row(row, std::min(columns.begin, last), end);
     for (int block = columns.begin; block < columns.end; block += kBlock) {
       const int begin = std::min(block, last);
       // Of the first pixel: how far along the line it is.
@@ -350,7 +352,8 @@ class Stroker::Pen {
     const auto rounded = __builtin_convertvector(values + 0.5f, Ints);
     const auto narrow = __builtin_convertvector(rounded, Shorts);
     const auto bytes = __builtin_convertvector(narrow, Bytes);
-    if (mask_.width() < kBlock) return cover(bytes, out, static_cast<std::size_t>(mask_.width()));
+    if (canvas_.width() < kBlock)
+      return cover(bytes, out, static_cast<std::size_t>(canvas_.width()));
     cover(bytes, out, kBlock);
   }
 
@@ -362,9 +365,10 @@ class Stroker::Pen {
   }
 
   void draw_row(const Line& line, int row, double y, double west, double east) {
-    const Columns columns = columns_between(west, east, mask_.width());
+    const Columns columns = columns_between(west, east, canvas_.width());
     values_ += static_cast<std::uint64_t>(columns.end - columns.begin);
-    std::uint8_t* out = mask_.row_begin(row);
+    if (columns.is_empty()) return;
+    std::uint8_t* out = canvas_.row(row, columns.begin, columns.end);
     const double x = columns.begin + 0.5 - line.from.x;
     const auto offset = static_cast<float>(x * line.dy - y * line.dx);
     const auto step = static_cast<float>(line.dy);
@@ -378,12 +382,13 @@ class Stroker::Pen {
 
   template <typename ShareAt>
   void for_each_pixel_around(PicturePlace centre, double radius, const ShareAt& share_at) {
-    const Columns rows = columns_between(centre.y - radius, centre.y + radius, mask_.height());
-    const Columns columns = columns_between(centre.x - radius, centre.x + radius, mask_.width());
+    const Columns rows = columns_between(centre.y - radius, centre.y + radius, canvas_.height());
+    const Columns columns = columns_between(centre.x - radius, centre.x + radius, canvas_.width());
     values_ += static_cast<std::uint64_t>(rows.end - rows.begin) *
                static_cast<std::uint64_t>(columns.end - columns.begin);
+    if (columns.is_empty()) return;
     for (int row = rows.begin; row < rows.end; ++row) {
-      std::uint8_t* out = mask_.row_begin(row);
+      std::uint8_t* out = canvas_.row(row, columns.begin, columns.end);
       for (int column = columns.begin; column < columns.end; ++column) {
         const float share = share_at(column + 0.5 - centre.x, row + 0.5 - centre.y);
         out[column] = std::max(out[column], to_value(share));
@@ -397,36 +402,41 @@ class Stroker::Pen {
   std::vector<Dash> dashes_;  // of one period; empty: no gaps
   double period_ = 0;
   double inked_ = 0;  // length of the dashes of a period
-  Mask& mask_;
+  Canvas& canvas_;
   std::uint64_t values_ = 0;  // computed so far
 };
 
+void Stroker::begin(const View& view, int scale) {
+  view_ = view;
+  scale_ = scale;
+  canvas_.begin(view.width, view.height);
+}
+
+void Stroker::finish(Mask& mask) {
+  canvas_.finish(mask);
+}
+
 void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                   const Stroke& stroke, const View& view, int scale, Mask& mask,
-                   const Cancellation* cancellation) {
-  if (mask.width() != view.width || mask.height() != view.height) {
-    throw std::invalid_argument("the mask of an outline is not as large as the picture");
-  }
-  measure(vertices, edges, view);
-  Pen pen(stroke, scale, mask);
-  const double most = static_cast<double>(kCrowd) * view.width * view.height;
-  const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen, view) > most;
+                   const Stroke& stroke, const Cancellation* cancellation) {
+  measure(vertices, edges);
+  Pen pen(stroke, scale_, canvas_);
+  const double most = static_cast<double>(kCrowd) * view_.width * view_.height;
+  const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen) > most;
   if (is_crowded) merge_lines();
   if (cancellation != nullptr) cancellation->check();
-  if (is_crowded && pen.half() >= kLeastHalfOfNearest && values_of_lines(pen, view) > most) {
-    draw_nearest(pen, mask, cancellation);
+  if (is_crowded && pen.half() >= kLeastHalfOfNearest && values_of_lines(pen) > most) {
+    draw_nearest(pen, cancellation);
   } else {
     draw_each(pen, cancellation);
   }
 }
 
-void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                      const View& view) {
-  const double pixels_per_cell = 1 / view.cells_per_pixel;
+void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges) {
+  const double pixels_per_cell = 1 / view_.cells_per_pixel;
   const auto place_of = [&](std::uint32_t vertex) {
     const Point p = vertices[vertex];
-    return PicturePlace{static_cast<double>(p.x - view.origin_x) * pixels_per_cell,
-                        static_cast<double>(p.y - view.origin_y) * pixels_per_cell};
+    return PicturePlace{static_cast<double>(p.x - view_.origin_x) * pixels_per_cell,
+                        static_cast<double>(p.y - view_.origin_y) * pixels_per_cell};
   };
   lines_.clear();
   ends_.clear();
@@ -447,15 +457,15 @@ double Stroker::most_values_of_lines(const Pen& pen) const {
 }
 
 // About as many as draw_each() would compute.
-double Stroker::values_of_lines(const Pen& pen, const View& view) const {
+double Stroker::values_of_lines(const Pen& pen) const {
   const double across = 2 * pen.reach();
-  const double longest = static_cast<double>(view.width) + view.height;
+  const double longest = static_cast<double>(view_.width) + view_.height;
   double values = 0;
   for (const Line& line : lines_) {
     const auto [west, east] = std::minmax(line.from.x, line.to.x);
     const auto [north, south] = std::minmax(line.from.y, line.to.y);
-    const bool is_seen = east > -pen.reach() && west < view.width + pen.reach() &&
-                         south > -pen.reach() && north < view.height + pen.reach();
+    const bool is_seen = east > -pen.reach() && west < view_.width + pen.reach() &&
+                         south > -pen.reach() && north < view_.height + pen.reach();
     // Along the line, and around its beginning.
     if (is_seen) values += across * (std::min(line.length, longest) + across);
   }
@@ -547,14 +557,14 @@ Stroker::Line Stroker::leaving(std::uint32_t line, bool is_end) const {
 }
 
 // In bands of rows, so that memory is bounded.
-void Stroker::draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cancellation) {
+void Stroker::draw_nearest(const Pen& pen, const Cancellation* cancellation) {
   values_ = 0;
   CancellationCheck check(cancellation, 1024);
   const int most_rows =
-      std::max(1, static_cast<int>(kMostBandPixels / static_cast<std::size_t>(mask.width())));
-  for (int first = 0; first < mask.height(); first += most_rows) {
-    const int rows = std::min(most_rows, mask.height() - first);
-    field_.begin(mask.width(), rows, pen.reach());
+      std::max(1, static_cast<int>(kMostBandPixels / static_cast<std::size_t>(canvas_.width())));
+  for (int first = 0; first < canvas_.height(); first += most_rows) {
+    const int rows = std::min(most_rows, canvas_.height() - first);
+    field_.begin(canvas_.width(), rows, pen.reach());
     for (const Line& line : lines_) {
       check();
       const auto share_at = [&](double part) {
@@ -564,8 +574,8 @@ void Stroker::draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cance
     }
     field_.spread(cancellation);
     for (int row = 0; row < rows; ++row) {
-      std::uint8_t* out = mask.row_begin(first + row);
-      for (int column = 0; column < mask.width(); ++column) {
+      std::uint8_t* out = canvas_.row(first + row, 0, canvas_.width());
+      for (int column = 0; column < canvas_.width(); ++column) {
         const auto [distance, share] = field_.nearest(column, row);
         out[column] = std::max(out[column], to_value(share * pen.across(distance)));
       }

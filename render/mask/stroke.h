@@ -24,6 +24,7 @@
 #include "core/grid/cancellation.h"
 #include "core/grid/grid.h"
 #include "core/grid/name_table.h"
+#include "render/mask/canvas.h"
 #include "render/mask/mask.h"
 #include "render/mask/outline_field.h"
 
@@ -72,21 +73,23 @@ struct OutlineEdge {
   double ink = 1;          // from 0 to 1: what its values are multiplied by
 };
 
-/// Draws outlines, with working memory that it keeps from one call to the next. One thread at a
+/// Draws outlines, with working memory that it keeps from one mask to the next. One thread at a
 /// time may use it.
 class Stroker {
  public:
   /// Values that are computed for a pixel, on average, before a picture counts as crowded.
   static constexpr std::uint64_t kCrowd = 64;
 
-  /// Draws lines along the edges into `mask`: each value becomes the greater of what it was and
-  /// what the lines cover. No edge is given twice; edges that share a vertex are joined there.
-  /// Throws std::invalid_argument if the mask is not of the size of the view, and Cancelled.
+  /// Begins a picture of that view and scale, without lines.
+  void begin(const View& view, int scale);
+  /// Draws lines along the edges: each value becomes the greater of what it was and what the lines
+  /// cover. No edge is given twice; edges that share a vertex are joined there. Throws Cancelled.
   void draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-            const Stroke& stroke, const View& view, int scale, Mask& mask,
-            const Cancellation* cancellation = nullptr);
+            const Stroke& stroke, const Cancellation* cancellation = nullptr);
+  /// The picture, which ends with that.
+  void finish(Mask& mask);
 
-  /// The work of the last call: values of pixels that were computed, and steps of OutlineField.
+  /// The work of the last draw(): values of pixels that were computed, and steps of OutlineField.
   std::uint64_t values() const { return values_; }
 
  private:
@@ -119,17 +122,19 @@ class Stroker {
   };
   class Pen;
 
-  void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-               const View& view);
+  void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges);
   double most_values_of_lines(const Pen& pen) const;
-  double values_of_lines(const Pen& pen, const View& view) const;
+  double values_of_lines(const Pen& pen) const;
   void merge_lines();
   void draw_each(Pen& pen, const Cancellation* cancellation);
   void join_lines(Pen& pen, CancellationCheck& check);
   void meet(std::uint64_t place, std::uint32_t line, bool is_end, Pen& pen);
   Line leaving(std::uint32_t line, bool is_end) const;
-  void draw_nearest(const Pen& pen, Mask& mask, const Cancellation* cancellation);
+  void draw_nearest(const Pen& pen, const Cancellation* cancellation);
 
+  View view_;
+  int scale_ = 1;
+  Canvas canvas_;
   std::vector<Line> lines_;
   std::vector<Ends> ends_;  // by line
   double length_of_lines_ = 0;

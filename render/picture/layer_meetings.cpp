@@ -1,9 +1,9 @@
 #include "render/picture/layer_meetings.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
+#include <utility>
 
 #include "render/mask/row_bits.h"
 
@@ -14,29 +14,8 @@ constexpr int kAll = 255;
 // Layers that fill a pixel together by chance are hardly ever as alike around it.
 constexpr double kLeastOfNested = 0.5;
 
-// So many pixels at once, by the vector extensions of g++ and clang.
-constexpr std::size_t kBlock = 16;
-using Bytes __attribute__((vector_size(kBlock))) = std::uint8_t;
-
-Bytes bytes_at(const std::uint8_t* values) {
-  Bytes bytes;
-  std::memcpy(&bytes, values, kBlock);
-  return bytes;
-}
-
-/// Adds values to sums, as far as there is room in them.
-void add(std::span<const std::uint8_t> values, std::span<std::uint8_t> sums) {
-  std::size_t i = 0;
-  for (; i + kBlock <= sums.size(); i += kBlock) {
-    const Bytes more = bytes_at(values.data() + i);
-    const Bytes sum = bytes_at(sums.data() + i) + more;
-    const auto full = reinterpret_cast<Bytes>(sum < more);  // all bits where it did not fit
-    const Bytes bounded = sum | full;
-    std::memcpy(sums.data() + i, &bounded, kBlock);
-  }
-  for (; i < sums.size(); ++i) {
-    sums[i] = static_cast<std::uint8_t>(std::min(sums[i] + values[i], kAll));
-  }
+bool is_partial(std::uint8_t value) {
+  return value != 0 && value != kAll;
 }
 
 // In as few steps as differences can be seen in, so that few colours come of it.
@@ -65,13 +44,28 @@ double gap_between(int below, int above, double tolerance) {
 
 }  // namespace
 
+void LayerMeetings::RowsAround::begin(const Mask& mask) {
+  mask_ = &mask;
+  rows_.fill(-1);
+  stride_ = static_cast<std::size_t>(mask.width()) + Mask::kCopyRoom;
+  values_.resize(kRows * stride_);
+}
+
+void LayerMeetings::RowsAround::move_to(int row) {
+  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, mask_->height() - 1); ++y) {
+    const std::size_t slot = slot_of(y);
+    if (rows_[slot] == y) continue;
+    rows_[slot] = y;
+    mask_->copy_row(y, values_.data() + slot * stride_);
+  }
+}
+
 void LayerMeetings::find(std::span<PaintedLayer> layers, std::span<const double> tolerances,
                          int width, int height) {
   width_ = width;
   height_ = height;
-  pixels_ = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (meetings_.size() < layers.size()) meetings_.resize(layers.size());
-  Values below;
+  const Mask* below = nullptr;
   double tolerance = 0;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     std::vector<Meeting>& meetings = meetings_[k];
@@ -80,64 +74,81 @@ void LayerMeetings::find(std::span<PaintedLayer> layers, std::span<const double>
     const bool is_full = std::ranges::any_of(
         layers[k].classes, [](const PaintedClass& one) { return one.mask == nullptr; });
     if (is_full) return;  // there is nothing that others could have in part
-    const Values above = cover_of(layers[k]);
-    if (above.empty()) continue;
-    if (!below.empty()) {
-      find_contested(below, above);
-      meet(below, above, tolerance, meetings);
+    const Mask* above = cover_of(layers[k]);
+    if (above == nullptr) continue;
+    if (below != nullptr) {
+      find_contested(*below, *above);
+      meet(tolerance, meetings);
       layers[k].meetings = meetings;
     }
     if (k + 1 == layers.size()) return;
-    if (below.empty() && above.data() != sum_.data()) {
+    if (below == nullptr && above != &sum_) {
       below = above;
       continue;
     }
-    if (below.empty()) {
-      union_.swap(sum_);
+    if (below == nullptr) {
+      std::swap(union_, sum_);
     } else {
-      add_to_union(below, above, meetings);
+      add_to_union(*below, *above, meetings);
     }
-    below = union_;
+    below = &union_;
   }
 }
 
-/// Of its classes together; empty if there are none.
-LayerMeetings::Values LayerMeetings::cover_of(const PaintedLayer& layer) {
-  const auto counts = [](const PaintedClass& one) { return !one.is_beneath; };
-  const auto classes = std::ranges::count_if(layer.classes, counts);
-  if (classes == 0) return {};
-  if (classes == 1) return std::ranges::find_if(layer.classes, counts)->mask->pixels();
-  const auto first = std::ranges::find_if(layer.classes, counts);
-  sum_.assign(first->mask->pixels().begin(), first->mask->pixels().end());
-  for (auto one = first + 1; one != layer.classes.end(); ++one) {
-    if (counts(*one)) add(one->mask->pixels(), sum_);
+/// Of its classes together; null if there are none.
+const Mask* LayerMeetings::cover_of(const PaintedLayer& layer) {
+  const Mask* cover = nullptr;
+  for (const PaintedClass& one : layer.classes) {
+    if (one.is_beneath) continue;
+    if (cover == nullptr) {
+      cover = one.mask;
+      continue;
+    }
+    next_.begin(width_, height_);
+    for (int row = 0; row < height_; ++row) {
+      for_each_run_of_both(cover->row(row), one.mask->row(row),
+                           [this](std::size_t end, int a, int b) {
+                             next_.append(end, static_cast<std::uint8_t>(std::min(a + b, kAll)));
+                           });
+      next_.end_row();
+    }
+    std::swap(sum_, next_);
+    cover = &sum_;
   }
-  return sum_;
+  return cover;
 }
 
-// In few places both have a part of a pixel: one is looked at only where the other one has.
-void LayerMeetings::find_contested(Values below, Values above) {
+// In few places both have a part of a pixel.
+void LayerMeetings::find_contested(const Mask& below, const Mask& above) {
   contested_.clear();
-  partial_.assign(words_for(pixels_), 0);
-  if (!mark_partial(above, partial_)) return;
-  for (std::size_t word = 0; word < partial_.size(); ++word) {
-    if (partial_[word] == 0) continue;
-    const std::size_t first = word * 64;
-    std::uint64_t both = 0;
-    mark_partial(below.subspan(first, std::min<std::size_t>(64, pixels_ - first)), {&both, 1});
-    for (both &= partial_[word]; both != 0; both &= both - 1) {
-      const auto bit = static_cast<std::size_t>(std::countr_zero(both));
-      contested_.push_back(static_cast<std::uint32_t>(first + bit));
-    }
+  below_.begin(below);
+  above_.begin(above);
+  for (int row = 0; row < height_; ++row) {
+    partial_below_.assign(words_for(static_cast<std::size_t>(width_)), 0);
+    partial_above_.assign(partial_below_.size(), 0);
+    if (!mark_partial(above.row(row), partial_above_)) continue;
+    if (!mark_partial(below.row(row), partial_below_)) continue;
+    for (std::size_t i = 0; i < partial_below_.size(); ++i) partial_below_[i] &= partial_above_[i];
+    const auto first = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width_);
+    for_each_bit(partial_below_, [&](std::size_t column) {
+      contested_.push_back(first + static_cast<std::uint32_t>(column));
+    });
   }
 }
 
-void LayerMeetings::meet(Values below, Values above, double tolerance,
-                         std::vector<Meeting>& meetings) {
+void LayerMeetings::meet(double tolerance, std::vector<Meeting>& meetings) {
+  int last_row = -1;
   for (const std::uint32_t pixel : contested_) {
-    const int lower = below[pixel];
-    const int upper = above[pixel];
-    const double correlation = correlation_around(pixel, below, above);
+    const int row = static_cast<int>(pixel) / width_;
+    const int column = static_cast<int>(pixel) % width_;
+    if (row != last_row) {
+      below_.move_to(row);
+      above_.move_to(row);
+      last_row = row;
+    }
+    const int lower = below_.row(row)[column];
+    const int upper = above_.row(row)[column];
+    const double correlation = correlation_around(column, row);
     if (is_whole(lower, upper) && correlation < kLeastOfNested) {
       meetings.push_back({pixel, Meeting::kSideBySide, kAll});
       continue;
@@ -150,9 +161,7 @@ void LayerMeetings::meet(Values below, Values above, double tolerance,
 
 /// Of how much the two cover of the pixel and those around it, from -1 to 1; 0 if one of them is
 /// the same in all.
-double LayerMeetings::correlation_around(std::uint32_t pixel, Values below, Values above) const {
-  const int row = static_cast<int>(pixel) / width_;
-  const int column = static_cast<int>(pixel) % width_;
+double LayerMeetings::correlation_around(int column, int row) const {
   const int west = std::max(column - 1, 0);
   const int east = std::min(column + 1, width_ - 1);
   int count = 0;
@@ -162,10 +171,11 @@ double LayerMeetings::correlation_around(std::uint32_t pixel, Values below, Valu
   int ab = 0;
   int bb = 0;
   for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
-    const std::size_t begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    const std::uint8_t* lower_row = below_.row(y);
+    const std::uint8_t* upper_row = above_.row(y);
     for (int x = west; x <= east; ++x) {
-      const int lower = below[begin + static_cast<std::size_t>(x)];
-      const int upper = above[begin + static_cast<std::size_t>(x)];
+      const int lower = lower_row[x];
+      const int upper = upper_row[x];
       ++count;
       a += lower;
       b += upper;
@@ -179,21 +189,36 @@ double LayerMeetings::correlation_around(std::uint32_t pixel, Values below, Valu
   return product > 0 ? static_cast<double>(count * ab - a * b) / std::sqrt(product) : 0;
 }
 
-void LayerMeetings::add_to_union(Values below, Values above, std::span<const Meeting> meetings) {
-  next_union_.resize(pixels_);
-  // Where one of the two is nothing or all, it is the greater one.
-  std::transform(below.begin(), below.end(), above.begin(), next_union_.begin(),
-                 [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
-  for (const std::uint32_t pixel : contested_) {
-    const int product = below[pixel] * above[pixel] / kAll;
-    next_union_[pixel] = static_cast<std::uint8_t>(below[pixel] + above[pixel] - product);
+void LayerMeetings::add_to_union(const Mask& below, const Mask& above,
+                                 std::span<const Meeting> meetings) {
+  next_.begin(width_, height_);
+  auto meeting = meetings.begin();
+  std::size_t pixel = 0;
+  const auto value_at_next_pixel = [&](std::uint8_t lower, std::uint8_t upper) {
+    while (meeting != meetings.end() && meeting->pixel < pixel) ++meeting;
+    if (meeting == meetings.end() || meeting->pixel != pixel) {
+      return lower + upper - lower * upper / kAll;
+    }
+    const double covered = covered_by(lower / double{kAll}, upper / double{kAll}, *meeting);
+    return static_cast<int>(std::lround(covered * kAll));
+  };
+  for (int row = 0; row < height_; ++row) {
+    const std::size_t first = pixel;
+    for_each_run_of_both(below.row(row), above.row(row),
+                         [&](std::size_t end, std::uint8_t lower, std::uint8_t upper) {
+                           if (!is_partial(lower) || !is_partial(upper)) {
+                             // Where one of the two is nothing or all, it is the greater one.
+                             next_.append(end, std::max(lower, upper));
+                             pixel = first + end;
+                           }
+                           for (; pixel < first + end; ++pixel) {
+                             const int value = value_at_next_pixel(lower, upper);
+                             next_.append(pixel - first + 1, static_cast<std::uint8_t>(value));
+                           }
+                         });
+    next_.end_row();
   }
-  for (const Meeting& meeting : meetings) {
-    const double covered = covered_by(below[meeting.pixel] / double{kAll},
-                                      above[meeting.pixel] / double{kAll}, meeting);
-    next_union_[meeting.pixel] = static_cast<std::uint8_t>(std::lround(covered * kAll));
-  }
-  union_.swap(next_union_);
+  std::swap(union_, next_);
 }
 
 }  // namespace trapeze

@@ -6,6 +6,8 @@
 // exact where two layers share a border, whatever its shape, and for dust as for polygons.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,23 +27,41 @@ class LayerMeetings {
             int height);
 
  private:
-  // Values of masks.
-  using Values = std::span<const std::uint8_t>;
+  /// The values of the rows of a mask around one, pixel by pixel.
+  class RowsAround {
+   public:
+    void begin(const Mask& mask);
+    /// Then those of the row, the one above it and the one below it, as far as there are such, may
+    /// be asked for.
+    void move_to(int row);
+    const std::uint8_t* row(int row) const { return values_.data() + slot_of(row) * stride_; }
 
-  Values cover_of(const PaintedLayer& layer);
-  void find_contested(Values below, Values above);
-  void meet(Values below, Values above, double tolerance, std::vector<Meeting>& meetings);
-  double correlation_around(std::uint32_t pixel, Values below, Values above) const;
-  void add_to_union(Values below, Values above, std::span<const Meeting> meetings);
+   private:
+    static constexpr std::size_t kRows = 3;
+    static std::size_t slot_of(int row) { return static_cast<std::size_t>(row) % kRows; }
+
+    const Mask* mask_ = nullptr;
+    std::size_t stride_ = 0;
+    std::array<int, kRows> rows_{};  // that the slots have
+    std::vector<std::uint8_t> values_;
+  };
+
+  const Mask* cover_of(const PaintedLayer& layer);
+  void find_contested(const Mask& below, const Mask& above);
+  void meet(double tolerance, std::vector<Meeting>& meetings);
+  double correlation_around(int column, int row) const;
+  void add_to_union(const Mask& below, const Mask& above, std::span<const Meeting> meetings);
 
   int width_ = 0;
   int height_ = 0;
-  std::size_t pixels_ = 0;
-  std::vector<std::uint64_t> partial_;  // a bit for each pixel
-  std::vector<std::uint32_t> contested_;
-  std::vector<std::uint8_t> sum_;    // of the classes of a layer
-  std::vector<std::uint8_t> union_;  // of the layers so far, where it is not that of a mask
-  std::vector<std::uint8_t> next_union_;
+  std::vector<std::uint64_t> partial_below_;  // a bit for each pixel of a row
+  std::vector<std::uint64_t> partial_above_;
+  std::vector<std::uint32_t> contested_;  // row * width + column
+  RowsAround below_;
+  RowsAround above_;
+  Mask sum_;    // of the classes of a layer
+  Mask union_;  // of the layers so far, where it is not that of a mask
+  Mask next_;   // what sum_ or union_ becomes
   std::vector<std::vector<Meeting>> meetings_;  // by layer
 };
 

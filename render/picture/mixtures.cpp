@@ -45,12 +45,26 @@ void PictureParts::assign(std::span<const PaintedLayer> layers, int width, int h
 
 std::uint32_t PictureParts::channel_of(const Mask* mask) {
   if (mask == nullptr) return kWhole;
-  if (mask->width() != width_ || mask->height() != height_) {
-    throw std::invalid_argument("a mask is not as large as the picture");
-  }
+  require_size(mask->width(), mask->height());
   masks_.push_back(mask);
   return static_cast<std::uint32_t>(masks_.size() - 1);
 }
+
+std::uint32_t PictureParts::channel_of(const PlacedPattern* pattern) {
+  if (pattern == nullptr) return kWhole;
+  require_size(pattern->width(), pattern->height());
+  masks_.push_back(nullptr);
+  return static_cast<std::uint32_t>(masks_.size() - 1);
+}
+
+void PictureParts::require_size(int width, int height) const {
+  if (width == width_ && height == height_) return;
+  throw std::invalid_argument("a mask is not as large as the picture");
+}
+
+MixtureFinder::Place::Place(std::size_t number)
+    : word(static_cast<std::uint32_t>(number / kValuesAWord)),
+      shift(static_cast<std::uint32_t>(number % kValuesAWord * 8)) {}
 
 void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
   parts_ = &parts;
@@ -61,9 +75,11 @@ void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
   mixtures.pixels.clear();
   mixtures.runs.clear();
   mixtures.row_end.clear();
+  of_masks_.resize(mixtures.words_each);
   key_.resize(mixtures.words_each);
   changes_.resize(words_for(columns_));
   covered_.resize(words_for(columns_));
+  if (pattern_values_.size() < parts.layers().size()) pattern_values_.resize(parts.layers().size());
   meetings_.assign(parts.layers().size(), {});
   numbers_.clear();
   for (int row = 0; row < parts.height(); ++row) {
@@ -77,40 +93,80 @@ void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
 
 template <std::size_t kWords>
 void MixtureFinder::find_row(int row) {
-  std::fill(changes_.begin(), changes_.end(), 0);
-  changes_[0] = 1;
-  sources_.clear();
-  has_meetings_ = false;
-  for (std::size_t k = 0; k < parts_->layers().size(); ++k) mark_layer(k, row);
+  begin_row(row);
   const std::size_t first_pixel = static_cast<std::size_t>(row) * columns_;
+  std::uint32_t mixture = mixture_at<kWords>(0, first_pixel);
   std::size_t begin = 0;
-  std::uint32_t mixture = PictureParts::kNone;
   // The run that began last ends where the next one begins.
   const auto end_run = [&](std::size_t end) {
     mixtures_->pixels[mixture] += static_cast<std::uint32_t>(end - begin);
     mixtures_->runs.push_back({static_cast<std::uint32_t>(end), mixture});
   };
-  for (std::size_t word = 0; word < changes_.size(); ++word) {
-    for (std::uint64_t bits = changes_[word]; bits != 0; bits &= bits - 1) {
-      const std::size_t column = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
-      const std::uint32_t next = mixture_at<kWords>(column, first_pixel + column);
-      if (next == mixture) continue;
-      if (column > 0) end_run(column);
-      begin = column;
-      mixture = next;
-    }
-  }
+  for_each_bit(changes_, [&](std::size_t column) {
+    advance_masks(column);
+    const std::uint32_t next = mixture_at<kWords>(column, first_pixel + column);
+    if (next == mixture) return;
+    end_run(column);
+    begin = column;
+    mixture = next;
+  });
   end_run(columns_);
   mixtures_->row_end.push_back(static_cast<std::uint32_t>(mixtures_->runs.size()));
+}
+
+// Marks where runs may end, and has the masks at the first pixel.
+void MixtureFinder::begin_row(int row) {
+  std::fill(changes_.begin(), changes_.end(), 0);
+  masks_.clear();
+  patterns_.clear();
+  has_meetings_ = false;
+  std::fill(of_masks_.begin(), of_masks_.end(), 0);
+  of_masks_[0] = 255;
+  for (std::size_t k = 0; k < parts_->layers().size(); ++k) mark_layer(k, row);
 }
 
 // Marks where the run at hand may end for what the layer shows in the row.
 void MixtureFinder::mark_layer(std::size_t number, int row) {
   const PictureParts::Layer& layer = parts_->layers()[number];
-  for (const PictureParts::Part& part : layer.classes) mark(part.channel, row, changes_);
-  for (const PictureParts::Part& part : layer.lines) mark(part.channel, row, changes_);
-  if (layer.pattern != PictureParts::kWhole) mark_pattern(layer, row);
+  for (const PictureParts::Part& part : layer.classes) mark_mask(part.channel, row);
+  for (const PictureParts::Part& part : layer.lines) mark_mask(part.channel, row);
+  if (layer.pattern != PictureParts::kWhole) mark_pattern(number, row);
   if (layer.meeting != PictureParts::kNone) mark_meetings(number, row);
+}
+
+void MixtureFinder::mark_mask(std::uint32_t channel, int row) {
+  if (channel == PictureParts::kWhole) return;
+  const auto runs = parts_->mask_of(channel)->row(row);
+  if (runs.size() == 1 && runs.front().value == 0) return;
+  mark_changes(runs, changes_);
+  const Place place(channel);
+  of_masks_[place.word] |= std::uint64_t{runs.front().value} << place.shift;
+  if (runs.size() > 1) masks_.push_back({runs.data(), place});
+}
+
+// A pattern matters, and is drawn, only where the layer covers something.
+void MixtureFinder::mark_pattern(std::size_t number, int row) {
+  const PictureParts::Layer& layer = parts_->layers()[number];
+  std::fill(covered_.begin(), covered_.end(), 0);
+  for (const PictureParts::Part& part : layer.classes) {
+    if (part.channel == PictureParts::kWhole) {
+      set_bits(0, columns_, covered_);
+    } else {
+      mark_covered(parts_->mask_of(part.channel)->row(row), covered_);
+    }
+  }
+  std::vector<std::uint8_t>& values = pattern_values_[number];
+  values.assign(columns_, 0);
+  bool has_any = false;
+  for_each_run_of_bits(covered_, columns_, [&](std::size_t begin, std::size_t end) {
+    layer.painted->pattern->draw(row, begin, end, values.data());
+    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) {
+      if (values[i] != values[i - 1]) set_bits(i, i + 1, changes_);
+    }
+    if (end < columns_) set_bits(end, end + 1, changes_);
+    has_any = true;
+  });
+  if (has_any) patterns_.push_back({values.data(), Place(layer.pattern)});
 }
 
 void MixtureFinder::mark_meetings(std::size_t number, int row) {
@@ -123,54 +179,33 @@ void MixtureFinder::mark_meetings(std::size_t number, int row) {
   has_meetings_ = has_meetings_ || has_any;
   for (std::size_t i = next; i < meetings.size() && meetings[i].pixel < end; ++i) {
     const std::size_t column = meetings[i].pixel - begin;
-    changes_[column / 64] |= std::uint64_t{1} << column % 64;
-    if (column + 1 < columns_) {
-      changes_[(column + 1) / 64] |= std::uint64_t{1} << (column + 1) % 64;
-    }
+    set_bits(column, std::min(column + 2, columns_), changes_);
   }
 }
 
-void MixtureFinder::mark(std::uint32_t channel, int row, std::span<std::uint64_t> bits) {
-  if (channel == PictureParts::kWhole) return;
-  const std::uint8_t* values = parts_->mask_of(channel)->row_begin(row);
-  const bool has_changes = mark_changes({values, columns_}, bits);
-  if (!has_changes && values[0] == 0) return;
-  sources_.push_back({values, channel / kValuesAWord, channel % kValuesAWord * 8});
-}
-
-// A pattern matters only where the layer covers something.
-void MixtureFinder::mark_pattern(const PictureParts::Layer& layer, int row) {
-  std::fill(covered_.begin(), covered_.end(), 0);
-  for (const PictureParts::Part& part : layer.classes) {
-    if (part.channel == PictureParts::kWhole) {
-      std::fill(covered_.begin(), covered_.end(), ~std::uint64_t{0});
-    } else {
-      mark_covered({parts_->mask_of(part.channel)->row_begin(row), columns_}, covered_);
-    }
-  }
-  pattern_changes_.assign(changes_.size(), 0);
-  mark(layer.pattern, row, pattern_changes_);
-  for (std::size_t i = 0; i < changes_.size(); ++i) {
-    changes_[i] |= pattern_changes_[i] & covered_[i];
+// To a column where any of them may change.
+void MixtureFinder::advance_masks(std::size_t column) {
+  for (MaskRow& mask : masks_) {
+    if (mask.run->end > column) continue;
+    const unsigned change = mask.run[0].value ^ mask.run[1].value;
+    of_masks_[mask.place.word] ^= std::uint64_t{change} << mask.place.shift;
+    ++mask.run;
   }
 }
 
 template <std::size_t kWords>
 std::uint32_t MixtureFinder::mixture_at(std::size_t column, std::size_t pixel) {
-  // Those of one word are most of all, and need no more than a register.
+  if (patterns_.empty() && !has_meetings_) return number_of_key<kWords>(of_masks_);
   if constexpr (kWords == 1) {
-    std::uint64_t key = 255;
-    for (const Source& source : sources_) key |= std::uint64_t{source.row[column]} << source.shift;
-    key_[0] = key;
+    key_[0] = of_masks_[0];
   } else {
-    std::fill(key_.begin(), key_.end(), 0);
-    key_[0] = 255;
-    for (const Source& source : sources_) {
-      key_[source.word] |= std::uint64_t{source.row[column]} << source.shift;
-    }
+    std::ranges::copy(of_masks_, key_.begin());
+  }
+  for (const PatternRow& pattern : patterns_) {
+    key_[pattern.place.word] |= std::uint64_t{pattern.values[column]} << pattern.place.shift;
   }
   if (has_meetings_) add_meetings(pixel);
-  return number_of_key<kWords>();
+  return number_of_key<kWords>(key_);
 }
 
 void MixtureFinder::add_meetings(std::size_t pixel) {
@@ -181,19 +216,19 @@ void MixtureFinder::add_meetings(std::size_t pixel) {
     const auto meetings = layer.painted->meetings;
     while (next < meetings.size() && meetings[next].pixel < pixel) ++next;
     if (next == meetings.size() || meetings[next].pixel != pixel) continue;
+    const auto add_value = [this](std::size_t number, std::uint8_t value) {
+      const Place place(number);
+      key_[place.word] |= std::uint64_t{value} << place.shift;
+    };
     add_value(layer.meeting, static_cast<std::uint8_t>(meetings[next].relation));
     add_value(layer.meeting + 1, meetings[next].gap);
   }
 }
 
-void MixtureFinder::add_value(std::size_t number, std::uint8_t value) {
-  key_[number / kValuesAWord] |= std::uint64_t{value} << number % kValuesAWord * 8;
-}
-
 template <std::size_t kWords>
-std::uint32_t MixtureFinder::number_of_key() {
-  const std::size_t size = kWords == 1 ? 1 : key_.size();
-  const std::span<const std::uint64_t> key(key_.data(), size);
+std::uint32_t MixtureFinder::number_of_key(std::span<const std::uint64_t> words_of_key) {
+  const std::size_t size = kWords == 1 ? 1 : words_of_key.size();
+  const std::span<const std::uint64_t> key = words_of_key.first(size);
   std::vector<std::uint64_t>& words = mixtures_->words;
   std::uint32_t& number = numbers_.find(hash_of(key), [&](std::uint32_t mixture) {
     return std::ranges::equal(key, std::span(words).subspan(mixture * size, size));

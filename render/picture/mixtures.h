@@ -39,6 +39,7 @@ class PictureParts {
   int width() const { return width_; }
   int height() const { return height_; }
   std::span<const Layer> layers() const { return std::span(layers_).first(layer_count_); }
+  /// Null for channel 0 and those of patterns.
   const Mask* mask_of(std::uint32_t channel) const { return masks_[channel]; }
   std::uint32_t channel_count() const { return static_cast<std::uint32_t>(masks_.size()); }
   /// Of channels, by number, then two for each layer with meetings: relation and gap.
@@ -46,12 +47,14 @@ class PictureParts {
 
  private:
   std::uint32_t channel_of(const Mask* mask);
+  std::uint32_t channel_of(const PlacedPattern* pattern);
+  void require_size(int width, int height) const;
 
   int width_ = 0;
   int height_ = 0;
   std::vector<Layer> layers_;
   std::size_t layer_count_ = 0;
-  std::vector<const Mask*> masks_;  // by channel; null for the first
+  std::vector<const Mask*> masks_;  // by channel
   std::size_t value_count_ = 0;
 };
 
@@ -78,11 +81,22 @@ class MixtureFinder {
   void find(const PictureParts& parts, Mixtures& mixtures);
 
  private:
-  // A channel that has values in the row.
-  struct Source {
-    const std::uint8_t* row = nullptr;
+  // Where the value of a channel lies in the words of a mixture.
+  struct Place {
     std::uint32_t word = 0;
     std::uint32_t shift = 0;
+
+    explicit Place(std::size_t number);
+  };
+  // A mask in the row at hand.
+  struct MaskRow {
+    const MaskRun* run = nullptr;  // at the pixel at hand
+    Place place;
+  };
+  // A pattern in the row at hand.
+  struct PatternRow {
+    const std::uint8_t* values = nullptr;
+    Place place;
   };
   struct LayerMeeting {
     std::size_t next = 0;  // the first that is not before the pixel at hand
@@ -95,24 +109,28 @@ class MixtureFinder {
   template <std::size_t kWords>
   std::uint32_t mixture_at(std::size_t column, std::size_t pixel);
   template <std::size_t kWords>
-  std::uint32_t number_of_key();
+  std::uint32_t number_of_key(std::span<const std::uint64_t> key);
+  void begin_row(int row);
   void mark_layer(std::size_t number, int row);
-  void mark_pattern(const PictureParts::Layer& layer, int row);
+  void mark_mask(std::uint32_t channel, int row);
+  void mark_pattern(std::size_t number, int row);
   void mark_meetings(std::size_t number, int row);
-  void mark(std::uint32_t channel, int row, std::span<std::uint64_t> bits);
+  void advance_masks(std::size_t column);
   void add_meetings(std::size_t pixel);
-  void add_value(std::size_t number, std::uint8_t value);
 
   const PictureParts* parts_ = nullptr;
   Mixtures* mixtures_ = nullptr;
   std::size_t columns_ = 0;
-  std::vector<std::uint64_t> changes_;  // by pixel of the row, as the next two
-  std::vector<std::uint64_t> pattern_changes_;
-  std::vector<std::uint64_t> covered_;
-  std::vector<Source> sources_;
-  std::vector<LayerMeeting> meetings_;  // by layer
-  bool has_meetings_ = false;           // in the row
-  std::vector<std::uint64_t> key_;      // of the mixture at hand
+  std::vector<std::uint64_t> changes_;  // by pixel of the row
+  std::vector<std::uint64_t> covered_;  // by pixel of the row, by the layer at hand
+  std::vector<MaskRow> masks_;          // those that have values in the row
+  std::vector<PatternRow> patterns_;
+  std::vector<std::vector<std::uint8_t>> pattern_values_;  // by layer: of the pixels of the row
+  std::vector<LayerMeeting> meetings_;                     // by layer
+  bool has_meetings_ = false;                              // in the row
+  std::vector<std::uint64_t>
+      of_masks_;                    // words of the pixel at hand, without patterns and meetings
+  std::vector<std::uint64_t> key_;  // of the mixture at hand
   NumberTable numbers_;
 };
 

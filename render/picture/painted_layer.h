@@ -7,6 +7,7 @@
 #include "render/mask/mask.h"
 #include "render/picture/colour.h"
 #include "render/picture/meeting.h"
+#include "render/picture/pattern.h"
 
 namespace trapeze {
 
@@ -23,7 +24,7 @@ struct PaintedClass {
 /// view of the caller's memory.
 struct PaintedLayer {
   std::span<const PaintedClass> classes;
-  const Mask* pattern = nullptr;  // null: none; counts where the classes cover
+  const PlacedPattern* pattern = nullptr;  // null: none; counts where the classes cover
   Rgba pattern_colour = kTransparent;
   std::span<const PaintedClass> lines = {};
   double opacity = 1;

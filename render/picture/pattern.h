@@ -1,7 +1,9 @@
 // Patterns over the fill of polygons, computed from parameters and fixed to the ground.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/grid/name_table.h"
 #include "render/mask/mask.h"
@@ -31,9 +33,56 @@ struct Pattern {
   friend bool operator==(const Pattern&, const Pattern&) = default;
 };
 
-/// Replaces the mask, which becomes as large as the view, by how much of every pixel the pattern
-/// covers. It begins at the north-west corner of the world, so pictures of neighbouring tiles join.
-/// `scale` is the picture's. Nothing is covered by a pattern of kind none.
-void draw_pattern(const Pattern& pattern, const View& view, int scale, Mask& mask);
+/// A pattern where it lies in one picture. It begins at the north-west corner of the world, so
+/// pictures of neighbouring tiles join. Once placed, it may be read by many threads.
+class PlacedPattern {
+ public:
+  /// `scale` is the picture's. Keeps its memory from one picture to the next.
+  void place(const Pattern& pattern, const View& view, int scale);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// Writes how much of the pixels of a row the pattern covers, from 0 to 255: for column i, from
+  /// `begin` to the one before `end`, to values[i].
+  void draw(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
+
+ private:
+  // A place within a period, as a share of it in 2^-32: at the end of a period the next one begins
+  // by itself.
+  using Phase = std::uint32_t;
+
+  // The shares that bands cover at all places of a period, looked up.
+  class Bands {
+   public:
+    void assign(double period, double width);
+    float at(Phase phase) const { return values_[phase >> shift_]; }
+
+   private:
+    int shift_ = 0;
+    std::vector<float> values_;
+  };
+  // The phases of a pixel along the direction of the pattern and across it.
+  struct Phases {
+    Phase along;
+    Phase across;
+  };
+
+  template <typename ShareAt>
+  void draw_by(int row, std::size_t begin, std::size_t end, std::uint8_t* values,
+               const ShareAt& share_at) const;
+  void draw_dots(int row, std::size_t begin, std::size_t end, std::uint8_t* values) const;
+  Phases phases_at(double x, double y) const;
+
+  PatternKind kind_ = PatternKind::none;
+  int width_ = 0;
+  int height_ = 0;
+  double period_ = 1;  // pixels, as the next four
+  double band_width_ = 1;
+  double west_ = 0;  // of the middle of the first pixel, from the corner of the world
+  double north_ = 0;
+  double along_x_ = 1;  // the direction of the pattern
+  double along_y_ = 0;
+  Bands bands_;
+};
 
 }  // namespace trapeze

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/mask/resolve_row.h"
 #include "render/mask/stopwatch.h"
 
 namespace trapeze {
@@ -60,8 +61,7 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   const View& view = task.view;
   view.check();
   prepare(view);
-  // From here on nothing can fail, so that no areas are left behind for the next picture.
-  task.out->resize(view.width, view.height);
+  task.out->begin(view.width, view.height);
   const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
                     static_cast<double>(view.width), static_cast<double>(view.height)};
   bool is_wanted = true;
@@ -72,7 +72,12 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
     }
   }
   const Stopwatch stopwatch(times.resolve_ms);
-  resolve(*task.out);
+  try {
+    resolve(*task.out);
+  } catch (...) {
+    release_memory();  // so that no areas are left behind for the next picture
+    throw;
+  }
   if (!is_wanted) throw Cancelled();
 }
 
@@ -91,9 +96,7 @@ void SoftwareRenderer::prepare(const View& view) {
   width_ = height_ = 0;  // what there is no memory for is prepared anew the next time
   stride_ = static_cast<std::size_t>(view.width) + 2;
   differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0.0f);
-  touched_.assign(static_cast<std::size_t>(view.height), 0);
-  touched_shift_ = 3;
-  while ((stride_ - 1) >> touched_shift_ >= 64) ++touched_shift_;
+  touched_.assign(stride_, static_cast<std::size_t>(view.height));
   width_ = view.width;
   height_ = view.height;
 }
@@ -186,9 +189,8 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign
   const int first = truncate(low);
   const int last = truncate(high);
   // The column after the last one is written too.
-  const std::uint64_t from_first = ~std::uint64_t{0} << (first >> touched_shift_);
-  const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - ((last + 1) >> touched_shift_));
-  touched_[static_cast<std::size_t>(row)] |= from_first & to_last;
+  touched_.touch(static_cast<std::size_t>(row), static_cast<std::size_t>(first),
+                 static_cast<std::size_t>(last) + 1);
   float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
 
   const auto add_to = [cells, sign](int column, double part, double middle) {
@@ -244,10 +246,9 @@ void SoftwareRenderer::resolve(Mask& out) {
     const auto i = static_cast<std::size_t>(row);
     const auto width = static_cast<std::size_t>(width_);
     float* cells = differences_.data() + i * stride_;
-    resolve_row({cells, width}, touched_[i], touched_shift_, out.row_begin(row));
+    resolve_row({cells, width}, touched_.take(i), touched_.shift(), out);
     // On the east border and beyond nothing is to be seen.
     cells[width] = cells[width + 1] = 0;
-    touched_[i] = 0;
   }
 }
 

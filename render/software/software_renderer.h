@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "render/mask/mask.h"
+#include "render/mask/touched_columns.h"
 
 namespace trapeze {
 
@@ -49,9 +50,7 @@ class SoftwareRenderer final : public MaskRenderer {
   // Differences along each row, see above; all zero between two draws. Each row has two columns
   // more than the picture, for what falls on or to the right of its east border.
   std::vector<float> differences_;
-  // By row, the blocks of columns that have been written: bit b for those from b << shift on.
-  std::vector<std::uint64_t> touched_;
-  unsigned touched_shift_ = 0;
+  TouchedColumns touched_;
 };
 
 }  // namespace trapeze

@@ -261,8 +261,8 @@ Setting<LayerConfig> coverage_setting() {
   auto setting = choice<std::optional<CoverageMode>, LayerConfig>(
       "coverage", [](auto& layer) -> auto& { return layer.coverage; }, coverage_words(),
       "whether polygons that share borders keep them in common: \"auto\", where two have an edge "
-      "in common and do not overlap by more than 1 %; \"on\", all that lie near each other, the "
-      "last one drawn where they overlap; \"off\", each by itself; not set: as a file was "
+      "in common and do not overlap by more than 1 %; \"on\", all that lie near each other, "
+      "however much they overlap; \"off\", each by itself; not set: as a file was "
       "prepared, else \"" +
           std::string(kCoverageNames.name_of(kUsualCoverage)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {

@@ -169,7 +169,7 @@ class Swatch {
     PaintedClass line{&line_, paint.stroke};
     PaintedLayer painted{{&fill, 1}, nullptr, layer.pattern.colour, {}, layer.opacity};
     if (layer.pattern.kind != PatternKind::none) {
-      draw_pattern(layer.pattern, view_, scale_, pattern_);
+      pattern_.place(layer.pattern, view_, scale_);
       painted.pattern = &pattern_;
     }
     if (layer.stroke.width > 0) {
@@ -189,12 +189,13 @@ class Swatch {
     const auto level_of = [inset](int place, int length) {
       return std::max(0.0, std::min(place + 1.0, length - inset) - std::max<double>(place, inset));
     };
-    fill_.resize(view_.width, view_.height);
+    fill_.begin(view_.width, view_.height);
     for (int y = 0; y < view_.height; ++y) {
       for (int x = 0; x < view_.width; ++x) {
         const double share = level_of(x, view_.width) * level_of(y, view_.height);
-        fill_.row_begin(y)[x] = static_cast<std::uint8_t>(share * 255 + 0.5);
+        fill_.append(static_cast<std::size_t>(x) + 1, static_cast<std::uint8_t>(share * 255 + 0.5));
       }
+      fill_.end_row();
     }
   }
 
@@ -213,9 +214,9 @@ class Swatch {
     const std::array<OutlineEdge, 4> edges{OutlineEdge{0, 1, 0}, OutlineEdge{1, 2, width},
                                            OutlineEdge{2, 3, width + height},
                                            OutlineEdge{3, 0, 2 * width + height}};
-    line_.resize(view_.width, view_.height);
-    line_.fill(0);
-    stroker_.draw(corners, edges, stroke, view_, scale_, line_);
+    stroker_.begin(view_, scale_);
+    stroker_.draw(corners, edges, stroke);
+    stroker_.finish(line_);
   }
 
   // Without an outline, pale colours would not stand out from the paper.
@@ -237,7 +238,7 @@ class Swatch {
   int scale_;
   View view_;
   Mask fill_;
-  Mask pattern_;
+  PlacedPattern pattern_;
   Mask line_;
   Stroker stroker_;
   Composer composer_;

@@ -521,17 +521,16 @@ void LayerDrawing::add_tasks(const View& view, const Cancellation* cancellation,
 }
 
 void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools) {
-  if (has_pattern()) draw_pattern(style().pattern, view, scale, pattern_);
+  if (has_pattern()) pattern_.place(style().pattern, view, scale);
   for (std::size_t i = 0; i < line_count_; ++i) {
     Lines& lines = lines_[i];
-    lines.mask.resize(view.width, view.height);
-    lines.mask.fill(0);
+    tools.stroker.begin(view, scale);
     const auto draw = [&](std::span<const Point> points, std::span<const OutlineEdge> edges) {
-      tools.stroker.draw(points, edges, style().stroke, view, scale, lines.mask,
-                         tools.cancellation);
+      tools.stroker.draw(points, edges, style().stroke, tools.cancellation);
     };
     draw(layer_->mesh().vertices, lines.edges);
     if (!lines.seen_edges.empty()) draw(lines.seen_points, lines.seen_edges);
+    tools.stroker.finish(lines.mask);
   }
 }
 

@@ -62,7 +62,7 @@ class LayerDrawing {
 
   /// Appends the masks that have to be drawn; they look at memory of the drawing.
   void add_tasks(const View& view, const Cancellation* cancellation, std::vector<MaskTask>& tasks);
-  /// Draws pattern and outlines, for a picture of that scale. Throws Cancelled.
+  /// Places the pattern and draws outlines, for a picture of that scale. Throws Cancelled.
   void draw_details(const View& view, int scale, DrawingTools& tools);
   /// Releases what was made for this picture only.
   void forget_made(MaskRenderer& renderer);
@@ -166,7 +166,7 @@ class LayerDrawing {
   std::vector<ClassDrawing*> by_number_;  // null: not met yet
   std::deque<Lines> lines_;
   std::size_t line_count_ = 0;
-  Mask pattern_;
+  PlacedPattern pattern_;
   std::vector<PaintedClass> painted_classes_;
   std::vector<PaintedClass> painted_lines_;
 };

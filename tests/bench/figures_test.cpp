@@ -28,13 +28,14 @@ TEST(FiguresTest, OneValueIsEveryPercentile) {
 
 TEST(FiguresTest, TheRateIsThatOfTheMiddleRunAndTheProcessorTimeThatOfTheLeast) {
   Figure figure("a");
-  const std::vector<TileTime> two_tiles{{3, 10}, {4, 20}};
+  const std::vector<TileTime> two_tiles{{3, 10, 500}, {4, 20, 100}};
   figure.add({1, 0.2, two_tiles});
   figure.add({4, 0.1, two_tiles});
   figure.add({2, 0.4, two_tiles});
   EXPECT_DOUBLE_EQ(figure.tiles_per_second(), 1);
   EXPECT_DOUBLE_EQ(figure.best_tiles_per_second(), 2);
   EXPECT_DOUBLE_EQ(figure.cpu_ms_per_tile(), 50);
+  EXPECT_DOUBLE_EQ(figure.bytes_per_tile(), 300);
 }
 
 TEST(FiguresTest, ZoomsAreToldApart) {

@@ -6,6 +6,7 @@
 #include "bench/experiment/race.h"
 #include "bench/experiment/trip.h"
 #include "tests/experiment/sample_map.h"
+#include "tests/render/masks.h"
 
 namespace trapeze::experiment {
 namespace {
@@ -16,8 +17,8 @@ class ContestantsTest : public ::testing::TestWithParam<Method> {
   static void expect_same(const std::vector<Mask>& drawn, const std::vector<Mask>& expected) {
     ASSERT_EQ(drawn.size(), expected.size());
     for (std::size_t layer = 0; layer < drawn.size(); ++layer) {
-      const auto a = drawn[layer].pixels();
-      const auto b = expected[layer].pixels();
+      const auto a = testing::values_of(drawn[layer]);
+      const auto b = testing::values_of(expected[layer]);
       ASSERT_EQ(a.size(), b.size());
       int worst = 0;
       for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));

@@ -8,6 +8,7 @@
 #include "tests/pictures/real_layers.h"
 #include "tests/pictures/shared_gl.h"
 #include "tests/render/compare_renderers.h"
+#include "tests/render/masks.h"
 
 namespace trapeze::testing {
 namespace {
@@ -24,20 +25,18 @@ void draw(const RealLayer& real, const View& view, MaskRenderer& renderer, Mask&
 
 /// The four tiles of the next zoom that make up `tile`, as one mask.
 Mask put_together(const RealLayer& real, const TileId& tile, MaskRenderer& renderer) {
-  Mask all(2 * kTilePixels, 2 * kTilePixels);
-  Mask quarter;
-  for (std::uint32_t south = 0; south < 2; ++south) {
-    for (std::uint32_t east = 0; east < 2; ++east) {
-      const TileId child{tile.z + 1, 2 * tile.x + east, 2 * tile.y + south};
-      draw(real, View::of_tile(child), renderer, quarter);
-      for (int row = 0; row < kTilePixels; ++row) {
-        std::copy_n(quarter.row_begin(row), kTilePixels,
-                    all.row_begin(row + static_cast<int>(south) * kTilePixels) +
-                        static_cast<int>(east) * kTilePixels);
-      }
-    }
+  std::array<std::vector<std::uint8_t>, 4> quarters;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const TileId child{tile.z + 1, 2 * tile.x + i % 2, 2 * tile.y + i / 2};
+    Mask quarter;
+    draw(real, View::of_tile(child), renderer, quarter);
+    quarters[i] = values_of(quarter);
   }
-  return all;
+  return mask_by(2 * kTilePixels, 2 * kTilePixels, [&quarters](int column, int row) {
+    const int quarter = row / kTilePixels * 2 + column / kTilePixels;
+    const int pixel = row % kTilePixels * kTilePixels + column % kTilePixels;
+    return quarters[static_cast<std::size_t>(quarter)][static_cast<std::size_t>(pixel)];
+  });
 }
 
 void expect_no_seams(const RealLayer& real, MaskRenderer& renderer) {

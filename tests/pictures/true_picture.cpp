@@ -83,15 +83,17 @@ class Counts {
   }
 
   Mask resolve(int height) const {
-    Mask mask(width_, height);
+    Mask mask;
+    mask.begin(width_, height);
     for (int row = 0; row < height; ++row) {
       std::int32_t whole = 0;
       for (int column = 0; column < width_; ++column) {
         whole += steps_[index(row, column)];
         const std::int32_t inside = std::min(whole + partial_[index(row, column)], kSamples);
-        mask.row_begin(row)[column] =
-            static_cast<std::uint8_t>((inside * 255 + kSamples / 2) / kSamples);
+        mask.append(static_cast<std::size_t>(column) + 1,
+                    static_cast<std::uint8_t>((inside * 255 + kSamples / 2) / kSamples));
       }
+      mask.end_row();
     }
     return mask;
   }

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <stdexcept>
+#include <vector>
+
+#include "tests/render/masks.h"
 
 namespace trapeze {
 namespace {
@@ -43,6 +48,38 @@ TEST(ViewTest, RefusesWhatCannotBeDrawn) {
         View{std::int64_t{1} << 60, 0, 1, 10, 10}}) {
     EXPECT_THROW(bad.check(), std::invalid_argument);
   }
+}
+
+TEST(MaskTest, RunsAreThoseOfItsPixels) {
+  std::mt19937 random(3);
+  Mask mask;
+  for (const int width : {1, 2, 17, 400}) {
+    std::vector<std::uint8_t> values;
+    mask.begin(width, 5);
+    for (int row = 0; row < 5; ++row) {
+      std::vector<std::uint8_t> of_row(static_cast<std::size_t>(width));
+      std::ranges::generate(of_row, [&] { return static_cast<std::uint8_t>(random() % 2); });
+      mask.append_row(of_row);
+      values.insert(values.end(), of_row.begin(), of_row.end());
+    }
+    ASSERT_EQ(testing::values_of(mask), values);
+    std::vector<std::uint8_t> copied(static_cast<std::size_t>(width) + Mask::kCopyRoom);
+    for (int row = 0; row < 5; ++row) {
+      mask.copy_row(row, copied.data());
+      for (int column = 0; column < width; ++column) {
+        const std::uint8_t value = values[static_cast<std::size_t>(row * width + column)];
+        ASSERT_EQ(mask.at(column, row), value);
+        ASSERT_EQ(copied[static_cast<std::size_t>(column)], value);
+      }
+    }
+    EXPECT_EQ(mask, testing::mask_by(width, 5, [&](int column, int row) {
+                return values[static_cast<std::size_t>(row * width + column)];
+              }));
+  }
+  EXPECT_TRUE(Mask(300, 4, 7).is_all(7));
+  EXPECT_FALSE(Mask(300, 4, 7).is_all(0));
+  EXPECT_FALSE(mask.is_all(0));
+  EXPECT_NE(Mask(4, 3, 1), Mask(3, 4, 1));
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/render/masks.h"
+
 namespace trapeze {
 namespace {
 
@@ -24,14 +26,9 @@ Picture compose(std::span<const PaintedClass> layers, int width, int height,
 }
 
 Mask mask_of(int width, int height, const std::vector<int>& values) {
-  Mask mask(width, height);
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
-      mask.row_begin(row)[column] =
-          static_cast<std::uint8_t>(values[static_cast<std::size_t>(row * width + column)]);
-    }
-  }
-  return mask;
+  return testing::mask_by(width, height, [&](int column, int row) {
+    return values[static_cast<std::size_t>(row * width + column)];
+  });
 }
 
 Mask random_mask(std::mt19937& random, int width, int height) {
@@ -220,12 +217,8 @@ TEST(ComposeTest, ALayerThatCoversEverythingLiesOverAllOfThePicture) {
 // Along their border, colours go from one to the other in even steps; nothing of the background
 // shows.
 TEST(ComposeTest, ClassesThatMeetDoSoInFewColours) {
-  Mask west(256, 1);
-  Mask east(256, 1);
-  for (int i = 0; i < 256; ++i) {
-    west.row_begin(0)[i] = static_cast<std::uint8_t>(255 - i);
-    east.row_begin(0)[i] = static_cast<std::uint8_t>(i);
-  }
+  const Mask west = testing::mask_by(256, 1, [](int column, int) { return 255 - column; });
+  const Mask east = testing::mask_by(256, 1, [](int column, int) { return column; });
   const std::vector<PaintedClass> classes{{&west, {250, 0, 90, 255}}, {&east, {10, 0, 90, 255}}};
   const PaintedLayer layer{.classes = classes};
   RunPicture picture;

@@ -209,8 +209,7 @@ TEST(LayerMeetingsTest, ThreeLayersInOnePixelLeaveLittleOut) {
 }
 
 TEST(LayerMeetingsTest, WhatIsAlikeAllAroundIsMixedAsChanceHasIt) {
-  Mask half(kPixels, kPixels);
-  half.fill(100);
+  const Mask half(kPixels, kPixels, 100);
   const PaintedClass lower{&half, kRed};
   const PaintedClass upper{&half, kGreen};
   std::vector<PaintedLayer> layers(2);
@@ -226,10 +225,8 @@ TEST(LayerMeetingsTest, WhatIsAlikeAllAroundIsMixedAsChanceHasIt) {
 }
 
 TEST(LayerMeetingsTest, WhatFillsPixelsTogetherAllAroundIsSideBySide) {
-  Mask some(kPixels, kPixels);
-  Mask rest(kPixels, kPixels);
-  some.fill(77);
-  rest.fill(178);
+  const Mask some(kPixels, kPixels, 77);
+  const Mask rest(kPixels, kPixels, 178);
   const PaintedClass lower{&some, kRed};
   const PaintedClass upper{&rest, kGreen};
   std::vector<PaintedLayer> layers(2);

@@ -3,20 +3,32 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <vector>
+
+#include "tests/render/masks.h"
 
 namespace trapeze {
 namespace {
 
 Mask draw(const Pattern& pattern, View view = View::of_tile({3, 2, 5}), int scale = 1) {
+  PlacedPattern placed;
+  placed.place(pattern, view, scale);
   Mask mask;
-  draw_pattern(pattern, view, scale, mask);
+  mask.begin(view.width, view.height);
+  const auto width = static_cast<std::size_t>(view.width);
+  std::vector<std::uint8_t> values(width);
+  for (int row = 0; row < view.height; ++row) {
+    placed.draw(row, 0, width, values.data());
+    mask.append_row(values);
+  }
   return mask;
 }
 
 /// The share of the picture that is covered.
 double density(const Mask& mask) {
-  const auto pixels = mask.pixels();
+  const auto pixels = testing::values_of(mask);
   return std::accumulate(pixels.begin(), pixels.end(), 0.0) / 255 /
          static_cast<double>(pixels.size());
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/picture/compose.h"
+#include "tests/render/masks.h"
 
 namespace trapeze {
 namespace {
@@ -49,15 +50,10 @@ Mask disc(std::mt19937& random) {
   const double x = place(random);
   const double y = place(random);
   const double radius = 4 + place(random) / 3;
-  Mask mask(kSide, kSide);
-  for (int row = 0; row < kSide; ++row) {
-    for (int column = 0; column < kSide; ++column) {
-      const double inside = radius - std::hypot(column - x, row - y) + 0.5;
-      mask.row_begin(row)[column] =
-          static_cast<std::uint8_t>(std::clamp(inside, 0.0, 1.0) * 255 + 0.5);
-    }
-  }
-  return mask;
+  return testing::mask_by(kSide, kSide, [&](int column, int row) {
+    const double inside = radius - std::hypot(column - x, row - y) + 0.5;
+    return std::clamp(inside, 0.0, 1.0) * 255 + 0.5;
+  });
 }
 
 Rgba random_colour(std::mt19937& random, bool is_opaque) {
@@ -123,12 +119,8 @@ TEST(ReduceColoursTest, PicturesKeepWithinTheBounds) {
 // All pixels are between two colours: steps that are right for edges would be too coarse.
 TEST(ReduceColoursTest, AGreyPictureKeepsWithinTheMean) {
   std::mt19937 random(9);
-  Mask grey(kSide, kSide);
-  for (int row = 0; row < kSide; ++row) {
-    for (int column = 0; column < kSide; ++column) {
-      grey.row_begin(row)[column] = static_cast<std::uint8_t>(1 + random() % 254);
-    }
-  }
+  const Mask grey =
+      testing::mask_by(kSide, kSide, [&random](int, int) { return 1 + random() % 254; });
   const PaintedClass black{&grey, {0, 0, 0, 255}};
   RunPicture exact;
   RunPicture bounded;
@@ -163,10 +155,8 @@ TEST(ReduceColoursTest, FlatColoursAreExact) {
 TEST(ReduceColoursTest, AnEdgeHasTheSameColoursInEveryPicture) {
   constexpr int kRows = 32;
   const auto in_row = [](int row, const auto& value_of) {
-    Mask mask(256, kRows);
-    mask.fill(0);
-    for (int i = 0; i < 256; ++i) mask.row_begin(row)[i] = static_cast<std::uint8_t>(value_of(i));
-    return mask;
+    return testing::mask_by(256, kRows,
+                            [&](int column, int y) { return y == row ? value_of(column) : 0; });
   };
   const Mask edge = in_row(0, [](int i) { return i; });
   const Mask other = in_row(1, [](int i) { return i < 128 ? 255 : 40; });

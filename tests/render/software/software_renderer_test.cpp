@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/render/compare_renderers.h"
+#include "tests/render/masks.h"
 #include "tests/render/sample_mesh.h"
 
 namespace trapeze {
@@ -168,11 +169,10 @@ TEST(SoftwareRendererTest, AgreesWithSummingRows) {
     const SampleMesh mesh =
         i % 4 < 2 ? random_strips(random, box, 10 << (i % 5)) : random_scatter(random, box, 90);
     const std::vector<double> expected = shares_by_rows(mesh.view(), view);
-    const Mask actual = draw(mesh, view);
+    const std::vector<std::uint8_t> actual = testing::values_of(draw(mesh, view));
     for (std::size_t p = 0; p < expected.size(); ++p) {
       // Half a value of rounding, and what horizontal edges lose within a row.
-      ASSERT_NEAR(actual.pixels()[p], expected[p] * 255, 0.5 + 0.5)
-          << "mesh " << i << ", pixel " << p;
+      ASSERT_NEAR(actual[p], expected[p] * 255, 0.5 + 0.5) << "mesh " << i << ", pixel " << p;
     }
   }
 }
@@ -185,7 +185,8 @@ TEST(SoftwareRendererTest, CoversExactlyTheAreaOfTheMesh) {
     const SampleMesh mesh = random_strips(random, {3, 5, 8001, 7003}, 200);
     const View view = square_view(0, 32, 256);
     const Mask mask = draw(mesh, view);
-    const double sum = std::accumulate(mask.pixels().begin(), mask.pixels().end(), 0.0);
+    const auto drawn = testing::values_of(mask);
+    const double sum = std::accumulate(drawn.begin(), drawn.end(), 0.0);
     const double area = static_cast<double>(mesh.area()) / (32 * 32);
     // Rounding to whole values is a random walk of at most half a value a pixel.
     EXPECT_NEAR(sum / 255, area, 4 * 0.3 / 255 * 256);
@@ -293,8 +294,7 @@ TEST(SoftwareRendererTest, DrawsOnlyTheRangesNamed) {
   SoftwareRenderer renderer;
   Mask mask;
   renderer.draw(mesh.view(), ranges, {0, 0, 1, 8, 1}, mask);
-  const std::vector<int> values(mask.pixels().begin(), mask.pixels().end());
-  EXPECT_EQ(values, (std::vector<int>{0, 255, 255, 0, 0, 0, 255, 0}));
+  EXPECT_EQ(testing::values_of(mask), (std::vector<std::uint8_t>{0, 255, 255, 0, 0, 0, 255, 0}));
 }
 
 }  // namespace

@@ -39,8 +39,7 @@ class GatedRenderer final : public MaskRenderer {
     }
     if (gate_.fails) throw std::runtime_error("the device is lost");
     for (const MaskTask& task : tasks) {
-      task.out->resize(task.view.width, task.view.height);
-      std::fill_n(task.out->row_begin(0), task.out->pixels().size(), std::uint8_t{0});
+      *task.out = Mask(task.view.width, task.view.height);
     }
     return {};
   }

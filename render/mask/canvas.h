@@ -1,0 +1,39 @@
+// The values of a mask while they are computed, in any order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/mask/mask.h"
+#include "render/mask/touched_columns.h"
+
+namespace trapeze {
+
+/// Use for one mask after the other: only what has been written of it costs anything.
+class Canvas {
+ public:
+  /// Begins a mask whose values are all 0. What was not finished is dropped.
+  void begin(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// The values of a row, those of columns `begin` up to the one before `end` to be written.
+  /// Precondition: begin < end.
+  std::uint8_t* row(int row, int begin, int end) {
+    const auto i = static_cast<std::size_t>(row);
+    touched_.touch(i, static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
+    return values_.data() + i * static_cast<std::size_t>(width_);
+  }
+  /// Ends the mask.
+  void finish(Mask& mask);
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<std::uint8_t> values_;  // all 0 between two masks
+  TouchedColumns touched_;
+  bool is_clean_ = true;
+};
+
+}  // namespace trapeze

@@ -1,0 +1,210 @@
+#include "render/mask/resolve_row.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+#include "render/mask/row_bits.h"
+#include "render/mask/touched_columns.h"
+
+namespace trapeze {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::size_t kBlock = 8;  // pixels that are computed at once
+
+// By the vector extensions of g++ and clang: the same operations in the same order, and so the same
+// values, whatever instructions the processor has for them.
+template <class Element>
+struct Vector {
+  using Type __attribute__((vector_size(kBlock * sizeof(Element)))) = Element;
+};
+template <class Element>
+using VectorOf = typename Vector<Element>::Type;
+
+/// A row while it is computed.
+struct Row {
+  std::array<std::uint8_t, kMaxPicturePixels> values;  // where it was touched
+  // By pixel, whether its value differs from that of the pixel before.
+  std::array<std::uint64_t, words_for(kMaxPicturePixels)> changes;
+
+  explicit Row(std::size_t columns) { std::fill_n(changes.data(), words_for(columns), 0); }
+};
+
+/// A bit for each byte that is not 0.
+[[gnu::always_inline]] inline std::uint8_t set_bytes(std::uint64_t bytes) {
+  constexpr std::uint64_t kLow = 0x7f7f7f7f7f7f7f7f;
+  const std::uint64_t highest = (((bytes & kLow) + kLow) | bytes) & ~kLow;
+  return static_cast<std::uint8_t>(((highest >> 7) * 0x0102040810204080) >> 56);
+}
+
+/// What a span of columns begins with: the sum of all differences before it, and the value there.
+template <class Element>
+struct Before {
+  Element sum = 0;
+  std::uint8_t value = 0;
+};
+
+/// Computes the values of the columns from `begin` to the one before `end`, which are a multiple of
+/// kBlock.
+template <class Element>
+[[gnu::always_inline]] inline void sum_blocks(Element* differences, std::size_t begin,
+                                              std::size_t end, float values_per_unit,
+                                              Before<Element>& before, Row& row) {
+  const VectorOf<Element> none{};
+  VectorOf<Element> sum_before = none + before.sum;
+  std::uint64_t value_before = before.value;
+  auto* changes = reinterpret_cast<std::uint8_t*>(row.changes.data());
+  for (std::size_t i = begin; i < end; i += kBlock) {
+    VectorOf<Element> sums;
+    std::memcpy(&sums, differences + i, sizeof sums);
+    std::memset(differences + i, 0, sizeof sums);
+    sums += __builtin_shufflevector(none, sums, 0, 8, 9, 10, 11, 12, 13, 14);
+    sums += __builtin_shufflevector(none, sums, 0, 1, 8, 9, 10, 11, 12, 13);
+    sums += __builtin_shufflevector(none, sums, 0, 1, 2, 3, 8, 9, 10, 11);
+    sums += sum_before;
+    sum_before = __builtin_shufflevector(sums, sums, 7, 7, 7, 7, 7, 7, 7, 7);
+    VectorOf<float> shares = __builtin_convertvector(sums, VectorOf<float>) * values_per_unit;
+    const VectorOf<float> zero{};
+    const VectorOf<float> all = zero + 255.0f;
+    shares = shares < zero ? zero : shares;
+    shares = shares > all ? all : shares;
+    const auto rounded = __builtin_convertvector(shares + 0.5f, VectorOf<std::int32_t>);
+    const auto bytes = __builtin_convertvector(rounded, VectorOf<std::uint8_t>);
+    std::uint64_t values = 0;
+    std::memcpy(&values, &bytes, sizeof values);
+    std::memcpy(row.values.data() + i, &values, sizeof values);
+    changes[i / kBlock] = set_bytes(values ^ (values << 8 | value_before));
+    value_before = values >> 56;
+  }
+  before.sum = sum_before[0];
+  before.value = static_cast<std::uint8_t>(value_before);
+}
+
+template <class Element>
+using SumBlocks = void (*)(Element*, std::size_t, std::size_t, float, Before<Element>&, Row&);
+
+template <class Element>
+void sum_blocks_anywhere(Element* differences, std::size_t begin, std::size_t end,
+                         float values_per_unit, Before<Element>& before, Row& row) {
+  sum_blocks(differences, begin, end, values_per_unit, before, row);
+}
+
+#ifdef __x86_64__
+
+template <class Element>
+[[gnu::target("avx2")]] void sum_blocks_with_avx2(Element* differences, std::size_t begin,
+                                                  std::size_t end, float values_per_unit,
+                                                  Before<Element>& before, Row& row) {
+  sum_blocks(differences, begin, end, values_per_unit, before, row);
+}
+
+template <class Element>
+SumBlocks<Element> best_sum_blocks() {
+  return __builtin_cpu_supports("avx2") ? sum_blocks_with_avx2<Element>
+                                        : sum_blocks_anywhere<Element>;
+}
+
+#else
+
+template <class Element>
+SumBlocks<Element> best_sum_blocks() {
+  return sum_blocks_anywhere<Element>;
+}
+
+#endif
+
+/// Goes along a row of differences and sets them to 0.
+template <class Element>
+class RowSum {
+ public:
+  RowSum(Element whole, std::span<Element> differences)
+      : differences_(differences),
+        values_per_unit_(255.0f / static_cast<float>(whole)),
+        row_(differences.size()) {}
+
+  /// Takes those of some columns; all that lie between them and those taken before are 0.
+  /// Precondition: begin is a multiple of kBlock, and end is one or ends the row.
+  void take(std::size_t begin, std::size_t end) {
+    static const SumBlocks<Element> sum = best_sum_blocks<Element>();
+    const std::size_t whole_blocks = begin + (end - begin) / kBlock * kBlock;
+    sum(differences_.data(), begin, whole_blocks, values_per_unit_, before_, row_);
+    if (whole_blocks < end) take_rest(whole_blocks, end - whole_blocks);
+  }
+  /// Appends the row to a mask.
+  void finish(Mask& mask) {
+    const std::size_t columns = differences_.size();
+    const std::span<std::uint64_t> changes(row_.changes.data(), words_for(columns));
+    std::uint8_t value = 0;  // of the run at hand
+    if ((changes[0] & 1) != 0) value = row_.values[0];
+    changes[0] &= ~std::uint64_t{1};
+    for_each_bit(changes, [&](std::size_t column) {
+      mask.append_new(column, value);
+      value = row_.values[column];
+    });
+    mask.append_new(columns, value);
+    mask.end_row();
+  }
+
+ private:
+  // What follows a rest is 0, so that nothing changes there.
+  void take_rest(std::size_t column, std::size_t count) {
+    std::array<Element, kBlock> rest{};
+    const auto here = differences_.subspan(column, count);
+    std::ranges::copy(here, rest.begin());
+    std::ranges::fill(here, Element{0});
+    Row of_rest(kBlock);
+    sum_blocks_anywhere(rest.data(), 0, kBlock, values_per_unit_, before_, of_rest);
+    std::copy_n(of_rest.values.data(), count, row_.values.data() + column);
+    row_.changes[column / 64] |= of_rest.changes[0] << column % 64;
+  }
+
+  std::span<Element> differences_;
+  float values_per_unit_;
+  Before<Element> before_;
+  Row row_;
+};
+
+template <class Element>
+bool is_all_zero(const Element* differences) {
+  const auto pair = [differences](std::size_t i) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, differences + 2 * i, sizeof bits);
+    return bits;
+  };
+  return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
+}
+
+// Blocks of zeros continue the run at hand.
+template <class Element>
+void resolve_row_by(Element whole, std::span<Element> differences, Mask& mask) {
+  RowSum<Element> sum(whole, differences);
+  std::size_t i = 0;
+  for (; i + kBlock <= differences.size(); i += kBlock) {
+    if (!is_all_zero(differences.data() + i)) sum.take(i, i + kBlock);
+  }
+  sum.take(i, differences.size());
+  sum.finish(mask);
+}
+
+}  // namespace
+
+void resolve_row(std::span<float> differences, Mask& mask) {
+  resolve_row_by(1.0f, differences, mask);
+}
+
+void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift, Mask& mask) {
+  RowSum<float> sum(1.0f, differences);
+  for_each_touched(touched, shift, differences.size(),
+                   [&](std::size_t begin, std::size_t end) { sum.take(begin, end); });
+  sum.finish(mask);
+}
+
+void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, Mask& mask) {
+  resolve_row_by(whole, differences, mask);
+}
+
+}  // namespace trapeze
