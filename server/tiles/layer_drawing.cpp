@@ -241,7 +241,7 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
     const Painted one{i, layer_->feature_of(i), number_of(classes, layer_->feature_of(i))};
     if (one.number == kNotDrawn) return;
     if (!are_in_common) return add(one);
-    if (uppermost && have_in_common(*uppermost, one)) {
+    if (uppermost && layer_->have_in_common(uppermost->trapezoid, i)) {
       if (!is_raised(uppermost->number) || is_raised(one.number)) uppermost = one;
       return;
     }
@@ -250,12 +250,6 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
   });
   if (uppermost) add(*uppermost);
   if (has_stack_) add_stack(classes, selection, tools);
-}
-
-// Of one place, for two features: the trapezoids follow one another, in order of rows.
-bool LayerDrawing::have_in_common(const Painted& one, const Painted& next) const {
-  return one.row != Layer::kNoFeature && next.row != Layer::kNoFeature && one.row != next.row &&
-         layer_->mesh().trapezoids[one.trapezoid] == layer_->mesh().trapezoids[next.trapezoid];
 }
 
 bool LayerDrawing::is_raised(std::uint8_t number) const {

@@ -126,7 +126,6 @@ class LayerDrawing {
     std::uint8_t number = 0;
   };
 
-  bool have_in_common(const Painted& one, const Painted& next) const;
   bool is_raised(std::uint8_t number) const;
   /// The only one of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
