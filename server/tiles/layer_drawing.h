@@ -154,7 +154,8 @@ class LayerDrawing {
                      const FeatureClasses* classes, DrawingTools& tools);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
-  void add_sides_of(std::uint32_t trapezoid, std::vector<SideOf>& sides) const;
+  void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
+                    std::vector<SideOf>& in_common) const;
   void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
 
   const LayerPaint* paint_ = nullptr;
