@@ -196,32 +196,24 @@ void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outc
 /// The faces of a subdivision by sets.
 class SetFaces {
  public:
-  /// Of sets without the features that are left out.
+  /// Those of the uppermost features. Of sets without the features that are left out, which are in
+  /// ascending order.
   SetFaces(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
-    std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
+    face_of_.reserve(sets.size());
     for (std::uint32_t i = 0; i < sets.size(); ++i) {
-      const auto& all = sets[i];
-      std::vector<std::uint32_t> set;
-      std::ranges::set_difference(all, left_out, std::back_inserter(set));
-      if (set.size() > kMostTogether) {
-        set.erase(set.begin(), set.end() - static_cast<std::ptrdiff_t>(kMostTogether));
-      }
-      face_of_.push_back(set.empty() ? kOutside : set.back() + 1);
-      place_of_.push_back(kNone);
-      if (set.size() < 2) continue;
-      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
-      place_of_.back() = known->second;
-      if (is_new) places_.push_back({known->first});
+      face_of_.push_back(uppermost_of(sets[i], left_out));
     }
   }
 
-  /// Gives places of their own faces to wide ones.
-  void tell_apart(const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
+  /// Gives wide places of several features faces of their own. Of the same sets.
+  void tell_apart(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out,
+                  const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
+    collect_places(sets, left_out);
     if (places_.empty()) return;
     measure(g);
     for (Place& place : places_) {
       const double width = place.border > 0 ? 2 * place.area / place.border : 0;
-      if (width > narrowest) place.face = faces.add(place.features);
+      if (width > narrowest) place.face = faces.add(std::move(place.features));
     }
     for (std::size_t set = 0; set < face_of_.size(); ++set) {
       if (place_of_[set] == kNone) continue;
@@ -234,8 +226,8 @@ class SetFaces {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-  // Of more features over each other, the lower ones are nowhere to be seen.
-  static constexpr std::size_t kMostTogether = 64;
+  // Of more features, the lower ones are nowhere to be seen.
+  static constexpr std::size_t kMostOverEachOther = 64;
 
   // What the same features cover.
   struct Place {
@@ -244,6 +236,32 @@ class SetFaces {
     double border = 0;  // its length
     FaceId face = kOutside;
   };
+
+  static FaceId uppermost_of(const std::vector<std::uint32_t>& set,
+                             const std::vector<std::uint32_t>& left_out) {
+    const auto uppermost =
+        std::find_if(set.rbegin(), set.rend(), [&left_out](std::uint32_t feature) {
+          return !std::ranges::binary_search(left_out, feature);
+        });
+    return uppermost == set.rend() ? kOutside : *uppermost + 1;
+  }
+
+  void collect_places(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+    std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
+    place_of_.assign(sets.size(), kNone);
+    for (std::uint32_t i = 0; i < sets.size(); ++i) {
+      if (sets[i].size() < 2) continue;
+      std::vector<std::uint32_t> set;
+      std::ranges::set_difference(sets[i], left_out, std::back_inserter(set));
+      if (set.size() < 2) continue;
+      if (set.size() > kMostOverEachOther) {
+        set.erase(set.begin(), set.end() - static_cast<std::ptrdiff_t>(kMostOverEachOther));
+      }
+      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
+      place_of_[i] = known->second;
+      if (is_new) places_.push_back({known->first});
+    }
+  }
 
   void measure(const TrapezoidalGraph& g) {
     for (std::size_t i = 0; i < g.edges().size(); ++i) {
@@ -386,7 +404,7 @@ std::size_t count_distinct(const std::vector<VertexId>& sorted) {
 /// their numbers must not add up to more than a fraction of a second's work. The reason if they do,
 /// or empty.
 std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t edges) {
-  constexpr std::size_t kMostTogether = std::size_t{1} << 24;  // 4,096 at one vertex
+  constexpr std::size_t kAlways = std::size_t{1} << 24;  // 4,096 at one vertex
   constexpr std::size_t kMostPerEdge = 256;
   std::size_t squares = 0;
   std::size_t most = 0;
@@ -396,7 +414,7 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
     squares += (i - begin) * (i - begin);
     most = std::max(most, i - begin);
   }
-  if (squares <= kMostTogether + kMostPerEdge * edges) return {};
+  if (squares <= kAlways + kMostPerEdge * edges) return {};
   return "up to " + std::to_string(most) + " borders meet at one vertex";
 }
 
@@ -450,7 +468,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   outcome.faces = FaceFeatures::in_order(features.size());
   SetFaces faces(map.sets(), outcome.apart);
   if (std::isfinite(tolerance.narrowest_overlap)) {
-    faces.tell_apart(graph, tolerance.narrowest_overlap, outcome.faces);
+    faces.tell_apart(map.sets(), outcome.apart, graph, tolerance.narrowest_overlap, outcome.faces);
   }
   Sides sides = sides_of(graph, faces, boundary_.edges.size());
   if (!keep_what_divides(sides, graph, threads)) return outcome;
