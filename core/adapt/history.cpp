@@ -280,7 +280,7 @@ void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level 
   const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
   const auto rows = is_inside ? rows_of(graph, node, now) : std::span<const std::uint32_t>();
   if (version != kNoVersion) {
-    if (is_inside && is_open(version, now, rows)) return;
+    if (!rows.empty() && is_open(version, now, rows)) return;
     const std::uint32_t first = version;
     do lifespan_of(*history_, version++).dies = level;
     while (is_copy(version, first));

@@ -63,10 +63,11 @@ struct History {
 /// Reusable memory for recording; one call at a time.
 class HistoryRecorder {
  public:
-  /// Appends the history of `graph` to `history`; its faces are those of the rows. Afterwards
-  /// `graph` is adapted to the coarsest tolerance. Tells `share` now and then, if there is one, how
-  /// many of the vertices have gone. Throws std::length_error if there are more versions than 32
-  /// bits count. On up to `threads` threads; the history does not depend on their number.
+  /// Appends the history of `graph` to `history`. Face f is that of the features whose rows are
+  /// rows.of(f). Afterwards `graph` is adapted to the coarsest tolerance. Tells `share` now and
+  /// then, if there is one, how many of the vertices have gone. Throws std::length_error if there
+  /// are more versions than 32 bits count. On up to `threads` threads; the history does not depend
+  /// on their number.
   ///
   /// The time of a removal grows with the trapezoids along the edges that are joined. Where that is
   /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -190,38 +191,41 @@ void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outc
     return is_out(overlap.lower) || is_out(overlap.upper);
   });
   for (const std::uint32_t feature : features) outcome.areas[feature] = 0;
-  outcome.apart = features;
+  outcome.apart.insert(outcome.apart.end(), features.begin(), features.end());
+  std::ranges::sort(outcome.apart);
+}
+
+/// Leaves features out until none overlap by more than that share of the smaller one.
+void leave_out_overlaps(const TrapezoidalGraph& g, const SetMap& map, double most,
+                        CoverageOutcome& outcome) {
+  const std::vector<Overlap> overlaps = large_overlaps(outcome, most);
+  if (overlaps.empty()) return;
+  leave_out(features_to_leave_out(
+                overlaps, count_common_edges(g, map.borders(), map.sets(), outcome.areas.size())),
+            outcome);
 }
 
 /// The faces of a subdivision by sets.
 class SetFaces {
  public:
-  /// Of sets without the features that are left out.
+  /// Those of the uppermost features. Of sets without the features that are left out, which are in
+  /// ascending order.
   SetFaces(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
-    std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
+    face_of_.reserve(sets.size());
     for (std::uint32_t i = 0; i < sets.size(); ++i) {
-      const auto& all = sets[i];
-      std::vector<std::uint32_t> set;
-      std::ranges::set_difference(all, left_out, std::back_inserter(set));
-      if (set.size() > kMostTogether) {
-        set.erase(set.begin(), set.end() - static_cast<std::ptrdiff_t>(kMostTogether));
-      }
-      face_of_.push_back(set.empty() ? kOutside : set.back() + 1);
-      place_of_.push_back(kNone);
-      if (set.size() < 2) continue;
-      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
-      place_of_.back() = known->second;
-      if (is_new) places_.push_back({known->first});
+      face_of_.push_back(uppermost_of(sets[i], left_out));
     }
   }
 
-  /// Gives places of their own faces to wide ones.
-  void tell_apart(const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
+  /// Gives wide places of several features faces of their own. Of the same sets.
+  void tell_apart(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out,
+                  const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
+    collect_places(sets, left_out);
     if (places_.empty()) return;
     measure(g);
     for (Place& place : places_) {
       const double width = place.border > 0 ? 2 * place.area / place.border : 0;
-      if (width > narrowest) place.face = faces.add(place.features);
+      if (width > narrowest) place.face = faces.add(std::move(place.features));
     }
     for (std::size_t set = 0; set < face_of_.size(); ++set) {
       if (place_of_[set] == kNone) continue;
@@ -234,8 +238,6 @@ class SetFaces {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-  // Of more features over each other, the lower ones are nowhere to be seen.
-  static constexpr std::size_t kMostTogether = 64;
 
   // What the same features cover.
   struct Place {
@@ -244,6 +246,29 @@ class SetFaces {
     double border = 0;  // its length
     FaceId face = kOutside;
   };
+
+  static FaceId uppermost_of(const std::vector<std::uint32_t>& set,
+                             const std::vector<std::uint32_t>& left_out) {
+    const auto uppermost =
+        std::find_if(set.rbegin(), set.rend(), [&left_out](std::uint32_t feature) {
+          return !std::ranges::binary_search(left_out, feature);
+        });
+    return uppermost == set.rend() ? kOutside : *uppermost + 1;
+  }
+
+  void collect_places(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
+    std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;
+    place_of_.assign(sets.size(), kNone);
+    for (std::uint32_t i = 0; i < sets.size(); ++i) {
+      if (sets[i].size() < 2) continue;
+      std::vector<std::uint32_t> set;
+      std::ranges::set_difference(sets[i], left_out, std::back_inserter(set));
+      if (set.size() < 2) continue;
+      const auto [known, is_new] = numbers.try_emplace(std::move(set), places_.size());
+      place_of_[i] = known->second;
+      if (is_new) places_.push_back({known->first});
+    }
+  }
 
   void measure(const TrapezoidalGraph& g) {
     for (std::size_t i = 0; i < g.edges().size(); ++i) {
@@ -267,6 +292,58 @@ class SetFaces {
   std::vector<std::uint32_t> place_of_;  // by set
   std::vector<Place> places_;
 };
+
+/// Whether so many features lie over each other that a graph with trapezoids for each of them would
+/// be much larger than those of single features; they have that many vertices.
+bool is_crowded(const TrapezoidalGraph& g, const SetFaces& faces, const FaceFeatures& features,
+                std::size_t vertices) {
+  constexpr std::size_t kMostAtAPlace = 64;
+  constexpr std::size_t kAlways = 4096;
+  constexpr std::size_t kMostPerVertex = 16;
+  const auto is_deep = [](const auto& place) { return place.size() > kMostAtAPlace; };
+  if (std::ranges::any_of(features.shared(), is_deep)) return true;
+  if (features.shared().empty()) return false;
+  std::size_t sides = 0;  // about as many as trapezoids
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    if (g.is_frame(EdgeId(i))) continue;
+    const Edge& edge = g.edge(EdgeId(i));
+    const FaceId left = faces[edge.face[kLeft]];
+    const FaceId right = faces[edge.face[kRight]];
+    if (left != right) sides += features.of(left).size() + features.of(right).size();
+  }
+  return sides > kAlways + kMostPerVertex * vertices;
+}
+
+/// How many the features have that are not left out.
+std::size_t count_vertices(std::span<const Rings* const> features,
+                           const std::vector<std::uint32_t>& left_out) {
+  std::size_t vertices = 0;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    if (!std::ranges::binary_search(left_out, i)) vertices += features[i]->points.size();
+  }
+  return vertices;
+}
+
+/// The faces of those features that can share a graph; others are left out. None if fewer than two
+/// remain, or too many over each other.
+std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& map,
+                                     std::span<const Rings* const> features,
+                                     const CoverageTolerance& tolerance, CoverageOutcome& outcome) {
+  for (const double most : {tolerance.most_overlap, tolerance.most_overlap_in_crowd}) {
+    leave_out_overlaps(g, map, most, outcome);
+    if (features.size() < outcome.apart.size() + 2) return std::nullopt;
+    outcome.faces = FaceFeatures::in_order(features.size());
+    SetFaces faces(map.sets(), outcome.apart);
+    if (std::isfinite(tolerance.narrowest_overlap)) {
+      faces.tell_apart(map.sets(), outcome.apart, g, tolerance.narrowest_overlap, outcome.faces);
+    }
+    const std::size_t vertices = count_vertices(features, outcome.apart);
+    if (!is_crowded(g, faces, outcome.faces, vertices)) return faces;
+    outcome.is_crowded = true;
+  }
+  outcome.failure = SetMap::kTooManyOverEachOther;
+  return std::nullopt;
+}
 
 Sides sides_of(const TrapezoidalGraph& g, const SetFaces& faces, std::size_t edges) {
   Sides sides;
@@ -386,7 +463,7 @@ std::size_t count_distinct(const std::vector<VertexId>& sorted) {
 /// their numbers must not add up to more than a fraction of a second's work. The reason if they do,
 /// or empty.
 std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t edges) {
-  constexpr std::size_t kMostTogether = std::size_t{1} << 24;  // 4,096 at one vertex
+  constexpr std::size_t kAlways = std::size_t{1} << 24;  // 4,096 at one vertex
   constexpr std::size_t kMostPerEdge = 256;
   std::size_t squares = 0;
   std::size_t most = 0;
@@ -396,7 +473,7 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
     squares += (i - begin) * (i - begin);
     most = std::max(most, i - begin);
   }
-  if (squares <= kMostTogether + kMostPerEdge * edges) return {};
+  if (squares <= kAlways + kMostPerEdge * edges) return {};
   return "up to " + std::to_string(most) + " borders meet at one vertex";
 }
 
@@ -439,20 +516,10 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   tell(0.5);
   outcome.areas.assign(features.size(), 0);
   if (!note_areas(graph, map.sets(), outcome)) return outcome;
-  const std::vector<Overlap> overlaps = large_overlaps(outcome, tolerance.most_overlap);
-  if (!overlaps.empty()) {
-    leave_out(features_to_leave_out(
-                  overlaps, count_common_edges(graph, map.borders(), map.sets(), features.size())),
-              outcome);
-    if (features.size() - outcome.apart.size() < 2) return outcome;
-  }
+  const std::optional<SetFaces> faces = choose_faces(graph, map, features, tolerance, outcome);
+  if (!faces) return outcome;
   tell(0.6);
-  outcome.faces = FaceFeatures::in_order(features.size());
-  SetFaces faces(map.sets(), outcome.apart);
-  if (std::isfinite(tolerance.narrowest_overlap)) {
-    faces.tell_apart(graph, tolerance.narrowest_overlap, outcome.faces);
-  }
-  Sides sides = sides_of(graph, faces, boundary_.edges.size());
+  Sides sides = sides_of(graph, *faces, boundary_.edges.size());
   if (!keep_what_divides(sides, graph, threads)) return outcome;
   if (tolerance.widest_gap > 0) {
     outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);

@@ -44,13 +44,18 @@ struct CoverageOutcome {
   std::vector<double> areas;      // of each feature by itself, cells squared
   FaceFeatures faces;             // by position
   std::vector<std::uint32_t> apart;  // the features that were left out, in ascending order
+  bool is_crowded = false;           // too many lay over each other, see CoverageTolerance
   std::string failure;               // why it could not be built, empty otherwise
 };
 
 /// The overlaps and gaps that are tolerated.
 struct CoverageTolerance {
   double most_overlap = 0;  // as a share of the area of the smaller of two features
-  double widest_gap = 0;    // metres on the ground
+  /// The same where that would leave a crowd: more than 64 features at a place that is a face of
+  /// its own, or, of all but small groups, more than 16 features on the sides of edges for each
+  /// vertex of a feature. By themselves they have one.
+  double most_overlap_in_crowd = 0;
+  double widest_gap = 0;  // metres on the ground
   /// Places that the same features cover are faces of their own if their mean width (area over
   /// half of the border) is greater than that, in cells.
   double narrowest_overlap = std::numeric_limits<double>::infinity();
@@ -75,9 +80,9 @@ class CoverageBuilder {
   /// of the border) is at most `widest_gap` become a part of the feature with the longest border,
   /// if their area is at most that border times `widest_gap`. Of features that overlap by more than
   /// is tolerated, those that share the fewest edges with neighbours are left out. If fewer than
-  /// two remain, nothing is built. Never throws for bad geometry: `graph` is meaningful only if the
-  /// outcome says built. Tells `share`, if there is one, how far it is. On up to `threads` threads;
-  /// the graph does not depend on their number.
+  /// two remain, or still a crowd, nothing is built. Never throws for bad geometry: `graph` is
+  /// meaningful only if the outcome says built. Tells `share`, if there is one, how far it is. On
+  /// up to `threads` threads; the graph does not depend on their number.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
                         TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1);
 

@@ -122,9 +122,11 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
                    [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
 }
 
-/// The greatest overlap of two neighbours, as a share of the area of the smaller one.
+// The greatest overlap of two neighbours, as a share of the area of the smaller one.
+constexpr double kMostOverlap = 0.01;
+
 double most_overlap(CoverageMode coverage) {
-  return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : 0.01;
+  return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : kMostOverlap;
 }
 
 // Half a metre at the equator, most of a pixel at zoom 18: slivers along borders that were drawn
@@ -148,8 +150,9 @@ Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage,
                   CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share,
                   unsigned threads) {
   Assembly assembly;
-  assembly.outcome = builder.build(
-      features, {most_overlap(coverage), widest_gap, kNarrowestOverlap}, graph, share, threads);
+  const CoverageTolerance tolerance{most_overlap(coverage), kMostOverlap, widest_gap,
+                                    kNarrowestOverlap};
+  assembly.outcome = builder.build(features, tolerance, graph, share, threads);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

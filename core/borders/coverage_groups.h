@@ -17,7 +17,7 @@ namespace trapeze {
 enum class CoverageMode : std::uint8_t {
   off,        // nothing: each is simplified as if it were alone
   automatic,  // those that have an edge in common, and do not overlap by more than a little
-  on,         // all that lie near each other, however much they overlap
+  on,         // all that lie near each other, however much they overlap unless they are a crowd
 };
 
 /// The default.
@@ -47,8 +47,9 @@ struct Assembly {
 
 /// Makes `graph` the graph of those features of a group that can share one, see CoverageBuilder:
 /// features that overlap by too much stay apart, and so do all if fewer than two remain or if they
-/// cannot be noded. Gaps of up to `widest_gap` metres are filled. Tells `share`, if there is one,
-/// how far it is. On up to `threads` threads; the result does not depend on their number.
+/// cannot be noded. With `on`, only features of a crowd overlap by too much. Gaps of up to
+/// `widest_gap` metres are filled. Tells `share`, if there is one, how far it is. On up to
+/// `threads` threads; the result does not depend on their number.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share = nullptr,
                   unsigned threads = 1);

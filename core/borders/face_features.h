@@ -18,7 +18,7 @@ class FaceFeatures {
  public:
   FaceFeatures() = default;
   /// Face i + 1 is of `features[i]`.
-  FaceFeatures(const std::vector<std::uint32_t>& features) : singles_(features) {}
+  FaceFeatures(std::vector<std::uint32_t> features) : singles_(std::move(features)) {}
   /// Face i + 1 is of feature i.
   static FaceFeatures in_order(std::size_t features) {
     std::vector<std::uint32_t> all(features);

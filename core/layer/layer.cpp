@@ -44,14 +44,18 @@ void Layer::keep_uppermost(std::vector<TrapezoidRange>& ranges) const {
   std::vector<TrapezoidRange> kept;
   std::optional<std::uint32_t> uppermost;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const bool is_above = uppermost && feature_of(*uppermost) != kNoFeature &&
-                          feature_of(i) != kNoFeature &&
-                          mesh().trapezoids[*uppermost] == mesh().trapezoids[i];
-    if (uppermost && !is_above) append_trapezoid(*uppermost, kept);
+    if (uppermost && !have_in_common(*uppermost, i)) append_trapezoid(*uppermost, kept);
     uppermost = i;
   });
   if (uppermost) append_trapezoid(*uppermost, kept);
   ranges.swap(kept);
+}
+
+bool Layer::have_in_common(std::uint32_t one, std::uint32_t other) const {
+  const std::uint32_t row = feature_of(one);
+  const std::uint32_t other_row = feature_of(other);
+  return row != kNoFeature && other_row != kNoFeature && row != other_row &&
+         mesh().trapezoids[one] == mesh().trapezoids[other];
 }
 
 void Layer::select_horizontal_edges(const Box& box, Level level,

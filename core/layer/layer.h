@@ -72,13 +72,18 @@ class Layer {
   /// that stands for holes, left and right edges are swapped: its area is negative.
   ///
   /// A place that several features of a coverage have in common (FeatureOverlap::in_common()) has a
-  /// trapezoid for each, one after the other, the uppermost last; see keep_uppermost().
+  /// trapezoid for each, one after the other, the uppermost last; see have_in_common() and
+  /// keep_uppermost().
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
   /// Of places that features have in common, leaves the trapezoid of the uppermost feature only:
   /// for drawing all features alike, in which each place counts once. `ranges` as select() found
   /// them.
   void keep_uppermost(std::vector<TrapezoidRange>& ranges) const;
+
+  /// Whether two of the trapezoids that select() finds are one place that two features have in
+  /// common.
+  bool have_in_common(std::uint32_t one, std::uint32_t other) const;
 
   /// Replaces `ranges` by the horizontal edges of the boundary at the level that may touch the box,
   /// as trapezoids without height whose left and right sides are the edge. All other edges of the

@@ -163,14 +163,21 @@ void note_graphs(const std::vector<PartOf>& parts, std::vector<std::uint32_t>& g
   }
 }
 
-/// Of every two features of it that have a face in common.
+/// Of every two features that have a face in common, once for either, however many faces they have.
 void note_shared(const FaceFeatures& rows, std::vector<FeatureOverlap>& shared) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (const std::vector<std::uint32_t>& features : rows.shared()) {
-    for (const std::uint32_t row : features) {
-      for (const std::uint32_t other : features) {
-        if (row != other) shared.push_back(FeatureOverlap::in_common(row, other));
+    for (std::size_t upper = 1; upper < features.size(); ++upper) {
+      for (std::size_t lower = 0; lower < upper; ++lower) {
+        pairs.emplace_back(features[lower], features[upper]);
       }
     }
+  }
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  for (const auto& [lower, upper] : pairs) {
+    shared.push_back(FeatureOverlap::in_common(lower, upper));
+    shared.push_back(FeatureOverlap::in_common(upper, lower));
   }
 }
 

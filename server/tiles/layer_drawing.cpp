@@ -241,7 +241,7 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
     const Painted one{i, layer_->feature_of(i), number_of(classes, layer_->feature_of(i))};
     if (one.number == kNotDrawn) return;
     if (!are_in_common) return add(one);
-    if (uppermost && have_in_common(*uppermost, one)) {
+    if (uppermost && layer_->have_in_common(uppermost->trapezoid, i)) {
       if (!is_raised(uppermost->number) || is_raised(one.number)) uppermost = one;
       return;
     }
@@ -250,12 +250,6 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
   });
   if (uppermost) add(*uppermost);
   if (has_stack_) add_stack(classes, selection, tools);
-}
-
-// Of one place, for two features: the trapezoids follow one another, in order of rows.
-bool LayerDrawing::have_in_common(const Painted& one, const Painted& next) const {
-  return one.row != Layer::kNoFeature && next.row != Layer::kNoFeature && one.row != next.row &&
-         layer_->mesh().trapezoids[one.trapezoid] == layer_->mesh().trapezoids[next.trapezoid];
 }
 
 bool LayerDrawing::is_raised(std::uint8_t number) const {
@@ -335,10 +329,10 @@ void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint
   const Rgba colour = style().paints[number].stroke;
   if (colour.a == 0) return;
   const MeshView& mesh = layer_->mesh();
-  std::vector<SideOf> sides;
-  for (const std::uint32_t i : trapezoids) add_sides_of(i, sides);
   std::vector<std::uint32_t> own;
-  append_outer(sides, own);
+  std::vector<SideOf> in_common;
+  for (const std::uint32_t i : trapezoids) add_sides_of(i, own, in_common);
+  append_outer(in_common, own);
   sort_and_part(own);
   std::vector<SeenEdge>& seen = lines_of(colour).seen;
   append_seen_sides(mesh, own, parts, seen);
@@ -472,23 +466,24 @@ void LayerDrawing::add_edges(std::span<const TrapezoidRange> ranges, std::uint8_
   const Rgba colour = style().paints[number].stroke;
   if (ranges.empty() || colour.a == 0) return;
   Lines& lines = lines_of(colour);
-  const MeshView& mesh = layer_->mesh();
   std::vector<SideOf> in_common;
-  for_each_trapezoid(ranges, [&](std::uint32_t i) {
-    const std::uint32_t row = layer_->feature_of(i);
-    if (row == Layer::kNoFeature) return;  // dust has no outline
-    if (layer_->overlaps().has_in_common(row)) return add_sides_of(i, in_common);
-    lines.sides.push_back(mesh.trapezoids[i].left);
-    lines.sides.push_back(mesh.trapezoids[i].right);
-  });
+  for_each_trapezoid(ranges, [&](std::uint32_t i) { add_sides_of(i, lines.sides, in_common); });
   append_outer(in_common, lines.sides);
 }
 
-void LayerDrawing::add_sides_of(std::uint32_t trapezoid, std::vector<SideOf>& sides) const {
+// Of a feature that has places in common with others, only some sides are edges of its outline:
+// those go to `in_common`, see append_outer(). Of all others, both are.
+void LayerDrawing::add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
+                                std::vector<SideOf>& in_common) const {
   const std::uint32_t row = layer_->feature_of(trapezoid);
+  if (row == Layer::kNoFeature) return;  // dust has no outline
   const MeshTrapezoid& t = layer_->mesh().trapezoids[trapezoid];
-  sides.push_back({row, t.left, false});
-  if (t.left != t.right) sides.push_back({row, t.right, true});  // else it is a level edge
+  if (!layer_->overlaps().has_in_common(row)) {
+    edges.insert(edges.end(), {t.left, t.right});
+    return;
+  }
+  in_common.push_back({row, t.left, false});
+  if (t.left != t.right) in_common.push_back({row, t.right, true});  // else it is a level edge
 }
 
 const LayerDrawing::ClassDrawing* LayerDrawing::only_class() const {

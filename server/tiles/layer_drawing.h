@@ -126,7 +126,6 @@ class LayerDrawing {
     std::uint8_t number = 0;
   };
 
-  bool have_in_common(const Painted& one, const Painted& next) const;
   bool is_raised(std::uint8_t number) const;
   /// The only one of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
@@ -155,7 +154,8 @@ class LayerDrawing {
                      const FeatureClasses* classes, DrawingTools& tools);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
-  void add_sides_of(std::uint32_t trapezoid, std::vector<SideOf>& sides) const;
+  void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
+                    std::vector<SideOf>& in_common) const;
   void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
 
   const LayerPaint* paint_ = nullptr;

@@ -64,6 +64,11 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features, u
   if (!assembly.outcome.failure.empty()) {
     tally_.remark(features.front()->key, "built apart from " + std::to_string(features.size() - 1) +
                                              " neighbours: " + assembly.outcome.failure);
+  } else if (assembly.outcome.is_crowded) {
+    tally_.remark(features.front()->key,
+                  "of it and " + std::to_string(features.size() - 1) + " neighbours, " +
+                      std::to_string(assembly.apart.size()) +
+                      " that overlap are built apart: too many lie over each other");
   }
   for (const std::uint32_t i : assembly.apart)
     build_apart(features[i]->key, features[i]->rings_apart());

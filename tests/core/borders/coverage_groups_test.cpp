@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <utility>
 
 #include "core/graph/check_graph.h"
@@ -231,6 +232,43 @@ TEST(CoverageGroups, OneThatIsLeftAloneIsNoCoverage) {
   EXPECT_THAT(assembly.apart, ElementsAre(0, 1));
 }
 
+/// Stars of which dozens lie over each other everywhere.
+std::vector<Rings> crowd() {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int32_t> place(-1'000'000, 1'000'000);
+  std::vector<Rings> features(300);
+  for (Rings& rings : features) {
+    const Point middle{place(random), place(random)};
+    rings.add(random_star(random, middle, 10, 300'000, 600'000));
+    clean_rings(rings);
+  }
+  return features;
+}
+
+std::vector<Rings> squares(std::size_t count) {
+  return std::vector<Rings>(count, rings_from_text("0 0, 1000 0, 1000 1000, 0 1000"));
+}
+
+TEST(CoverageGroups, OfACrowdOnlyThoseThatOverlapStayApart) {
+  std::vector<Rings> rings = crowd();
+  rings.push_back(rings_from_text("2000000 0, 3000000 0, 3000000 1000000, 2000000 1000000"));
+  rings.push_back(rings_from_text("3000000 0, 4000000 0, 4000000 1000000, 3000000 1000000"));
+  const Assembly assembly = Features::of(rings).assembly(CoverageMode::on);
+  EXPECT_TRUE(assembly.outcome.is_crowded);
+  EXPECT_EQ(assembly.outcome.failure, "");
+  EXPECT_GT(assembly.apart.size(), 250u);
+  EXPECT_THAT(assembly.together, testing::IsSupersetOf({300u, 301u}));
+}
+
+TEST(CoverageGroups, ACrowdOfNothingElseIsNoCoverage) {
+  const Assembly few = Features::of(squares(64)).assembly(CoverageMode::on);
+  EXPECT_FALSE(few.outcome.is_crowded);
+  EXPECT_EQ(few.together.size(), 64u);
+  const Assembly many = Features::of(squares(65)).assembly(CoverageMode::on);
+  EXPECT_TRUE(many.outcome.is_crowded);
+  EXPECT_EQ(many.apart.size(), 65u);
+}
+
 /// A layer of a coverage, all of whose features are to be together.
 std::unique_ptr<Layer> layer_of(const std::vector<Rings>& features) {
   LayerOptions options;
@@ -287,6 +325,28 @@ TEST(CoverageLayer, BorderIsStoredOnceAndLeadsToBothFeatures) {
     ASSERT_EQ(outline.size(), 1u);
     EXPECT_EQ(doubled_area_of(outline[0]), 200);
   }
+}
+
+TEST(CoverageLayer, ACrowdTakesNoMoreThanItsVerticesDo) {
+  std::vector<Rings> features = crowd();
+  LayerOptions options;
+  options.coverage = CoverageMode::on;
+  std::vector<LayerBuilder> builders;
+  builders.emplace_back(options);
+  std::vector<std::uint32_t> rows;
+  std::vector<const Rings*> rings;
+  std::size_t vertices = 0;
+  for (const Rings& feature : features) {
+    rows.push_back(static_cast<std::uint32_t>(rows.size()));
+    rings.push_back(&feature);
+    vertices += feature.points.size();
+  }
+  for (const std::uint32_t i : builders.front().add_coverage(rows, rings).apart) {
+    builders.front().add(rows[i], features[i]);
+  }
+  const auto layer = LayerBuilder::join(builders, FeatureTable());
+  EXPECT_LT(layer->size().trapezoids, 4 * vertices);
+  EXPECT_FALSE(layer->overlaps().empty());
 }
 
 TEST(CoverageLayer, DustOfAllFeaturesTogetherMakesUpForWhatIsDrawn) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
+#include <tuple>
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/adapt/history.h"
@@ -357,6 +359,57 @@ TEST(CoverageInCommon, LevelEdgesAreThereForThoseWhoseBoundaryTheyAre) {
   }
   EXPECT_THAT(edges, testing::UnorderedElementsAre(testing::Pair(0, 0), testing::Pair(10, 0),
                                                    testing::Pair(5, 1), testing::Pair(20, 1)));
+}
+
+/// A row of features, and the ends of a level edge of its boundary.
+using LevelEdge = std::tuple<std::uint32_t, int, int, int, int>;
+
+std::multiset<LevelEdge> level_edges_of(const TrapezoidalGraph& g, const FaceFeatures& rows) {
+  std::multiset<LevelEdge> found;
+  for (std::size_t i = 0; i < g.edges().size(); ++i) {
+    const Edge& edge = g.edge(EdgeId(i));
+    if (!edge.is_alive() || g.is_frame(EdgeId(i))) continue;
+    const Point a = g.point(edge.end[kUp]);
+    const Point b = g.point(edge.end[kDown]);
+    if (a.y != b.y) continue;
+    const auto insert = [&](std::uint32_t row) { found.emplace(row, a.x, a.y, b.x, b.y); };
+    const auto left = rows.of(edge.face[kLeft]);
+    const auto right = rows.of(edge.face[kRight]);
+    for_each_apart(left, right, insert);
+    for_each_apart(right, left, insert);
+  }
+  return found;
+}
+
+std::multiset<LevelEdge> level_edges_at(const History& h, Level level) {
+  std::multiset<LevelEdge> found;
+  for (const HorizontalEdge& horizontal_edge : h.horizontal_edges) {
+    if (!horizontal_edge.lifespan.contains(level)) continue;
+    const MeshEdge& edge = h.edges[horizontal_edge.edge];
+    const Point a = h.vertices[edge.upper];
+    const Point b = h.vertices[edge.lower];
+    found.emplace(horizontal_edge.row, a.x, a.y, b.x, b.y);
+  }
+  return found;
+}
+
+TEST(CoverageInCommon, LifespansGiveTheLevelEdgesOfAllFeaturesAtEveryLevel) {
+  std::size_t later_ones = 0;  // not of the first level
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    BuiltCoverage c(random_coverage(seed), kNone);
+    if (!c.outcome.built || c.outcome.faces.shared().empty()) continue;
+    AdaptableGraph adaptable(c.graph);
+    History history;
+    HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
+    for (int level = 0; level <= kLastLevel; ++level) {
+      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
+      const auto edges = level_edges_at(history, static_cast<Level>(level));
+      if (level > 0) later_ones += edges.size();
+      ASSERT_EQ(edges, level_edges_of(adaptable.graph(), c.outcome.faces)) << "level " << level;
+    }
+  }
+  EXPECT_GT(later_ones, 1000u);
 }
 
 }  // namespace

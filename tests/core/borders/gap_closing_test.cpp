@@ -43,8 +43,10 @@ struct Closing {
   CoverageOutcome build(double widest_gap_cells, TrapezoidalGraph& graph) const {
     std::vector<const Rings*> pointers;
     for (const Rings& rings : features) pointers.push_back(&rings);
-    return CoverageBuilder().build(
-        pointers, {std::numeric_limits<double>::infinity(), metres_of(widest_gap_cells)}, graph);
+    return CoverageBuilder().build(pointers,
+                                   {.most_overlap = std::numeric_limits<double>::infinity(),
+                                    .widest_gap = metres_of(widest_gap_cells)},
+                                   graph);
   }
   CoverageOutcome build(double widest_gap_cells = 0) const {
     TrapezoidalGraph graph;
