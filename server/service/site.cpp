@@ -453,14 +453,20 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   const bool is_whole = std::ranges::all_of(
       known->layers, [&](std::size_t layer) { return dataset->layers()[layer].is_whole(); });
   if (!is_whole) return false;
-  if (matches_entity_tag(request.if_none_match, known->entity_tag)) {
-    respond(tile_headers(304, known->entity_tag, options_.cache_control));
-    return true;
+  auto held = find_held(request, *known);
+  if (held) respond(*std::move(held));
+  return held.has_value();
+}
+
+/// The answer if the tile need not be drawn: for who holds it, or from the cache.
+std::optional<HttpResponse> Site::find_held(const HttpRequest& request,
+                                            const KnownTarget& tile) const {
+  if (matches_entity_tag(request.if_none_match, tile.entity_tag)) {
+    return tile_headers(304, tile.entity_tag, options_.cache_control);
   }
-  const auto kept = cache_.find(known->key);
-  if (kept.bytes == nullptr) return false;
-  respond(tile_response(kept, known->entity_tag, options_.cache_control, known->format, "HIT"));
-  return true;
+  const auto kept = cache_.find(tile.key);
+  if (kept.bytes == nullptr) return std::nullopt;
+  return tile_response(kept, tile.entity_tag, options_.cache_control, tile.format, "HIT");
 }
 
 void Site::handle_document(const Documents& documents, const Target& target,
@@ -538,33 +544,28 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
     return respond(problem_response(planned.problem()));
   }
   auto& plan = *planned;
-  std::string key = plan.key();
-  const std::string entity_tag = entity_tag_of(key);
   if (const ServedLayer* damaged = plan.damaged_layer()) {
     return respond(problem_response(damaged_layer(*damaged)));
   }
-  const bool is_held = matches_entity_tag(request.if_none_match, entity_tag);
-  const auto kept = is_held ? TileCache::Tile() : cache_.find(key);
-  if (is_held || kept.bytes != nullptr) {
+  std::string key = plan.key();
+  KnownTarget known{key, entity_tag_of(key), tile.format, layers_of(plan)};
+  if (auto held = find_held(request, known)) {
     if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
-      known_targets_->insert(plan.dataset, request.target,
-                             {key, entity_tag, tile.format, layers_of(plan)});
+      known_targets_->insert(plan.dataset, request.target, std::move(known));
     }
-    return respond(
-        is_held ? tile_headers(304, entity_tag, options_.cache_control)
-                : tile_response(kept, entity_tag, options_.cache_control, tile.format, "HIT"));
+    return respond(*std::move(held));
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
   const std::uint64_t cost = drawing_cost(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   // The last answers come while the service ends, when this site may be gone.
-  auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond, key,
-                      entity_tag, cost, format = tile.format](const TileAnswer& answer) {
+  auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond,
+                      known = std::move(known), cost](const TileAnswer& answer) {
     if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
     const TileCache::Tile drawn{answer.tile.bytes, answer.tile.hint};
-    cache.insert(key, drawn);
-    auto response = tile_response(drawn, entity_tag, cache_control, format, "MISS");
+    cache.insert(known.key, drawn);
+    auto response = tile_response(drawn, known.entity_tag, cache_control, known.format, "MISS");
     response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
     response.headers.emplace_back("X-Tile-Cost", std::to_string(cost));
     respond(std::move(response));

@@ -100,6 +100,7 @@ class Site {
   void handle_document(const Documents& documents, const Target& target, const HttpRequest& request,
                        const Respond& respond) const;
   bool answer_known(const HttpRequest& request, const Respond& respond) const;
+  std::optional<HttpResponse> find_held(const HttpRequest& request, const KnownTarget& tile) const;
   void handle_tile(const TileRequest& tile, const HttpRequest& request,
                    const Respond& respond) const;
   HttpResponse answer_metrics() const;
