@@ -1,7 +1,8 @@
 #include "render/picture/compose.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <set>
@@ -174,19 +175,31 @@ TEST(ComposeTest, OverlappingClassesShareThePixel) {
 }
 
 TEST(ComposeTest, APatternLiesWithinTheClasses) {
-  const Mask half = mask_of(3, 1, {0, 51, 255});
-  const Mask everywhere = mask_of(3, 1, {255, 255, 51});
-  const PaintedClass fill{&half, {0, 0, 0, 255}};
-  const PaintedClass nothing{&half, kTransparent};
-  PaintedLayer layer{{&fill, 1}, &everywhere, {255, 255, 255, 255}, {}, 1};
-  const Picture over_fill = compose(layer, 3, 1);
-  EXPECT_EQ(over_fill.at(0, 0), kTransparent);
-  EXPECT_EQ(over_fill.at(1, 0), (Rgba{255, 255, 255, 51}));
-  EXPECT_EQ(over_fill.at(2, 0), (Rgba{51, 51, 51, 255}));
+  constexpr std::size_t kColumns = 24;
+  View view;
+  view.width = static_cast<int>(kColumns);
+  view.height = 1;
+  PlacedPattern stripes;
+  stripes.place({PatternKind::stripes, {}, 8, 80, 4}, view, 1);
+  std::array<std::uint8_t, kColumns> values{};
+  stripes.draw(0, 0, kColumns, values.data());
+  ASSERT_THAT(values, ::testing::AllOf(::testing::Contains(0), ::testing::Contains(255)));
+  const Mask covered = testing::mask_by(view.width, 1, [](int column, int) {
+    return column < 8 ? 0 : column < 16 ? 51 : 255;
+  });
+  const PaintedClass fill{&covered, {0, 0, 0, 255}};
+  const PaintedClass nothing{&covered, kTransparent};
+  PaintedLayer layer{{&fill, 1}, &stripes, {255, 255, 255, 255}, {}, 1};
+  const Picture over_fill = compose(layer, view.width, 1);
   layer.classes = {&nothing, 1};
-  const Picture alone = compose(layer, 3, 1);
-  EXPECT_EQ(alone.at(1, 0), (Rgba{255, 255, 255, 51}));
-  EXPECT_EQ(alone.at(2, 0), (Rgba{255, 255, 255, 51}));
+  const Picture alone = compose(layer, view.width, 1);
+  for (int column = 0; column < view.width; ++column) {
+    const std::uint8_t share = values[static_cast<std::size_t>(column)];
+    const std::uint8_t alpha = covered.at(column, 0);
+    const Rgba expected{share, share, share, alpha};
+    EXPECT_EQ(over_fill.at(column, 0), alpha == 0 ? kTransparent : expected) << column;
+    EXPECT_NEAR(alone.at(column, 0).a, alpha * share / 255.0, 0.51) << column;
+  }
 }
 
 TEST(ComposeTest, OpacityIsOfTheLayerAsAWhole) {
