@@ -33,7 +33,7 @@ std::uint32_t to_phase(double periods) {
 void PlacedPattern::Bands::assign(double period, double width) {
   constexpr double kStepsPerPixel = 64;
   const auto least = static_cast<std::uint32_t>(std::ceil(std::max(period, 1.0) * kStepsPerPixel));
-  const int bits = std::bit_width(least - 1);
+  const auto bits = static_cast<int>(std::bit_width(least - 1));
   shift_ = 32 - bits;
   values_.resize(std::size_t{1} << bits);
   for (std::size_t i = 0; i < values_.size(); ++i) {
