@@ -172,7 +172,7 @@ class Contest {
       const std::string name = "as " + them.name().substr(trip_.name.size() + 1);
       ratios.set(name, us.tiles_per_second() / them.tiles_per_second());
       ratios.set(name + ", by processor time", them.cpu_ms_per_tile() / us.cpu_ms_per_tile());
-      ratios.set("bytes of " + name, us.bytes_per_tile() / them.bytes_per_tile());
+      ratios.set(name + ", times the bytes", us.bytes_per_tile() / them.bytes_per_tile());
     }
     return ratios;
   }

@@ -75,17 +75,6 @@ void Mask::make_room_for_row() {
   if (runs_.size() < least) runs_.resize(std::max(least, 2 * runs_.size()));
 }
 
-void Mask::append_row(std::span<const std::uint8_t> values) {
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] == values[begin]) continue;
-    append(i, values[begin]);
-    begin = i;
-  }
-  append(values.size(), values[begin]);
-  end_row();
-}
-
 void Mask::end_row() {
   row_end_.push_back(static_cast<std::uint32_t>(used_));
   row_begin_ = used_;

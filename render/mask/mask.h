@@ -78,8 +78,6 @@ class Mask {
   void append_new(std::size_t end, std::uint8_t value) {
     runs_[used_++] = {static_cast<std::uint16_t>(end), value};
   }
-  /// Adds a whole row of that many values.
-  void append_row(std::span<const std::uint8_t> values);
   void end_row();
 
   int width() const { return width_; }

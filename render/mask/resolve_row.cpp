@@ -183,8 +183,13 @@ template <class Element>
 void resolve_row_by(Element whole, std::span<Element> differences, Mask& mask) {
   RowSum<Element> sum(whole, differences);
   std::size_t i = 0;
-  for (; i + kBlock <= differences.size(); i += kBlock) {
-    if (!is_all_zero(differences.data() + i)) sum.take(i, i + kBlock);
+  while (i + kBlock <= differences.size()) {
+    std::size_t end = i;
+    while (end + kBlock <= differences.size() && !is_all_zero(differences.data() + end)) {
+      end += kBlock;
+    }
+    if (end > i) sum.take(i, end);
+    i = end > i ? end : i + kBlock;
   }
   sum.take(i, differences.size());
   sum.finish(mask);

@@ -308,8 +308,11 @@ TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
   EXPECT_GT(shared, 20);
 }
 
-TEST(CoverageInCommon, LifespansGiveTheTrapezoidsOfAllFeaturesAtEveryLevel) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+/// Calls check(history, level, adapted graph, faces) for every level of the coverages of the first
+/// seeds in which features have places in common, until a check fails.
+template <typename Check>
+void for_each_level_in_common(unsigned seeds, const Check& check) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     BuiltCoverage c(random_coverage(seed), kNone);
     if (!c.outcome.built || c.outcome.faces.shared().empty()) continue;
@@ -318,11 +321,17 @@ TEST(CoverageInCommon, LifespansGiveTheTrapezoidsOfAllFeaturesAtEveryLevel) {
     HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
     for (int level = 0; level <= kLastLevel; ++level) {
       adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-      ASSERT_EQ(alive_at(history, static_cast<Level>(level)),
-                inside_of(adaptable.graph(), c.outcome.faces))
-          << "level " << level;
+      ASSERT_NO_FATAL_FAILURE(
+          check(history, static_cast<Level>(level), adaptable.graph(), c.outcome.faces));
     }
   }
+}
+
+TEST(CoverageInCommon, LifespansGiveTheTrapezoidsOfAllFeaturesAtEveryLevel) {
+  for_each_level_in_common(200, [](const History& history, Level level,
+                                   const TrapezoidalGraph& graph, const FaceFeatures& faces) {
+    ASSERT_EQ(alive_at(history, level), inside_of(graph, faces)) << "level " << int{level};
+  });
 }
 
 TEST(CoverageInCommon, AllOfAFeatureIsDustInTheEnd) {
@@ -395,20 +404,12 @@ std::multiset<LevelEdge> level_edges_at(const History& h, Level level) {
 
 TEST(CoverageInCommon, LifespansGiveTheLevelEdgesOfAllFeaturesAtEveryLevel) {
   std::size_t later_ones = 0;  // not of the first level
-  for (unsigned seed = 0; seed < 400; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    BuiltCoverage c(random_coverage(seed), kNone);
-    if (!c.outcome.built || c.outcome.faces.shared().empty()) continue;
-    AdaptableGraph adaptable(c.graph);
-    History history;
-    HistoryRecorder().record(c.graph, c.outcome.faces, {}, history);
-    for (int level = 0; level <= kLastLevel; ++level) {
-      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
-      const auto edges = level_edges_at(history, static_cast<Level>(level));
-      if (level > 0) later_ones += edges.size();
-      ASSERT_EQ(edges, level_edges_of(adaptable.graph(), c.outcome.faces)) << "level " << level;
-    }
-  }
+  for_each_level_in_common(400, [&](const History& history, Level level,
+                                    const TrapezoidalGraph& graph, const FaceFeatures& faces) {
+    const auto edges = level_edges_at(history, level);
+    if (level > 0) later_ones += edges.size();
+    ASSERT_EQ(edges, level_edges_of(graph, faces)) << "level " << int{level};
+  });
   EXPECT_GT(later_ones, 1000u);
 }
 

@@ -54,13 +54,13 @@ TEST(MaskTest, RunsAreThoseOfItsPixels) {
   std::mt19937 random(3);
   Mask mask;
   for (const int width : {1, 2, 17, 400}) {
-    std::vector<std::uint8_t> values;
+    std::vector<std::uint8_t> values(static_cast<std::size_t>(5 * width));
+    std::ranges::generate(values, [&] { return static_cast<std::uint8_t>(random() % 2); });
     mask.begin(width, 5);
-    for (int row = 0; row < 5; ++row) {
-      std::vector<std::uint8_t> of_row(static_cast<std::size_t>(width));
-      std::ranges::generate(of_row, [&] { return static_cast<std::uint8_t>(random() % 2); });
-      mask.append_row(of_row);
-      values.insert(values.end(), of_row.begin(), of_row.end());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::size_t end = i % static_cast<std::size_t>(width) + 1;
+      mask.append(end, values[i]);
+      if (end == static_cast<std::size_t>(width)) mask.end_row();
     }
     ASSERT_EQ(testing::values_of(mask), values);
     std::vector<std::uint8_t> copied(static_cast<std::size_t>(width) + Mask::kCopyRoom);

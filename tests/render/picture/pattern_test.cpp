@@ -15,15 +15,11 @@ namespace {
 Mask draw(const Pattern& pattern, View view = View::of_tile({3, 2, 5}), int scale = 1) {
   PlacedPattern placed;
   placed.place(pattern, view, scale);
-  Mask mask;
-  mask.begin(view.width, view.height);
-  const auto width = static_cast<std::size_t>(view.width);
-  std::vector<std::uint8_t> values(width);
-  for (int row = 0; row < view.height; ++row) {
-    placed.draw(row, 0, width, values.data());
-    mask.append_row(values);
-  }
-  return mask;
+  std::vector<std::uint8_t> values(static_cast<std::size_t>(view.width));
+  return testing::mask_by(view.width, view.height, [&](int column, int row) {
+    if (column == 0) placed.draw(row, 0, values.size(), values.data());
+    return values[static_cast<std::size_t>(column)];
+  });
 }
 
 /// The share of the picture that is covered.
