@@ -6,8 +6,12 @@
 #include <cstring>
 #include <utility>
 
+#include "render/picture/channels.h"
+
 namespace trapeze {
 namespace {
+
+constexpr float kRounding = 0.1f / 255;
 
 bool is_whole(std::uint8_t value) {
   return static_cast<std::uint8_t>(value + 1) <= 1;  // nothing or all
@@ -50,7 +54,8 @@ void MixtureColours::colour(int most_change) {
   if (most_change > 0) set_steps(most_change);
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Kind& kind = kinds_[i];
-    const bool is_exact = most_change == 0 || kind.edge == kNone;
+    const bool is_exact = most_change == 0 || kind.edge == kNone ||
+                          !is_close_once_rounded(edges_[kind.edge], kind.value);
     numbers_[i] = is_exact ? colours_.number_of(exact_colour(i), kind.origin)
                            : colour_along(edges_[kind.edge], kind.value);
   }
@@ -119,19 +124,19 @@ MixtureColours::Edge MixtureColours::make_edge() {
                          std::abs(edge.from.b - edge.to.b), std::abs(edge.from.a - edge.to.a)};
   edge.most_apart = 255 * *std::ranges::max_element(apart);
   edge.sum_apart = 255 * (apart[0] + apart[1] + apart[2] + apart[3]);
+  edge.is_opaque = std::min(edge.from.a, edge.to.a) > 1 - kRounding;
   edge.is_on_line = is_on_line(edge);
   return edge;
 }
 
 // Whether values between the two sides give the colours between them.
 bool MixtureColours::is_on_line(const Edge& edge) {
-  constexpr float kRounding = 0.1f / 255;
   const auto is_near = [](float a, float b) { return std::abs(a - b) < kRounding; };
   constexpr std::array<std::uint8_t, 3> kValues{51, 128, 204};
   return std::ranges::all_of(kValues, [&](std::uint8_t value) {
     const Paint mixture = mixture_with({value, static_cast<std::uint8_t>(255 - value)});
     const float share = static_cast<float>(value) / 255;
-    const Paint between = mixed(edge.to, share, edge.from, 1 - share);
+    const Paint between = edge.between(share);
     return is_near(mixture.r, between.r) && is_near(mixture.g, between.g) &&
            is_near(mixture.b, between.b) && is_near(mixture.a, between.a);
   });
@@ -153,12 +158,22 @@ std::uint32_t MixtureColours::colour_along(const Edge& edge, std::uint8_t value)
   const std::uint32_t step = edge.nearest_step(value);
   std::uint32_t& colour = step_colours_[edge.first_step + step];
   if (colour == kNone) {
-    const float share = static_cast<float>(step) * edge.step;
-    const Paint mixture = mixed(edge.to, share, edge.from, 1 - share);
+    const Paint mixture = edge.between(static_cast<float>(step) * edge.step);
     const bool is_side = step == 0 || step == edge.steps;
     colour = colours_.number_of(to_rgba(mixture), is_side ? Origin::flat : Origin::edge);
   }
   return colour;
+}
+
+// Where a colour lets others through, its opacity is rounded apart from what it is made of, which
+// then moves by up to a whole value of 255 instead of half of one.
+bool MixtureColours::is_close_once_rounded(const Edge& edge, std::uint8_t value) {
+  const float exact = static_cast<float>(value) / 255;
+  const float share = static_cast<float>(edge.nearest_step(value)) * edge.step;
+  if (edge.is_opaque || edge.most_apart * std::abs(share - exact) <= kMostChange - 1) return true;
+  const Channels one = channels_of(to_rgba(edge.between(share)));
+  const Channels other = channels_of(to_rgba(edge.between(exact)));
+  return difference(one, other).most <= kMostChange;
 }
 
 Rgba MixtureColours::exact_colour(std::size_t mixture) {

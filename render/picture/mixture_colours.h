@@ -42,12 +42,14 @@ class MixtureColours {
     bool is_on_line = false;  // else colours between the two are others
     float most_apart = 0;     // of both sides: the greatest difference of a channel, of 255
     float sum_apart = 0;      // the sum of the differences
+    bool is_opaque = false;   // on both sides
     // For the change at hand:
     std::uint32_t steps = 1;
     float step = 1;                // the share of one
     std::uint32_t first_step = 0;  // index of its colour in step_colours_
 
     std::uint32_t nearest_step(std::uint8_t value) const { return (2 * value * steps + 255) / 510; }
+    Paint between(float share) const { return mixed(to, share, from, 1 - share); }
   };
 
   // What is known of a mixture whatever the change.
@@ -67,6 +69,7 @@ class MixtureColours {
   void set_steps(int most_change);
   Rgba exact_colour(std::size_t mixture);
   std::uint32_t colour_along(const Edge& edge, std::uint8_t value);
+  static bool is_close_once_rounded(const Edge& edge, std::uint8_t value);
 
   void take_values(std::size_t mixture);
   std::array<std::uint8_t, 2> exchange_values(std::array<std::uint8_t, 2> values);

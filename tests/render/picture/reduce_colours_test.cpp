@@ -96,8 +96,10 @@ struct Discs {
   }
 };
 
-TEST(ReduceColoursTest, PicturesKeepWithinTheBounds) {
-  const unsigned seed = std::random_device{}();
+class ReducedPicturesTest : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(ReducedPicturesTest, KeepWithinTheBounds) {
+  const unsigned seed = GetParam() == 0 ? std::random_device{}() : GetParam();
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
   int indexed = 0;
@@ -110,11 +112,16 @@ TEST(ReduceColoursTest, PicturesKeepWithinTheBounds) {
     EXPECT_LE(bounded.colours.size(), exact.colours.size());
     indexed += bounded.colours.size() <= kPaletteColours ? 1 : 0;
     const Change change = change_between(exact, bounded);
-    EXPECT_LE(change.most, kMostChange + 1) << "both have been rounded";
+    EXPECT_LE(change.most, kMostChange + 1) << "both have been rounded; round " << round;
     EXPECT_LE(change.mean, kMostMeanChange + 0.1);
   }
   EXPECT_GT(indexed, 40);
 }
+
+// 0 stands for another seed each time; with the others, half-opaque colours moved by more once
+// their opacity was rounded.
+INSTANTIATE_TEST_SUITE_P(Seeds, ReducedPicturesTest,
+                         ::testing::Values(0u, 1912497036u, 3910053737u, 4231520298u));
 
 // All pixels are between two colours: steps that are right for edges would be too coarse.
 TEST(ReduceColoursTest, AGreyPictureKeepsWithinTheMean) {
