@@ -3,7 +3,7 @@
 //
 //   TRAPEZE_DATA=folder peers_bench                  all trips
 //   peers_bench --trip malta --rounds 1              one of them, once
-//   peers_bench --layers --rounds 1                  every layer of the folder by itself
+//   peers_bench --layers --no-simplify --rounds 1    every layer of the folder by itself
 //   peers_bench --pictures out/bench/pictures        pictures of all three side by side, no times
 //
 // Mapnik draws within its process (mapnik_trip), without HTTP; Trapeze and MapServer are asked over
@@ -39,6 +39,7 @@ struct Options {
   std::vector<std::string> trips = trip_names();
   std::string program = built_trapeze();
   int rounds = 3;
+  bool has_simplified = true;  // also the peers simplifying
   int connections = 16;
   std::string pictures;
   std::string json = "out/bench/peers.json";
@@ -83,6 +84,7 @@ class Contest {
     write_shapes(trip_, folder_.path());
     for (const char* renderer : {"egl", "software"}) add_trapeze(renderer);
     for (const Simplify simplify : {Simplify::off, Simplify::on}) {
+      if (simplify == Simplify::on && !options_.has_simplified) continue;
       if (has_mapnik()) add_mapnik(simplify);
       if (has_mapserver()) add_mapserver(simplify);
     }
@@ -282,6 +284,8 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   bool by_layer = false;
   app.add_flag("--layers", by_layer, "Every layer by itself");
+  app.add_flag("!--no-simplify", options.has_simplified,
+               "Without Mapnik and MapServer simplifying");
   app.add_option("--server", options.program, "The program trapeze")->capture_default_str();
   app.add_option("--rounds", options.rounds, "How often all is measured")
       ->check(CLI::Range(1, 1000))
