@@ -20,6 +20,7 @@ constexpr std::uint64_t kAdler = 65521;
 constexpr std::uint32_t kBitsOfLiteral = 6;
 constexpr std::uint32_t kBitsOfRepeat = 6;
 constexpr std::uint32_t kBitsOfMatchAbove = 13;
+constexpr std::uint32_t kBitsOfMatchWithPast = 12;  // and those that tell the distance
 
 /// A symbol, with bits that follow it.
 struct Symbol {
@@ -53,6 +54,12 @@ constexpr auto kSymbolsOfLengths = [] {
   for (std::uint32_t i = kLeastMatch; i <= kLongestMatch; ++i) symbols[i] = symbol_of_length(i);
   return symbols;
 }();
+
+/// How a symbol is written that has this code.
+template <typename Code>
+Code joined(const Code& code, const Symbol& symbol) {
+  return {code.bits | std::uint64_t{symbol.extra} << code.length, code.length + symbol.extra_bits};
+}
 
 std::uint16_t reversed(std::uint32_t bits, int length) {
   std::uint32_t result = 0;
@@ -140,6 +147,8 @@ void RunDeflater::begin(std::uint32_t columns, std::uint32_t bytes_per_pixel) {
   above_.clear();
   begin_block();
   length_above_ = 0;
+  row_byte_ = 0;
+  if (bytes_per_pixel_ > 1) past_.begin(bytes_per_pixel_);
   sum_ = 1;
   sum_of_sums_ = 0;
   // A window of 32 kB; the fastest effort; no dictionary.
@@ -155,8 +164,10 @@ void RunDeflater::add_row(std::span<const PixelRun> runs) {
   if (bytes_per_pixel_ == 1) {
     add_pixels<1>(runs);
   } else {
+    past_.add_row(runs, row_byte_ + 1);
     add_pixels<0>(runs);
   }
+  row_byte_ += stride_;
   above_.assign(runs.begin(), runs.end());
 }
 
@@ -193,8 +204,12 @@ void RunDeflater::add_pixels(std::span<const PixelRun> runs) {
       place.column += same.pixels;
     } else {
       end_match_above();
-      add_rest_of_run<size>(place);
-      place.column = place.run->end;
+      std::uint32_t matched = 0;
+      if (size == 0 && place.column == place.begin) {
+        matched = add_match_with_past(static_cast<std::size_t>(place.run - runs.data()));
+      }
+      if (matched == 0) add_rest_of_run<size>(place);
+      place.column = matched == 0 ? place.run->end : place.column + matched;
     }
     if (place.column == columns_) return;
     for (; place.run->end <= place.column; ++place.run) place.begin = place.run->end;
@@ -276,6 +291,23 @@ inline void RunDeflater::add_rest_of_run(const Place& place) {
   add_match(kRepeat, (pixels - first) * bytes_per_pixel);
 }
 
+// From the beginning of a run on. How many pixels; 0 if it takes fewer bits to write them.
+std::uint32_t RunDeflater::add_match_with_past(std::size_t run) {
+  past_.pass(run);
+  const PastRuns::Match match = past_.find(run);
+  const std::uint32_t pixels = std::min(match.pixels, kLongestMatch / bytes_per_pixel_);
+  const std::uint32_t length = pixels * bytes_per_pixel_;
+  if (length < kLeastMatch || match.distance > kMostDistance) return 0;
+  const Symbol distance = symbol_of_distance(match.distance);
+  const std::uint32_t bits_without =
+      match.runs * bytes_per_pixel_ * kBitsOfLiteral + match.repeats * kBitsOfRepeat;
+  if (bits_without <= kBitsOfMatchWithPast + distance.extra_bits) return 0;
+  add_token(kPast + length);
+  tokens_[token_count_++] = static_cast<std::uint16_t>(match.distance);
+  ++past_counts_[distance.symbol];
+  return pixels;
+}
+
 void RunDeflater::add_pixel(std::uint32_t pixel) {
   for (std::uint32_t i = 0; i < bytes_per_pixel_; ++i) add_token(pixel >> 8 * i & 0xff);
 }
@@ -336,6 +368,7 @@ void RunDeflater::add_to_checksum(std::span<const PixelRun> runs) {
 void RunDeflater::begin_block() {
   token_count_ = 0;
   counts_.fill(0);
+  past_counts_.fill(0);
 }
 
 void RunDeflater::end_block(bool is_last) {
@@ -344,7 +377,7 @@ void RunDeflater::end_block(bool is_last) {
   make_room(0);
   end_match_above();
   std::array<std::uint32_t, kLiterals> literal_counts{};
-  std::array<std::uint32_t, kDistances> distance_counts{};
+  std::array<std::uint32_t, kDistances> distance_counts = past_counts_;
   const std::array<Symbol, 2> distances{symbol_of_distance(bytes_per_pixel_),
                                         symbol_of_distance(std::min(stride_, kMostDistance))};
   std::copy_n(counts_.begin(), kRepeat, literal_counts.begin());
@@ -356,12 +389,11 @@ void RunDeflater::end_block(bool is_last) {
       distance_counts[distances[kind].symbol] += count;
     }
   }
+  for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
+    literal_counts[kSymbolsOfLengths[length].symbol] += counts_[kPast + length];
+  }
   const auto literal_codes = make_codes(literal_counts, kMostCodeBits);
   const auto distance_codes = make_codes(distance_counts, kMostCodeBits);
-  const auto joined = [](const Code& code, const Symbol& symbol) {
-    return Code{code.bits | std::uint64_t{symbol.extra} << code.length,
-                code.length + symbol.extra_bits};
-  };
   std::copy_n(literal_codes.begin(), kRepeat, codes_.begin());
   for (std::size_t kind = 0; kind < distances.size(); ++kind) {
     const Code of_distance = joined(distance_codes[distances[kind].symbol], distances[kind]);
@@ -373,6 +405,11 @@ void RunDeflater::end_block(bool is_last) {
           of_length.length + of_distance.length};
     }
   }
+  for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
+    const Symbol& symbol = kSymbolsOfLengths[length];
+    codes_[kPast + length] = joined(literal_codes[symbol.symbol], symbol);
+  }
+  past_codes_ = distance_codes;
   output_.reserve(output_.size() + kMostBytesOfHeader);
   write(is_last ? 1 : 0, 1);
   write(kDynamicCodes, 2);
@@ -425,18 +462,27 @@ void RunDeflater::write_tokens() {
   std::uint8_t* out = output_.data() + size;
   std::uint64_t bits = bits_;
   auto count = static_cast<unsigned>(bit_count_);
-  for (const std::uint16_t token : std::span(tokens_).first(token_count_)) {
-    const Code& code = codes_[token];
+  const auto put = [&](const Code& code) {
     bits |= code.bits << count;
     count += static_cast<unsigned>(code.length);
     std::memcpy(out, &bits, sizeof bits);
     out += count / 8;
     bits >>= count / 8 * 8;
     count %= 8;
+  };
+  for (std::size_t i = 0; i < token_count_; ++i) {
+    const std::uint16_t token = tokens_[i];
+    put(codes_[token]);
+    if (token >= kPast) put(code_of_distance(tokens_[++i]));
   }
   bits_ = bits;
   bit_count_ = static_cast<int>(count);
   output_.resize(static_cast<std::size_t>(out - output_.data()));
+}
+
+inline RunDeflater::Code RunDeflater::code_of_distance(std::uint32_t distance) const {
+  const Symbol symbol = symbol_of_distance(distance);
+  return joined(past_codes_[symbol.symbol], symbol);
 }
 
 /// The lengths of all codes, run by run, by a code of their own.

@@ -1,8 +1,9 @@
 // Deflate (RFC 1951) of pictures that are runs of equal pixels.
 //
-// In such pictures nearly all that repeats is within a run, or is what lies right above: no search
-// for matches is needed, and the sum over the bytes of a run has a closed form. So compressing
-// takes a time that grows with the runs and not with the pixels.
+// In such pictures nearly all that repeats is within a run, or is what lies right above, or, where
+// pixels have several bytes, was right after the same colour before: no search for matches is
+// needed, and the sum over the bytes of a run has a closed form. So compressing takes a time that
+// grows with the runs and not with the pixels.
 #pragma once
 
 #include <array>
@@ -11,15 +12,11 @@
 #include <span>
 #include <vector>
 
+#include "render/picture/past_runs.h"
+
 namespace trapeze {
 
 constexpr std::uint32_t kLongestMatch = 258;  // of Deflate, in bytes
-
-/// Equal pixels of a row.
-struct PixelRun {
-  std::uint32_t end = 0;    // the column after the last of them
-  std::uint32_t pixel = 0;  // its bytes, the first of them lowest
-};
 
 /// Compresses one picture after the other, with working memory that it keeps. One thread at a time
 /// may use it.
@@ -42,10 +39,12 @@ class RunDeflater {
   };
   static constexpr std::size_t kLiterals = 286;  // and lengths, and the end of a block
   static constexpr std::size_t kDistances = 30;
-  // Tokens: literals; then, by their length, matches with the pixel before, and with the row above.
+  // Tokens: literals; then, by their length, matches with the pixel before, with the row above, and
+  // with what was before at the distance that comes as the next token.
   static constexpr std::uint32_t kRepeat = 256;
   static constexpr std::uint32_t kAbove = kRepeat + kLongestMatch + 1;
-  static constexpr std::size_t kTokens = kAbove + kLongestMatch + 1;
+  static constexpr std::uint32_t kPast = kAbove + kLongestMatch + 1;
+  static constexpr std::size_t kTokens = kPast + kLongestMatch + 1;
 
   /// Where in a row.
   struct Place {
@@ -67,6 +66,7 @@ class RunDeflater {
   void add_pixels(std::span<const PixelRun> runs);
   template <std::uint32_t size>
   void add_rest_of_run(const Place& place);
+  std::uint32_t add_match_with_past(std::size_t run);
   void add_pixel(std::uint32_t pixel);
   void add_token(std::uint32_t token);
   void add_match(std::uint32_t kind, std::uint32_t length);
@@ -76,6 +76,7 @@ class RunDeflater {
   void begin_block();
   void end_block(bool is_last);
   void write_tokens();
+  Code code_of_distance(std::uint32_t distance) const;
   void write_code_lengths(std::span<const Code, kLiterals> literal_codes,
                           std::span<const Code, kDistances> distance_codes);
   template <std::size_t size>
@@ -91,7 +92,11 @@ class RunDeflater {
   std::vector<std::uint16_t> tokens_;  // with room for more
   std::size_t token_count_ = 0;
   std::array<std::uint32_t, kTokens> counts_{};
+  std::array<std::uint32_t, kDistances> past_counts_{};  // of distances that are tokens
   std::array<Code, kTokens> codes_{};
+  std::array<Code, kDistances> past_codes_{};
+  PastRuns past_;                   // of pixels of several bytes
+  std::uint32_t row_byte_ = 0;      // where the row begins
   std::uint32_t length_above_ = 0;  // of a match with the row above that may go on
   // Adler-32.
   std::uint64_t sum_ = 1;

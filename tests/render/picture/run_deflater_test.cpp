@@ -56,6 +56,8 @@ class RandomPixels {
  public:
   explicit RandomPixels(unsigned seed) : random_(seed) {}
 
+  void set_bytes_per_pixel(std::uint32_t bytes) { mask_ = ~0u >> (32 - 8 * bytes); }
+
   std::uint32_t number(std::uint32_t least, std::uint32_t most) {
     return std::uniform_int_distribution<std::uint32_t>(least, most)(random_);
   }
@@ -73,7 +75,7 @@ class RandomPixels {
   // Rows that are new, the same as above, or differ from it in a pixel or two.
   Pixels pixels(std::uint32_t columns, std::uint32_t rows) {
     Pixels pixels{columns, std::vector<std::uint32_t>{1, 3, 4}[number(0, 2)], {}};
-    mask_ = pixels.bytes_per_pixel == 4 ? ~0u : (1u << 8 * pixels.bytes_per_pixel) - 1;
+    set_bytes_per_pixel(pixels.bytes_per_pixel);
     const std::uint32_t longest = number(1, 60);
     const std::uint32_t colours = number(1, 3) == 1 ? 2 : number(2, 70'000);
     for (std::uint32_t i = 0; i < rows; ++i) {
@@ -93,7 +95,7 @@ class RandomPixels {
   }
 
   std::mt19937 random_;
-  std::uint32_t mask_ = 0;
+  std::uint32_t mask_ = ~0u;
 };
 
 void expect_back(RunDeflater& deflater, const Pixels& pixels) {
@@ -120,11 +122,30 @@ TEST(RunDeflaterTest, RowsLongerThanTheWindowComeBack) {
 }
 
 TEST(RunDeflaterTest, ManyBlocksComeBack) {
-  RandomPixels random(3);
   RunDeflater deflater;
-  Pixels pixels{1'024, 1, {}};
-  for (int i = 0; i < 1'024; ++i) pixels.rows.push_back(random.row(1'024, 3, 1'000));
-  expect_back(deflater, pixels);
+  for (const std::uint32_t bytes_per_pixel : {1u, 3u, 4u}) {
+    RandomPixels random(3);
+    random.set_bytes_per_pixel(bytes_per_pixel);
+    Pixels pixels{1'024, bytes_per_pixel, {}};
+    for (int i = 0; i < 1'024; ++i) pixels.rows.push_back(random.row(1'024, 3, 1'000));
+    expect_back(deflater, pixels);
+  }
+}
+
+// Of several bytes, at random: not much more than where zlib searches all of what was before.
+TEST(RunDeflaterTest, ColoursThatComeAgainAreReferredTo) {
+  RunDeflater deflater;
+  for (const std::uint32_t bytes_per_pixel : {3u, 4u}) {
+    RandomPixels random(5);
+    random.set_bytes_per_pixel(bytes_per_pixel);
+    Pixels pixels{256, bytes_per_pixel, {}};
+    for (int i = 0; i < 256; ++i) pixels.rows.push_back(random.row(256, 4, 500));
+    const Bytes bytes = bytes_of(pixels);
+    Bytes by_zlib(compressBound(bytes.size()));
+    uLongf length = by_zlib.size();
+    ASSERT_EQ(compress2(by_zlib.data(), &length, bytes.data(), bytes.size(), 6), Z_OK);
+    EXPECT_LT(compressed(deflater, pixels).size(), 1.3 * static_cast<double>(length));
+  }
 }
 
 // Codes of symbols whose counts grow like Fibonacci's numbers would be longer than a code may be.
