@@ -41,19 +41,16 @@ void PastRuns::pass(std::size_t run) {
   }
 }
 
-// Two colours are better than one, however far away they are.
-PastRuns::Match PastRuns::find(std::size_t run) const {
+std::array<PastRuns::Match, 2> PastRuns::find(std::size_t run) const {
   const std::size_t here = first_of_row_ + run;
   const std::uint32_t pixel = runs_[here].pixel;
-  if (goes_on(here)) {
-    const std::uint32_t two = of_two_[slot_of(pixel, runs_[here + 1].pixel)];
-    if (two != kNone) {
-      const Match match = this->match(two, here);
-      if (match.runs > 1) return match;
-    }
-  }
+  std::array<Match, 2> matches;
   const std::uint32_t one = of_one_[slot_of(pixel)];
-  return one == kNone ? Match{} : match(one, here);
+  if (one != kNone) matches[0] = match(one, here);
+  if (!goes_on(here)) return matches;
+  const std::uint32_t two = of_two_[slot_of(pixel, runs_[here + 1].pixel)];
+  if (two != kNone && two != one) matches[1] = match(two, here);
+  return matches;
 }
 
 /// Whether another run of the same row follows.

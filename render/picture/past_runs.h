@@ -37,8 +37,9 @@ class PastRuns {
   /// Lets those runs of the row be found that come before this one. It is not before the one of
   /// the last call.
   void pass(std::size_t run);
-  /// For the pixels from a run of the row on, which has been passed to.
-  Match find(std::size_t run) const;
+  /// For the pixels from a run of the row on, which has been passed to: where its colour was, and
+  /// where its colour and the next one were.
+  std::array<Match, 2> find(std::size_t run) const;
 
  private:
   struct Past {

@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint32_t kLeastMatch = 3;
 constexpr std::uint32_t kMostDistance = 32768;
 constexpr std::uint32_t kEndOfBlock = 256;
+constexpr std::uint32_t kColourBytes = 3;        // of a pixel, without its opacity
 constexpr std::uint32_t kFirstLength = 257;      // symbol of the shortest match
 constexpr std::size_t kTokensOfRun = 6;          // at most, without those of a match that is cut up
 constexpr std::size_t kTokensOfBlock = 1 << 15;  // so many and those of a row, at most
@@ -19,8 +20,8 @@ constexpr std::uint64_t kAdler = 65521;
 // Bits that a token takes, about: what is above is taken where it replaces more of them.
 constexpr std::uint32_t kBitsOfLiteral = 6;
 constexpr std::uint32_t kBitsOfRepeat = 6;
-constexpr std::uint32_t kBitsOfMatchAbove = 13;
-constexpr std::uint32_t kBitsOfMatchWithPast = 12;  // and those that tell the distance
+constexpr std::uint32_t kBitsOfMatchAbove = 10;
+constexpr std::uint32_t kBitsOfMatchWithPast = 9;  // and those that tell the distance
 
 /// A symbol, with bits that follow it.
 struct Symbol {
@@ -199,17 +200,22 @@ void RunDeflater::add_pixels(std::span<const PixelRun> runs) {
   }
   while (true) {
     const Same same = same_as_above(place);
-    if (is_worth_it(same)) {
+    const bool is_above = is_worth_it(same);
+    const bool goes_on = is_above && length_above_ > 0;
+    std::uint32_t matched = 0;
+    if (size == 0 && !goes_on && place.column == place.begin) {
+      const auto run = static_cast<std::size_t>(place.run - runs.data());
+      matched = add_match_with_past(place, run, is_above ? same.bits - kBitsOfMatchAbove : 0);
+    }
+    if (matched > 0) {
+      place.column += matched;
+    } else if (is_above) {
       length_above_ += same.pixels * bytes_per_pixel_;
       place.column += same.pixels;
     } else {
       end_match_above();
-      std::uint32_t matched = 0;
-      if (size == 0 && place.column == place.begin) {
-        matched = add_match_with_past(static_cast<std::size_t>(place.run - runs.data()));
-      }
-      if (matched == 0) add_rest_of_run<size>(place);
-      place.column = matched == 0 ? place.run->end : place.column + matched;
+      add_rest_of_run<size>(place);
+      place.column = place.run->end;
     }
     if (place.column == columns_) return;
     for (; place.run->end <= place.column; ++place.run) place.begin = place.run->end;
@@ -285,27 +291,48 @@ inline void RunDeflater::add_rest_of_run(const Place& place) {
     }
     token_count_ += literals;
   } else {
-    for (std::uint32_t i = 0; i < literals; ++i) add_pixel(pixel);
+    if (literals == 1 && differs_in_opacity_only(place)) {
+      add_token(kRepeat + kColourBytes);
+      add_token(pixel >> 24);
+    } else {
+      for (std::uint32_t i = 0; i < literals; ++i) add_pixel(pixel);
+    }
     if (!is_repeated) return;
   }
   add_match(kRepeat, (pixels - first) * bytes_per_pixel);
 }
 
-// From the beginning of a run on. How many pixels; 0 if it takes fewer bits to write them.
-std::uint32_t RunDeflater::add_match_with_past(std::size_t run) {
+// From the place on, where that run of the row begins, if it spares more than so many bits. How
+// many pixels; 0: none.
+std::uint32_t RunDeflater::add_match_with_past(const Place& place, std::size_t run,
+                                               std::uint32_t least_gain) {
   past_.pass(run);
-  const PastRuns::Match match = past_.find(run);
-  const std::uint32_t pixels = std::min(match.pixels, kLongestMatch / bytes_per_pixel_);
-  const std::uint32_t length = pixels * bytes_per_pixel_;
-  if (length < kLeastMatch || match.distance > kMostDistance) return 0;
-  const Symbol distance = symbol_of_distance(match.distance);
-  const std::uint32_t bits_without =
-      match.runs * bytes_per_pixel_ * kBitsOfLiteral + match.repeats * kBitsOfRepeat;
-  if (bits_without <= kBitsOfMatchWithPast + distance.extra_bits) return 0;
-  add_token(kPast + length);
-  tokens_[token_count_++] = static_cast<std::uint16_t>(match.distance);
-  ++past_counts_[distance.symbol];
+  std::uint32_t most = least_gain;
+  if (differs_in_opacity_only(place)) most += kColourBytes * kBitsOfLiteral - kBitsOfRepeat;
+  PastRuns::Match best;
+  for (const PastRuns::Match& match : past_.find(run)) {
+    if (match.pixels * bytes_per_pixel_ < kLeastMatch || match.distance > kMostDistance) continue;
+    const std::uint32_t without =
+        match.runs * bytes_per_pixel_ * kBitsOfLiteral + match.repeats * kBitsOfRepeat;
+    const std::uint32_t with = kBitsOfMatchWithPast + symbol_of_distance(match.distance).extra_bits;
+    if (without <= with + most) continue;
+    most = without - with;
+    best = match;
+  }
+  if (best.pixels == 0) return 0;
+  end_match_above();
+  const std::uint32_t pixels = std::min(best.pixels, kLongestMatch / bytes_per_pixel_);
+  add_token(kPast + pixels * bytes_per_pixel_);
+  tokens_[token_count_++] = static_cast<std::uint16_t>(best.distance);
+  ++past_counts_[symbol_of_distance(best.distance).symbol];
   return pixels;
+}
+
+// From the pixel before, which is of the same row.
+bool RunDeflater::differs_in_opacity_only(const Place& place) const {
+  constexpr std::uint32_t kColour = 0xffffff;
+  return bytes_per_pixel_ == 4 && place.column > 0 &&
+         ((place.run[-1].pixel ^ place.run->pixel) & kColour) == 0;
 }
 
 void RunDeflater::add_pixel(std::uint32_t pixel) {

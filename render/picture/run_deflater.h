@@ -66,7 +66,8 @@ class RunDeflater {
   void add_pixels(std::span<const PixelRun> runs);
   template <std::uint32_t size>
   void add_rest_of_run(const Place& place);
-  std::uint32_t add_match_with_past(std::size_t run);
+  std::uint32_t add_match_with_past(const Place& place, std::size_t run, std::uint32_t least_gain);
+  bool differs_in_opacity_only(const Place& place) const;
   void add_pixel(std::uint32_t pixel);
   void add_token(std::uint32_t token);
   void add_match(std::uint32_t kind, std::uint32_t length);
