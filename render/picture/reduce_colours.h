@@ -41,7 +41,7 @@ template <typename Reduce>
 int reduce_within(double most, const Reduce& reduce) {
   int change = kMostChange;
   while (true) {
-    const double sum = static_cast<double>(reduce(change));
+    const auto sum = static_cast<double>(reduce(change));
     if (sum <= most) return change;
     // The mean grows with the most.
     change = std::min(change - 1, static_cast<int>(change * most / sum));
