@@ -41,7 +41,7 @@ double MixtureColours::change_along_edges(int most_change) {
     if (kinds_[i].edge == kNone) continue;
     const Edge& edge = edges_[kinds_[i].edge];
     const std::uint8_t value = kinds_[i].value;
-    const float share = static_cast<float>(edge.nearest_step(value)) * edge.step;
+    const float share = edge.nearest_share(value);
     const float change = edge.sum_apart * std::abs(share - static_cast<float>(value) / 255);
     sum += static_cast<double>(change) * mixtures_->pixels[i];
   }
@@ -169,7 +169,7 @@ std::uint32_t MixtureColours::colour_along(const Edge& edge, std::uint8_t value)
 // then moves by up to a whole value of 255 instead of half of one.
 bool MixtureColours::is_close_once_rounded(const Edge& edge, std::uint8_t value) {
   const float exact = static_cast<float>(value) / 255;
-  const float share = static_cast<float>(edge.nearest_step(value)) * edge.step;
+  const float share = edge.nearest_share(value);
   if (edge.is_opaque || edge.most_apart * std::abs(share - exact) <= kMostChange - 1) return true;
   const Channels one = channels_of(to_rgba(edge.between(share)));
   const Channels other = channels_of(to_rgba(edge.between(exact)));

@@ -49,6 +49,9 @@ class MixtureColours {
     std::uint32_t first_step = 0;  // index of its colour in step_colours_
 
     std::uint32_t nearest_step(std::uint8_t value) const { return (2 * value * steps + 255) / 510; }
+    float nearest_share(std::uint8_t value) const {
+      return static_cast<float>(nearest_step(value)) * step;
+    }
     Paint between(float share) const { return mixed(to, share, from, 1 - share); }
   };
 

@@ -409,32 +409,30 @@ void RunDeflater::end_block(bool is_last) {
                                         symbol_of_distance(std::min(stride_, kMostDistance))};
   std::copy_n(counts_.begin(), kRepeat, literal_counts.begin());
   literal_counts[kEndOfBlock] = 1;
-  for (std::size_t kind = 0; kind < distances.size(); ++kind) {
-    for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
-      const std::uint32_t count = counts_[(kind == 0 ? kRepeat : kAbove) + length];
-      literal_counts[kSymbolsOfLengths[length].symbol] += count;
-      distance_counts[distances[kind].symbol] += count;
-    }
-  }
   for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
-    literal_counts[kSymbolsOfLengths[length].symbol] += counts_[kPast + length];
+    std::uint32_t& count = literal_counts[kSymbolsOfLengths[length].symbol];
+    count += counts_[kPast + length];
+    for (std::size_t kind = 0; kind < distances.size(); ++kind) {
+      const std::uint32_t of_kind = counts_[(kind == 0 ? kRepeat : kAbove) + length];
+      count += of_kind;
+      distance_counts[distances[kind].symbol] += of_kind;
+    }
   }
   const auto literal_codes = make_codes(literal_counts, kMostCodeBits);
   const auto distance_codes = make_codes(distance_counts, kMostCodeBits);
   std::copy_n(literal_codes.begin(), kRepeat, codes_.begin());
+  for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
+    const Symbol& symbol = kSymbolsOfLengths[length];
+    codes_[kPast + length] = joined(literal_codes[symbol.symbol], symbol);
+  }
   for (std::size_t kind = 0; kind < distances.size(); ++kind) {
     const Code of_distance = joined(distance_codes[distances[kind].symbol], distances[kind]);
     for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
-      const Symbol& symbol = kSymbolsOfLengths[length];
-      const Code of_length = joined(literal_codes[symbol.symbol], symbol);
+      const Code& of_length = codes_[kPast + length];
       codes_[(kind == 0 ? kRepeat : kAbove) + length] = {
           of_length.bits | of_distance.bits << of_length.length,
           of_length.length + of_distance.length};
     }
-  }
-  for (std::size_t length = kLeastMatch; length <= kLongestMatch; ++length) {
-    const Symbol& symbol = kSymbolsOfLengths[length];
-    codes_[kPast + length] = joined(literal_codes[symbol.symbol], symbol);
   }
   past_codes_ = distance_codes;
   output_.reserve(output_.size() + kMostBytesOfHeader);
