@@ -25,12 +25,6 @@ void take_units(std::span<std::int32_t> units, std::span<std::int64_t> sums) {
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::exchange(units[i], 0);
 }
 
-void to_pixels(std::span<const std::int64_t> units, std::span<float> pixels) {
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    pixels[i] = static_cast<float>(units[i]) * (1.0f / gl_shader::kUnitsPerPixel);
-  }
-}
-
 std::string_view gl_error_name(GLenum error) {
   switch (error) {
     case GL_OUT_OF_MEMORY:
@@ -140,7 +134,6 @@ void GlRenderer::release_memory() {
   batches_ = {};
   bands_ = {};
   sums_ = {};
-  row_ = {};
   try {
     release_device_memory();
   } catch (const std::exception&) {
@@ -183,14 +176,14 @@ void GlRenderer::draw_band(Band band, DrawTimes& times) {
   for (const MeshPart& part : band.task->parts) {
     for (TrapezoidRange range : part.ranges) {
       while (range.count > 0) {
-        if (in_pass == gl_shader::kMostTrapezoids) {
+        if (in_pass == kMostTrapezoids) {
           set_last_band_aside(times);
           in_pass = 0;
         }
         const std::uint32_t number = range.first / store_->chunk_size();
         const std::uint32_t first = range.first % store_->chunk_size();
-        const std::uint32_t count = std::min(
-            {range.count, store_->chunk_size() - first, gl_shader::kMostTrapezoids - in_pass});
+        const std::uint32_t count =
+            std::min({range.count, store_->chunk_size() - first, kMostTrapezoids - in_pass});
         choose(part.mesh, number, first, count, times);
         in_pass += count;
         range.first += count;
@@ -310,14 +303,12 @@ void GlRenderer::resolve(const Band& band) {
   for (int row = 0; row < band.rows; ++row) {
     const auto of_row = differences.subspan(static_cast<std::size_t>(row) * width, width);
     if (sums_.empty()) {
-      resolve_row(of_row, gl_shader::kUnitsPerPixel, *band.task->out);
+      resolve_row(of_row, *band.task->out);
       continue;
     }
     const auto sums = std::span(sums_).subspan(static_cast<std::size_t>(row) * width, width);
     take_units(of_row, sums);
-    row_.resize(width);
-    to_pixels(sums, row_);
-    resolve_row(row_, *band.task->out);
+    resolve_row(sums, *band.task->out);
   }
   sums_.clear();
 }

@@ -112,7 +112,6 @@ class GlRenderer final : public MaskRenderer {
   std::size_t used_ = 0;                 // pixels
   std::span<std::int32_t> differences_;  // mapped
   std::vector<std::int64_t> sums_;       // of earlier passes, of the first band; or empty
-  std::vector<float> row_;
 };
 
 }  // namespace trapeze

@@ -1,5 +1,7 @@
 #include "render/gl/gl_shader.h"
 
+#include "render/mask/resolve_row.h"
+
 namespace trapeze::gl_shader {
 namespace {
 
@@ -66,10 +68,9 @@ float share_up_to(int column, float low, float high) {
   return (integral.x - integral.y) / span;
 }
 
-// Adds what lies east of a side in one row. `cells` is where the row begins; the height of the row
-// that the trapezoid has is given in units, and so is `whole`, which is that height rounded.
-void add_row(Side side, int sign, float from_x, float to_x, int cells, float height, float rounding,
-             int whole) {
+// Adds what lies east of a side in one row. `cells` is where the row begins; `whole` is the height
+// of the row that the trapezoid has, in units.
+void add_row(Side side, int sign, float from_x, float to_x, int cells, int whole, float rounding) {
   float low = min(from_x, to_x);
   float high = max(from_x, to_x);
   int west_end = -side.column;
@@ -78,6 +79,7 @@ void add_row(Side side, int sign, float from_x, float to_x, int cells, float hei
   int last = int(clamp(floor(high), float(west_end), float(east_end)));
   if (column >= east_end) return;
   cells += side.column;
+  float height = float(whole);
   int sum = int(height * share_up_to(column, low, high) + rounding);
   atomicAdd(differences[cells + column], sign * sum);
   for (++column; column <= last && column < east_end; ++column) {
@@ -88,10 +90,20 @@ void add_row(Side side, int sign, float from_x, float to_x, int cells, float hei
   if (column < east_end) atomicAdd(differences[cells + column], sign * (whole - sum));
 }
 
-// From 0 to 1, the same for both sides of a trapezoid and wherever in the mesh it is.
-float rounding_of(ivec2 top_and_bottom, ivec2 north_west) {
-  uvec2 mixed = uvec2(top_and_bottom.x, north_west.x) * uvec2(2654435769u, 2246822519u);
-  return float(((mixed.x ^ mixed.y) * 3266489917u) >> 8) * (1.0 / 16777216.0);
+uint mixed(double value) {
+  uvec2 bits = unpackDouble2x32(value);
+  uint product = (bits.x ^ bits.y) * 2654435769u;
+  return (product ^ product >> 15) * 3266489917u;
+}
+
+// From 0 to 1.
+float threshold_of(uint mixed_bits) {
+  return float(mixed_bits >> 8) * (1.0 / 16777216.0);
+}
+
+// Of a place between the north of a row, 0, and its south, 1.
+int units_of(double place) {
+  return int(place * UNITS + double(threshold_of(mixed(place))));
 }
 
 void main() {
@@ -106,19 +118,20 @@ void main() {
   if (span.x >= span.y) return;
 
   double row = floor(span.x);
+  double last_row = ceil(span.y) - 1.0LF;
   Side side = side_at(texel + (is_right ? 3 : 1), span, row);
-  float rounding = rounding_of(top_and_bottom, texelFetch(trapezoids, texel + 1).xy);
+  float rounding = threshold_of(mixed(fract(span.x)) + 3u * mixed(fract(span.y)));
   int cells = place + int(row) * size.x;
-  float y = float(span.x - row);
-  float bottom = float(span.y - row);
-  float x = x_at(side, y);
-  while (y < bottom) {
-    float next_y = min(floor(y) + 1.0, bottom);
+  int last = int(last_row - row);
+  int from = units_of(span.x - row);
+  int to = units_of(span.y - last_row);
+  float x = x_at(side, float(span.x - row));
+  for (int i = 0; i <= last; ++i) {
+    float next_y = i < last ? float(i + 1) : float(span.y - row);
     float next_x = x_at(side, next_y);
-    float height = (next_y - y) * UNITS;
-    int whole = int(height + rounding);
-    add_row(side, sign, x, next_x, cells, height, rounding, whole);
-    y = next_y;
+    int whole = (i < last ? int(UNITS) : to) - from;
+    if (whole > 0) add_row(side, sign, x, next_x, cells, whole, rounding);
+    from = 0;
     x = next_x;
     cells += size.x;
   }

@@ -7,21 +7,17 @@
 // One invocation walks along one side of a trapezoid, row by row. In double precision, it moves the
 // integer coordinates of the side to the origin of the picture and clips the side to the picture;
 // then it integrates the area east of the side in closed form and adds that to integers, in units
-// of 1 / kUnitsPerPixel: a sum of integers does not depend on the order of its terms. Fractions of
-// a unit are rounded at a threshold that differs from trapezoid to trapezoid (a dither), so that
-// the errors of thousands of trapezoids in one pixel do not all have the same sign. Both sides of a
-// trapezoid have the same threshold, so that their sum is exactly 0 east of it.
+// of 1 / kUnitsPerPixel, see resolve_row(). Fractions of a unit are rounded at a threshold that
+// differs from trapezoid to trapezoid (a dither), so that the errors of thousands of trapezoids in
+// one pixel do not all have the same sign. The threshold is that of the rows of the picture that
+// the trapezoid reaches over: so both sides have the same, their sum is exactly 0 east of it, and
+// what lies off the picture does not matter. Heights are differences of rounded places, so that
+// those of trapezoids above each other add up.
 #pragma once
 
 #include <string>
 
 namespace trapeze::gl_shader {
-
-/// Units of a wholly covered pixel.
-constexpr int kUnitsPerPixel = 1 << 17;
-
-/// So many trapezoids can be added up before a sum of differences could overflow 32 bits.
-constexpr unsigned kMostTrapezoids = (1u << 14) - 1;
 
 /// Invocations in a work group; each trapezoid takes two.
 constexpr unsigned kGroup = 64;

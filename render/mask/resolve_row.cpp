@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 #include "render/mask/row_bits.h"
 #include "render/mask/touched_columns.h"
@@ -16,14 +17,13 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kBlock = 8;  // pixels that are computed at once
 
+constexpr float kValuesPerUnit = 255.0f / kUnitsPerPixel;
+
 // By the vector extensions of g++ and clang: the same operations in the same order, and so the same
 // values, whatever instructions the processor has for them.
-template <class Element>
-struct Vector {
-  using Type __attribute__((vector_size(kBlock * sizeof(Element)))) = Element;
-};
-template <class Element>
-using VectorOf = typename Vector<Element>::Type;
+using Integers __attribute__((vector_size(kBlock * sizeof(std::int32_t)))) = std::int32_t;
+using Floats __attribute__((vector_size(kBlock * sizeof(float)))) = float;
+using Bytes __attribute__((vector_size(kBlock))) = std::uint8_t;
 
 /// A row while it is computed.
 struct Row {
@@ -42,38 +42,35 @@ struct Row {
 }
 
 /// What a span of columns begins with: the sum of all differences before it, and the value there.
-template <class Element>
 struct Before {
-  Element sum = 0;
+  std::int32_t sum = 0;
   std::uint8_t value = 0;
 };
 
 /// Computes the values of the columns from `begin` to the one before `end`, which are a multiple of
 /// kBlock.
-template <class Element>
-[[gnu::always_inline]] inline void sum_blocks(Element* differences, std::size_t begin,
-                                              std::size_t end, float values_per_unit,
-                                              Before<Element>& before, Row& row) {
-  const VectorOf<Element> none{};
-  VectorOf<Element> sum_before = none + before.sum;
+[[gnu::always_inline]] inline void sum_blocks(std::int32_t* differences, std::size_t begin,
+                                              std::size_t end, Before& before, Row& row) {
+  constexpr Integers kNone{};
+  Integers sum_before = kNone + before.sum;
   std::uint64_t value_before = before.value;
   auto* changes = reinterpret_cast<std::uint8_t*>(row.changes.data());
   for (std::size_t i = begin; i < end; i += kBlock) {
-    VectorOf<Element> sums;
+    Integers sums;
     std::memcpy(&sums, differences + i, sizeof sums);
     std::memset(differences + i, 0, sizeof sums);
-    sums += __builtin_shufflevector(none, sums, 0, 8, 9, 10, 11, 12, 13, 14);
-    sums += __builtin_shufflevector(none, sums, 0, 1, 8, 9, 10, 11, 12, 13);
-    sums += __builtin_shufflevector(none, sums, 0, 1, 2, 3, 8, 9, 10, 11);
+    sums += __builtin_shufflevector(kNone, sums, 0, 8, 9, 10, 11, 12, 13, 14);
+    sums += __builtin_shufflevector(kNone, sums, 0, 1, 8, 9, 10, 11, 12, 13);
+    sums += __builtin_shufflevector(kNone, sums, 0, 1, 2, 3, 8, 9, 10, 11);
     sums += sum_before;
     sum_before = __builtin_shufflevector(sums, sums, 7, 7, 7, 7, 7, 7, 7, 7);
-    VectorOf<float> shares = __builtin_convertvector(sums, VectorOf<float>) * values_per_unit;
-    const VectorOf<float> zero{};
-    const VectorOf<float> all = zero + 255.0f;
+    Floats shares = __builtin_convertvector(sums, Floats) * kValuesPerUnit;
+    const Floats zero{};
+    const Floats all = zero + 255.0f;
     shares = shares < zero ? zero : shares;
     shares = shares > all ? all : shares;
-    const auto rounded = __builtin_convertvector(shares + 0.5f, VectorOf<std::int32_t>);
-    const auto bytes = __builtin_convertvector(rounded, VectorOf<std::uint8_t>);
+    const auto rounded = __builtin_convertvector(shares + 0.5f, Integers);
+    const auto bytes = __builtin_convertvector(rounded, Bytes);
     std::uint64_t values = 0;
     std::memcpy(&values, &bytes, sizeof values);
     std::memcpy(row.values.data() + i, &values, sizeof values);
@@ -84,54 +81,44 @@ template <class Element>
   before.value = static_cast<std::uint8_t>(value_before);
 }
 
-template <class Element>
-using SumBlocks = void (*)(Element*, std::size_t, std::size_t, float, Before<Element>&, Row&);
+using SumBlocks = void (*)(std::int32_t*, std::size_t, std::size_t, Before&, Row&);
 
-template <class Element>
-void sum_blocks_anywhere(Element* differences, std::size_t begin, std::size_t end,
-                         float values_per_unit, Before<Element>& before, Row& row) {
-  sum_blocks(differences, begin, end, values_per_unit, before, row);
+void sum_blocks_anywhere(std::int32_t* differences, std::size_t begin, std::size_t end,
+                         Before& before, Row& row) {
+  sum_blocks(differences, begin, end, before, row);
 }
 
 #ifdef __x86_64__
 
-template <class Element>
-[[gnu::target("avx2")]] void sum_blocks_with_avx2(Element* differences, std::size_t begin,
-                                                  std::size_t end, float values_per_unit,
-                                                  Before<Element>& before, Row& row) {
-  sum_blocks(differences, begin, end, values_per_unit, before, row);
+[[gnu::target("avx2")]] void sum_blocks_with_avx2(std::int32_t* differences, std::size_t begin,
+                                                  std::size_t end, Before& before, Row& row) {
+  sum_blocks(differences, begin, end, before, row);
 }
 
-template <class Element>
-SumBlocks<Element> best_sum_blocks() {
-  return __builtin_cpu_supports("avx2") ? sum_blocks_with_avx2<Element>
-                                        : sum_blocks_anywhere<Element>;
+SumBlocks best_sum_blocks() {
+  return __builtin_cpu_supports("avx2") ? sum_blocks_with_avx2 : sum_blocks_anywhere;
 }
 
 #else
 
-template <class Element>
-SumBlocks<Element> best_sum_blocks() {
-  return sum_blocks_anywhere<Element>;
+SumBlocks best_sum_blocks() {
+  return sum_blocks_anywhere;
 }
 
 #endif
 
 /// Goes along a row of differences and sets them to 0.
-template <class Element>
 class RowSum {
  public:
-  RowSum(Element whole, std::span<Element> differences)
-      : differences_(differences),
-        values_per_unit_(255.0f / static_cast<float>(whole)),
-        row_(differences.size()) {}
+  explicit RowSum(std::span<std::int32_t> differences)
+      : differences_(differences), row_(differences.size()) {}
 
   /// Takes those of some columns; all that lie between them and those taken before are 0.
   /// Precondition: begin is a multiple of kBlock, and end is one or ends the row.
   void take(std::size_t begin, std::size_t end) {
-    static const SumBlocks<Element> sum = best_sum_blocks<Element>();
+    static const SumBlocks sum = best_sum_blocks();
     const std::size_t whole_blocks = begin + (end - begin) / kBlock * kBlock;
-    sum(differences_.data(), begin, whole_blocks, values_per_unit_, before_, row_);
+    sum(differences_.data(), begin, whole_blocks, before_, row_);
     if (whole_blocks < end) take_rest(whole_blocks, end - whole_blocks);
   }
   /// Appends the row to a mask.
@@ -152,24 +139,22 @@ class RowSum {
  private:
   // What follows a rest is 0, so that nothing changes there.
   void take_rest(std::size_t column, std::size_t count) {
-    std::array<Element, kBlock> rest{};
+    std::array<std::int32_t, kBlock> rest{};
     const auto here = differences_.subspan(column, count);
     std::ranges::copy(here, rest.begin());
-    std::ranges::fill(here, Element{0});
+    std::ranges::fill(here, 0);
     Row of_rest(kBlock);
-    sum_blocks_anywhere(rest.data(), 0, kBlock, values_per_unit_, before_, of_rest);
+    sum_blocks_anywhere(rest.data(), 0, kBlock, before_, of_rest);
     std::copy_n(of_rest.values.data(), count, row_.values.data() + column);
     row_.changes[column / 64] |= of_rest.changes[0] << column % 64;
   }
 
-  std::span<Element> differences_;
-  float values_per_unit_;
-  Before<Element> before_;
+  std::span<std::int32_t> differences_;
+  Before before_;
   Row row_;
 };
 
-template <class Element>
-bool is_all_zero(const Element* differences) {
+bool is_all_zero(const std::int32_t* differences) {
   const auto pair = [differences](std::size_t i) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, differences + 2 * i, sizeof bits);
@@ -178,10 +163,11 @@ bool is_all_zero(const Element* differences) {
   return (pair(0) | pair(1) | pair(2) | pair(3)) == 0;
 }
 
+}  // namespace
+
 // Blocks of zeros continue the run at hand.
-template <class Element>
-void resolve_row_by(Element whole, std::span<Element> differences, Mask& mask) {
-  RowSum<Element> sum(whole, differences);
+void resolve_row(std::span<std::int32_t> differences, Mask& mask) {
+  RowSum sum(differences);
   std::size_t i = 0;
   while (i + kBlock <= differences.size()) {
     std::size_t end = i;
@@ -195,21 +181,26 @@ void resolve_row_by(Element whole, std::span<Element> differences, Mask& mask) {
   sum.finish(mask);
 }
 
-}  // namespace
-
-void resolve_row(std::span<float> differences, Mask& mask) {
-  resolve_row_by(1.0f, differences, mask);
-}
-
-void resolve_row(std::span<float> differences, std::uint64_t touched, unsigned shift, Mask& mask) {
-  RowSum<float> sum(1.0f, differences);
+void resolve_row(std::span<std::int32_t> differences, std::uint64_t touched, unsigned shift,
+                 Mask& mask) {
+  RowSum sum(differences);
   for_each_touched(touched, shift, differences.size(),
                    [&](std::size_t begin, std::size_t end) { sum.take(begin, end); });
   sum.finish(mask);
 }
 
-void resolve_row(std::span<std::int32_t> differences, std::int32_t whole, Mask& mask) {
-  resolve_row_by(whole, differences, mask);
+// Sums that are clamped already have differences of 32 bits, and the same values.
+void resolve_row(std::span<std::int64_t> differences, Mask& mask) {
+  std::array<std::int32_t, kMaxPicturePixels> clamped;
+  std::int64_t sum = 0;
+  std::int32_t before = 0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    sum += std::exchange(differences[i], 0);
+    const auto here = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum, 0, kUnitsPerPixel));
+    clamped[i] = here - before;
+    before = here;
+  }
+  resolve_row({clamped.data(), differences.size()}, mask);
 }
 
 }  // namespace trapeze

@@ -1,9 +1,9 @@
 #include "render/software/software_renderer.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <utility>
 
 #include "render/mask/resolve_row.h"
 #include "render/mask/stopwatch.h"
@@ -39,7 +39,13 @@ struct SoftwareRenderer::Piece {
 struct SoftwareRenderer::RowPiece {
   double x_from;
   double x_to;
-  double height;  // of it, in pixels
+  std::int32_t height;  // of it, in units
+};
+
+// How the shares of a side become units.
+struct SoftwareRenderer::Rounding {
+  std::int32_t sign;  // positive for the left side of a trapezoid, negative for the right one
+  double threshold;   // from 0 to 1
 };
 
 namespace {
@@ -47,6 +53,29 @@ namespace {
 // For 0 <= value, where it is cheaper than std::floor.
 int truncate(double value) {
   return static_cast<int>(value);
+}
+
+/// A number that looks like chance, by the bits of another one.
+std::uint64_t mixed(std::uint64_t bits) {
+  const std::uint64_t product = (bits ^ bits >> 32) * 0x9e3779b97f4a7c15;
+  return (product ^ product >> 29) * 0x94d049bb133111eb;
+}
+
+/// From 0 to 1.
+double threshold_of(std::uint64_t mixed_bits) {
+  return static_cast<double>(static_cast<std::int64_t>(mixed_bits >> 40)) * 0x1p-24;
+}
+
+/// Of a place between the north of a row, 0, and its south, 1.
+std::int32_t units_of(double place) {
+  return truncate(place * kUnitsPerPixel +
+                  threshold_of(mixed(std::bit_cast<std::uint64_t>(place))));
+}
+
+/// For the shares of a trapezoid, by where its top and its bottom lie in their rows.
+double threshold_between(double y_top, double y_bottom) {
+  const auto bits = [](double y) { return std::bit_cast<std::uint64_t>(y - truncate(y)); };
+  return threshold_of(mixed(bits(y_top) + 3 * bits(y_bottom)));
 }
 
 }  // namespace
@@ -89,13 +118,15 @@ void SoftwareRenderer::release_memory() {
   width_ = height_ = 0;
   differences_ = {};
   touched_ = {};
+  sums_ = {};
 }
 
 void SoftwareRenderer::prepare(const View& view) {
   if (view.width == width_ && view.height == height_) return;
   width_ = height_ = 0;  // what there is no memory for is prepared anew the next time
   stride_ = static_cast<std::size_t>(view.width) + 2;
-  differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0.0f);
+  differences_.assign(stride_ * static_cast<std::size_t>(view.height), 0);
+  sums_ = {};
   touched_.assign(stride_, static_cast<std::size_t>(view.height));
   width_ = view.width;
   height_ = view.height;
@@ -105,11 +136,18 @@ bool SoftwareRenderer::add(const MeshPart& part, const Frame& frame,
                            const Cancellation* cancellation) {
   constexpr std::uint32_t kTrapezoids = 4096;  // between two looks at whether they are wanted
   std::uint32_t since_look = 0;
-  for (const TrapezoidRange& range : part.ranges) {
-    for (const MeshTrapezoid& trapezoid : part.mesh.trapezoids.subspan(range.first, range.count)) {
-      add_trapezoid(part.mesh, trapezoid, frame);
+  for (TrapezoidRange range : part.ranges) {
+    while (range.count > 0) {
+      if (added_ == kMostTrapezoids) set_aside();
+      const std::uint32_t count = std::min(range.count, kMostTrapezoids - added_);
+      for (const MeshTrapezoid& trapezoid : part.mesh.trapezoids.subspan(range.first, count)) {
+        add_trapezoid(part.mesh, trapezoid, frame);
+      }
+      added_ += count;
+      range.first += count;
+      range.count -= count;
+      since_look += count;
     }
-    since_look += range.count;
     if (since_look < kTrapezoids) continue;
     since_look = 0;
     if (cancellation != nullptr && cancellation->is_over()) return false;
@@ -137,14 +175,15 @@ void SoftwareRenderer::add_trapezoid(const MeshView& mesh, const MeshTrapezoid& 
   if (frame.x(std::min({left_upper.x, left_lower.x, right_upper.x, right_lower.x})) >= frame.width)
     return;
 
-  add_side(left_upper, left_lower, y_top, y_bottom, 1.0f, frame);
-  add_side(right_upper, right_lower, y_top, y_bottom, -1.0f, frame);
+  const double threshold = threshold_between(y_top, y_bottom);
+  add_side(left_upper, left_lower, y_top, y_bottom, {1, threshold}, frame);
+  add_side(right_upper, right_lower, y_top, y_bottom, {-1, threshold}, frame);
 }
 
 // Adds the part of the edge between two heights. The edge is not horizontal there: the trapezoid
 // that it bounds has a height, and the edge spans it.
-void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
-                                const Frame& frame) {
+void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y_bottom,
+                                Rounding rounding, const Frame& frame) {
   const auto dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
   const auto dy = static_cast<double>(std::int64_t{lower.y} - upper.y);
   const double slope = dx / dy;
@@ -153,15 +192,15 @@ void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y
   const Piece piece{x + (y_top - y) * slope, y_top, x + (y_bottom - y) * slope, y_bottom};
   const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
   if (low >= 0 && high <= frame.width) {
-    add_piece(piece, sign);
+    add_piece(piece, rounding);
   } else {
-    add_clipped(piece, sign);
+    add_clipped(piece, rounding);
   }
 }
 
 // Where an edge is off the picture, it counts as if it ran along the border that it is beyond: the
 // whole row is to its right then, or nothing.
-void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
+void SoftwareRenderer::add_clipped(const Piece& piece, Rounding rounding) {
   const double width = width_;
   const Piece clamped{std::clamp(piece.x_top, 0.0, width), piece.y_top,
                       std::clamp(piece.x_bottom, 0.0, width), piece.y_bottom};
@@ -174,16 +213,16 @@ void SoftwareRenderer::add_clipped(const Piece& piece, float sign) {
     };
     if (clamped.x_top != piece.x_top) inside.y_top = y_where_x_is(clamped.x_top);
     if (clamped.x_bottom != piece.x_bottom) inside.y_bottom = y_where_x_is(clamped.x_bottom);
-    add_piece({clamped.x_top, piece.y_top, clamped.x_top, inside.y_top}, sign);
-    add_piece({clamped.x_bottom, inside.y_bottom, clamped.x_bottom, piece.y_bottom}, sign);
+    add_piece({clamped.x_top, piece.y_top, clamped.x_top, inside.y_top}, rounding);
+    add_piece({clamped.x_bottom, inside.y_bottom, clamped.x_bottom, piece.y_bottom}, rounding);
   }
-  add_piece(inside, sign);
+  add_piece(inside, rounding);
 }
 
 // Adds a piece that stays within one row: its height is spread evenly. In the column that holds it,
 // what lies right of the piece is covered; in all columns further east the full height is, which
 // the running sum carries on.
-inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign) {
+inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, Rounding rounding) {
   const double low = std::min(piece.x_from, piece.x_to);
   const double high = std::max(piece.x_from, piece.x_to);
   const int first = truncate(low);
@@ -191,65 +230,83 @@ inline void SoftwareRenderer::add_row(int row, const RowPiece& piece, float sign
   // The column after the last one is written too.
   touched_.touch(static_cast<std::size_t>(row), static_cast<std::size_t>(first),
                  static_cast<std::size_t>(last) + 1);
-  float* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
+  std::int32_t* cells = differences_.data() + static_cast<std::size_t>(row) * stride_;
 
-  const auto add_to = [cells, sign](int column, double part, double middle) {
-    const double west = middle - column;  // share of the column that stays uncovered
-    cells[column] += sign * static_cast<float>(part * (1.0 - west));
-    cells[column + 1] += sign * static_cast<float>(part * west);
+  std::int32_t sum = 0;  // of the columns so far
+  const auto add_to = [&](int column, double share) {
+    const auto next = static_cast<std::int32_t>(share * piece.height + rounding.threshold);
+    cells[column] += rounding.sign * (next - sum);
+    sum = next;
   };
   if (first == last) {
-    add_to(first, piece.height, 0.5 * (low + high));
-    return;
+    add_to(first, 1.0 - (0.5 * (low + high) - first));
+  } else {
+    // What of the height lies west of a column is covered in all of it, the rest by half.
+    const double share_of_column = 1.0 / (high - low);
+    double x = low;
+    double west = 0;
+    for (int column = first; column < last; ++column) {
+      const double next_x = column + 1.0;
+      const double part = std::min((next_x - x) * share_of_column, 1.0 - west);
+      add_to(column, west + part * (1.0 - (0.5 * (x + next_x) - column)));
+      west += part;
+      x = next_x;
+    }
+    add_to(last, west + (1.0 - west) * (1.0 - (0.5 * (x + high) - last)));
   }
-  // The last column takes what is left, so that the sum is the height whatever is rounded.
-  const double height_per_column = piece.height / (high - low);
-  double left = piece.height;
-  double x = low;
-  for (int column = first; column < last; ++column) {
-    const double next_x = column + 1.0;
-    const double part = std::min((next_x - x) * height_per_column, left);
-    add_to(column, part, 0.5 * (x + next_x));
-    left -= part;
-    x = next_x;
-  }
-  add_to(last, left, 0.5 * (x + high));
+  cells[last + 1] += rounding.sign * (piece.height - sum);
 }
 
 // Adds a piece that lies in the picture, row by row; one without height adds nothing.
-void SoftwareRenderer::add_piece(const Piece& piece, float sign) {
+void SoftwareRenderer::add_piece(const Piece& piece, Rounding rounding) {
   if (!(piece.y_top < piece.y_bottom)) return;
   const int first = truncate(piece.y_top);
-  const double width = piece.x_bottom - piece.x_top;
-  const double height = piece.y_bottom - piece.y_top;
+  std::int32_t from = units_of(piece.y_top - first);
   if (piece.y_bottom <= first + 1) {
-    add_row(first, {piece.x_top, piece.x_bottom, height}, sign);
+    const std::int32_t height = units_of(piece.y_bottom - first) - from;
+    if (height > 0) add_row(first, {piece.x_top, piece.x_bottom, height}, rounding);
     return;
   }
-  const double slope = width / height;
+  const double slope = (piece.x_bottom - piece.x_top) / (piece.y_bottom - piece.y_top);
   // Rounding must not carry a position out of the picture.
   const auto [low, high] = std::minmax(piece.x_top, piece.x_bottom);
-  double y = piece.y_top;
   double x = piece.x_top;
-  for (int row = first; y < piece.y_bottom; ++row) {
+  for (int row = first; row < piece.y_bottom; ++row) {
     const double next_y = std::min(row + 1.0, piece.y_bottom);
     const double next_x = std::clamp(piece.x_top + (next_y - piece.y_top) * slope, low, high);
-    add_row(row, {x, next_x, next_y - y}, sign);
+    const std::int32_t height = units_of(next_y - row) - from;
+    if (height > 0) add_row(row, {x, next_x, height}, rounding);
+    from = 0;
     x = next_x;
-    y = next_y;
   }
+}
+
+// Adds the differences so far to sums that have room for more, and begins anew.
+void SoftwareRenderer::set_aside() {
+  sums_.resize(differences_.size());
+  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += std::exchange(differences_[i], 0);
+  added_ = 0;
 }
 
 // Sums the rows and clears the differences for the next picture.
 void SoftwareRenderer::resolve(Mask& out) {
-  for (int row = 0; row < height_; ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    const auto width = static_cast<std::size_t>(width_);
-    float* cells = differences_.data() + i * stride_;
-    resolve_row({cells, width}, touched_.take(i), touched_.shift(), out);
+  const bool has_sums = !sums_.empty();
+  if (has_sums) set_aside();
+  added_ = 0;
+  const auto width = static_cast<std::size_t>(width_);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row) {
+    const std::uint64_t touched = touched_.take(row);
+    const std::size_t begin = row * stride_;
+    if (has_sums) {
+      resolve_row(std::span(sums_).subspan(begin, width), out);
+      continue;
+    }
+    std::int32_t* cells = differences_.data() + begin;
+    resolve_row({cells, width}, touched, touched_.shift(), out);
     // On the east border and beyond nothing is to be seen.
     cells[width] = cells[width + 1] = 0;
   }
+  sums_ = {};
 }
 
 }  // namespace trapeze

@@ -7,7 +7,13 @@
 // the covered area. The cost is proportional to the length of the edges in pixels, not to the area.
 //
 // Geometry is computed in double precision from differences of integers: an edge across the whole
-// world is placed to better than 1/1000 pixel at zoom 24. Sums are in single precision.
+// world is placed to better than 1/1000 pixel at zoom 24. Sums are integers, see resolve_row():
+// fractions of a unit are rounded at a threshold that differs from trapezoid to trapezoid (a
+// dither), so that errors of thousands of them in one pixel do not all have the same sign. Both
+// sides of a trapezoid have the same threshold, and heights are differences of rounded places: so
+// nothing is left east of a trapezoid, and those above each other add up.
+//
+// A mask does not depend on the order of trapezoids, nor on anything that lies off the picture.
 #pragma once
 
 #include <cstdint>
@@ -31,17 +37,19 @@ class SoftwareRenderer final : public MaskRenderer {
   struct Frame;
   struct Piece;
   struct RowPiece;
+  struct Rounding;
 
   void draw(const MaskTask& task, DrawTimes& times);
   void prepare(const View& view);
   /// False if it ended early because the mask is not wanted any longer.
   bool add(const MeshPart& part, const Frame& frame, const Cancellation* cancellation);
   void add_trapezoid(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Frame& frame);
-  void add_side(Point upper, Point lower, double y_top, double y_bottom, float sign,
+  void add_side(Point upper, Point lower, double y_top, double y_bottom, Rounding rounding,
                 const Frame& frame);
-  void add_clipped(const Piece& piece, float sign);
-  void add_piece(const Piece& piece, float sign);
-  void add_row(int row, const RowPiece& piece, float sign);
+  void add_clipped(const Piece& piece, Rounding rounding);
+  void add_piece(const Piece& piece, Rounding rounding);
+  void add_row(int row, const RowPiece& piece, Rounding rounding);
+  void set_aside();
   void resolve(Mask& out);
 
   int width_ = 0;
@@ -49,8 +57,10 @@ class SoftwareRenderer final : public MaskRenderer {
   std::size_t stride_ = 0;
   // Differences along each row, see above; all zero between two draws. Each row has two columns
   // more than the picture, for what falls on or to the right of its east border.
-  std::vector<float> differences_;
+  std::vector<std::int32_t> differences_;
   TouchedColumns touched_;
+  std::uint32_t added_ = 0;         // trapezoids whose differences are not set aside
+  std::vector<std::int64_t> sums_;  // of differences set aside, one each; or empty
 };
 
 }  // namespace trapeze

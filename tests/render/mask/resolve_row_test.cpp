@@ -13,21 +13,22 @@
 namespace trapeze {
 namespace {
 
-// Differences in a few places; multiples of 1/256, so that no sum is rounded.
-std::vector<float> random_differences(std::mt19937& random, std::size_t columns) {
-  std::vector<float> differences(columns, 0);
+// Differences in a few places.
+std::vector<std::int32_t> random_differences(std::mt19937& random, std::size_t columns) {
+  std::vector<std::int32_t> differences(columns, 0);
   for (std::size_t i = 0; i < columns; i += 1 + random() % 40) {
-    differences[i] = static_cast<float>(static_cast<int>(random() % 700) - 350) / 256;
+    differences[i] = static_cast<std::int32_t>(random() % 700'000) - 350'000;
   }
   return differences;
 }
 
-std::vector<std::uint8_t> one_by_one(const std::vector<float>& differences) {
+std::vector<std::uint8_t> one_by_one(const std::vector<std::int32_t>& differences) {
   std::vector<std::uint8_t> values;
-  float sum = 0;
-  for (const float difference : differences) {
+  double sum = 0;
+  for (const std::int32_t difference : differences) {
     sum += difference;
-    values.push_back(static_cast<std::uint8_t>(std::clamp(sum, 0.0f, 1.0f) * 255 + 0.5f));
+    const double share = std::clamp(sum / kUnitsPerPixel, 0.0, 1.0);
+    values.push_back(static_cast<std::uint8_t>(share * 255 + 0.5));
   }
   return values;
 }
@@ -41,35 +42,47 @@ TEST(ResolveRowTest, EveryWayHasTheRunningSums) {
   std::mt19937 random(12);
   for (const std::size_t columns : {1u, 5u, 8u, 9u, 63u, 64u, 256u, 257u, 1030u}) {
     for (int round = 0; round < 20; ++round) {
-      const std::vector<float> differences = random_differences(random, columns);
+      const std::vector<std::int32_t> differences = random_differences(random, columns);
       const auto width = static_cast<int>(columns);
       Mask mask;
       mask.begin(width, 3);
 
-      std::vector<float> all = differences;
+      std::vector<std::int32_t> all = differences;
       resolve_row(all, mask);
 
       TouchedColumns touched;
       touched.assign(columns, 1);
-      std::vector<std::int32_t> units;
       for (std::size_t i = 0; i < columns; ++i) {
         if (differences[i] != 0) touched.touch(0, i, i);
-        units.push_back(static_cast<std::int32_t>(std::lround(differences[i] * 256)));
       }
-      std::vector<float> some = differences;
+      std::vector<std::int32_t> some = differences;
       resolve_row(some, touched.take(0), touched.shift(), mask);
-      resolve_row(units, 256, mask);
+
+      std::vector<std::int64_t> wide(differences.begin(), differences.end());
+      resolve_row(wide, mask);
 
       const std::vector<std::uint8_t> expected = one_by_one(differences);
       std::vector<std::uint8_t> three;
       for (int i = 0; i < 3; ++i) three.insert(three.end(), expected.begin(), expected.end());
       ASSERT_EQ(testing::values_of(mask), three) << columns;
       ASSERT_TRUE(is_canonical(mask));
-      ASSERT_EQ(all, std::vector<float>(columns, 0)) << "they are set to 0";
+      ASSERT_EQ(all, std::vector<std::int32_t>(columns, 0)) << "they are set to 0";
       ASSERT_EQ(some, all);
-      ASSERT_EQ(units, std::vector<std::int32_t>(columns, 0));
+      ASSERT_EQ(wide, std::vector<std::int64_t>(columns, 0));
     }
   }
+}
+
+TEST(ResolveRowTest, WideSumsMayBeMoreThan32BitsHold) {
+  std::vector<std::int64_t> differences(9, 0);
+  differences[1] = std::int64_t{1} << 40;
+  differences[3] = -(std::int64_t{1} << 41);
+  differences[6] = (std::int64_t{1} << 40) + kUnitsPerPixel / 5;
+  Mask mask;
+  mask.begin(9, 1);
+  resolve_row(differences, mask);
+  EXPECT_EQ(testing::values_of(mask),
+            (std::vector<std::uint8_t>{0, 255, 255, 0, 0, 0, 51, 51, 51}));
 }
 
 }  // namespace
