@@ -14,9 +14,11 @@
 namespace trapeze {
 namespace {
 
-std::string write_config(std::span<const TripLayer> layers, const std::string& folder) {
+std::string write_config(std::span<const TripLayer> layers, bool keeps_tiles,
+                         const std::string& folder) {
   const std::string path = folder + "/trapeze.toml";
   std::ofstream file(path);
+  if (!keeps_tiles) file << "[server]\ncache_mb = 0\n\n";
   for (const TripLayer& layer : layers) {
     file << "[[layer]]\nname = \"" << layer.name << "\"\nfile = \""
          << std::filesystem::absolute(layer.file).string() << "\"\nstyle = { fill = \"#"
@@ -96,7 +98,7 @@ std::string built_trapeze() {
 TrapezeServer::TrapezeServer(std::span<const TripLayer> layers, const TrapezeOptions& options)
     : port_(free_port()) {
   std::vector<std::string> arguments{
-      options.program, "serve",         "--config", write_config(layers, folder_.path()),
+      options.program, "serve",         "--config", write_config(layers, options.keeps_tiles, folder_.path()),
       "--address",     "127.0.0.1",     "--port",   std::to_string(port_),
       "--renderer",    options.renderer};
   arguments.insert(arguments.end(), options.more.begin(), options.more.end());

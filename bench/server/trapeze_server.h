@@ -31,6 +31,7 @@ struct TrapezeOptions {
   std::string program;              // trapeze
   std::string renderer = "auto";    // as for --renderer
   std::vector<std::string> more{};  // further arguments of `serve`
+  bool keeps_tiles = false;         // whether it has a cache: else every tile is drawn
 };
 
 /// The program `trapeze` of the build that this program is part of.

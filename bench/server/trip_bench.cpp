@@ -11,7 +11,9 @@
 //   warm    all tiles again, now that they are known
 //   cached  one tile after another for some seconds, all known
 //   304     the same, asked for with the entity tags that were sent with them
-// What is asked for again, as views overlap or as a trip of few tiles is gone through several
+//   first   all tiles once, with these entity tags, of a server that was just started and has drawn
+//           nothing: how long it takes to find out that they are as they were
+// Servers of cold and alone keep no tiles, as many are equal. What is asked for again, as views overlap or as a trip of few tiles is gone through several
 // times, is asked for in a slightly different colour, so that nothing that was drawn before can be
 // used. Servers are started anew for every round.
 #include <CLI/CLI.hpp>
@@ -87,8 +89,8 @@ class RendererFigures {
     {
       const TrapezeServer server(trip_.layers, trapeze);
       cold_.add(uncached_run(server, trip_, load, options.repeat));
-      measure_known(server, options, load);
     }
+    measure_known(trapeze, options, load);
     const TrapezeServer server(trip_.layers, trapeze);
     alone_.add(uncached_run(server, trip_, {.connections = 1}, options.repeat));
     known_.set("seconds to ready", server.seconds_to_ready());
@@ -99,8 +101,11 @@ class RendererFigures {
   }
 
  private:
-  void measure_known(const TrapezeServer& server, const Options& options, HttpLoadOptions load) {
+  void measure_known(TrapezeOptions trapeze, const Options& options, HttpLoadOptions load) {
+    trapeze.keeps_tiles = true;
+    const TrapezeServer server(trip_.layers, trapeze);
     const auto requests = tile_requests(trip_);
+    load_http(server.port(), requests, load);
     load.keep_entity_tags = true;
     const double before = server.cpu_seconds();
     const LoadResult again = load_http(server.port(), requests, load);
@@ -110,7 +115,25 @@ class RendererFigures {
     load.keep_entity_tags = false;
     load.seconds = options.seconds;
     keep_best("cached tiles", rate_of(server, requests, 200, load));
-    keep_best("304", rate_of(server, conditional_requests(trip_, again.entity_tags), 304, load));
+    const auto conditional = conditional_requests(trip_, again.entity_tags);
+    keep_best("304", rate_of(server, conditional, 304, load));
+    measure_first(trapeze, conditional);
+  }
+
+  void measure_first(const TrapezeOptions& trapeze, const std::vector<std::string>& conditional) {
+    const TrapezeServer server(trip_.layers, trapeze);
+    const double before = server.cpu_seconds();
+    std::vector<double> times;
+    for (const Exchange& exchange :
+         load_http(server.port(), conditional, {.connections = 1}).exchanges) {
+      if (exchange.status != 304) throw std::runtime_error("a tile is not what it was");
+      times.push_back(1000 * exchange.ms);
+    }
+    const auto count = static_cast<double>(times.size());
+    known_.set("first, cpu us", 1e6 * (server.cpu_seconds() - before) / count);
+    const Percentiles percentiles = percentiles_of(std::move(times));
+    known_.set("first, p50 us", percentiles.p50);
+    known_.set("first, p99 us", percentiles.p99);
   }
 
   void keep_best(const std::string& what, const Rate& rate) {

@@ -184,6 +184,8 @@ class MaskRenderer {
   virtual std::string_view name() const = 0;
   /// One line for logs: the device or library that draws, with its version.
   virtual std::string description() const = 0;
+  /// Renderers of the same identity draw the same masks, to the last value.
+  virtual std::string identity() const { return description(); }
 };
 
 }  // namespace trapeze

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -422,6 +423,8 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
   Pen pen(stroke, scale_, canvas_);
   const double most = static_cast<double>(kCrowd) * view_.width * view_.height;
   const bool is_crowded = most_values_of_lines(pen) > most && values_of_lines(pen) > most;
+  // One by one, lines with round ends may come in any order.
+  if (is_crowded || !pen.has_round_ends()) sort_lines();
   if (is_crowded) merge_lines();
   if (cancellation != nullptr) cancellation->check();
   if (is_crowded && pen.half() >= kLeastHalfOfNearest && values_of_lines(pen) > most) {
@@ -448,6 +451,24 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
     ends_.push_back({edge.from, edge.to});
     length_of_lines_ += lines_.back().length;
   }
+}
+
+void Stroker::sort_lines() {
+  std::vector<std::uint32_t> order(lines_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [this](std::uint32_t i) {
+    const Line& line = lines_[i];
+    return std::tuple(line.from.y, line.from.x, line.to.y, line.to.x, line.ink, line.along,
+                      line.rate);
+  });
+  std::vector<Line> lines;
+  std::vector<Ends> ends;
+  for (const std::uint32_t i : order) {
+    lines.push_back(lines_[i]);
+    ends.push_back(ends_[i]);
+  }
+  lines_.swap(lines);
+  ends_.swap(ends);
 }
 
 // At least as many as values_of_lines().

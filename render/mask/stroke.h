@@ -3,7 +3,8 @@
 // The value of a pixel is that share of a segment one pixel long, across the line and centred on
 // the pixel, that lies within the width of the line, times the share of ink that the edge is given;
 // where several edges are near, the greatest value counts. So a line is no darker where edges meet.
-// Outlines are always drawn on the CPU, and are the same whichever renderer draws the fill.
+// Outlines are always drawn on the CPU, and are the same whichever renderer draws the fill. They do
+// not depend on the order of the edges.
 //
 // The outline of a ring that is hardly larger than the line is wide would be a dot as wide as the
 // line, and thousands of such rings a black map: its ink is to be given by Stroke::ink_of_ring().
@@ -123,6 +124,7 @@ class Stroker {
   class Pen;
 
   void measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges);
+  void sort_lines();
   double most_values_of_lines(const Pen& pen) const;
   double values_of_lines(const Pen& pen) const;
   void merge_lines();

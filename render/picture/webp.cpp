@@ -37,6 +37,10 @@ bool has_webp() {
   return true;
 }
 
+int webp_version() {
+  return WebPGetEncoderVersion();
+}
+
 std::string encode_webp(const RunPicture& picture) {
   WebPConfig config;
   if (WebPConfigInit(&config) == 0 || WebPConfigLosslessPreset(&config, kEffort) == 0) {

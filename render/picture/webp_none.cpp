@@ -9,6 +9,10 @@ bool has_webp() {
   return false;
 }
 
+int webp_version() {
+  return 0;
+}
+
 std::string encode_webp(const RunPicture&) {
   throw std::runtime_error("this program was built without libwebp");
 }

@@ -32,6 +32,7 @@ class SoftwareRenderer final : public MaskRenderer {
   void release_memory() override;
   std::string_view name() const override { return "software"; }
   std::string description() const override;
+  std::string identity() const override { return "software"; }
 
  private:
   struct Frame;

@@ -21,8 +21,7 @@ namespace trapeze {
 
 /// A tile of one state of the data.
 struct KnownTarget {
-  std::string key;  // in the cache
-  std::string entity_tag;
+  std::string fingerprint;  // and its key in the cache
   TileFormat format = TileFormat::png;
   std::vector<std::size_t> layers;  // that it shows, by their numbers in the dataset
 };
@@ -54,8 +53,8 @@ class KnownTargets {
   /// Precondition: may_be_known(target).
   void insert(const std::shared_ptr<const Dataset>& dataset, const std::string& target,
               KnownTarget known) {
-    const std::size_t bytes = kOverhead + 2 * target.size() + known.key.size() +
-                              known.entity_tag.size() + known.layers.size() * sizeof(std::size_t);
+    const std::size_t bytes = kOverhead + 2 * target.size() + known.fingerprint.size() +
+                              known.layers.size() * sizeof(std::size_t);
     auto kept = std::make_shared<const KnownTarget>(std::move(known));
     Shard& shard = shard_of(target);
     const std::lock_guard lock(shard.mutex);

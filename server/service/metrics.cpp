@@ -30,7 +30,7 @@ using Labels = std::vector<ClientMetric::Label>;
 
 constexpr std::array<int, 16> kStatuses = {200, 201, 204, 304, 400, 403, 404, 405,
                                            413, 414, 429, 431, 500, 503, 504, 0};
-constexpr std::array<std::string_view, 4> kOutcomes = {"drawn", "saturated", "late", "failed"};
+constexpr std::size_t kOutcomes = kTileOutcomeNames.names().size();
 
 // Seconds: from an answer out of the cache to the deadline.
 const prometheus::Histogram::BucketBoundaries kBuckets = {
@@ -185,7 +185,7 @@ struct Metrics::Counted {
   prometheus::Family<prometheus::Counter>& tiles =
       prometheus::BuildCounter()
           .Name("trapeze_tiles_total")
-          .Help("Tiles that were not in the cache, by what became of them")
+          .Help("Tiles that a worker looked at, by what became of them")
           .Register(registry);
   prometheus::Counter& full_colour_tiles =
       prometheus::BuildCounter()
@@ -218,14 +218,15 @@ struct Metrics::Counted {
 
   Lazily<prometheus::Counter, kAreas * kStatuses.size()> answer_counters;
   Lazily<prometheus::Histogram, kAreas> answer_histograms;
-  std::array<prometheus::Counter*, kOutcomes.size()> tile_counters{};
+  std::array<prometheus::Counter*, kOutcomes> tile_counters{};
   std::array<prometheus::Histogram*, kPaintStages.size()> stage_histograms{};
   prometheus::Counter& good_loads = loads.Add({{"result", "succeeded"}});
   prometheus::Counter& bad_loads = loads.Add({{"result", "failed"}});
 
   Counted() {
-    for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
-      tile_counters[i] = &tiles.Add({{"outcome", std::string(kOutcomes[i])}});
+    for (const TileOutcome outcome : kTileOutcomeNames.values()) {
+      tile_counters[static_cast<std::size_t>(outcome)] =
+          &tiles.Add({{"outcome", std::string(kTileOutcomeNames.name_of(outcome))}});
     }
     for (std::size_t i = 0; i < kPaintStages.size(); ++i) {
       stage_histograms[i] = &stage_times.Add({{"stage", kPaintStages[i].name}}, kBuckets);

@@ -132,6 +132,7 @@ Service::Service(const Config& config, LayerSource source)
   drawing.deadline = milliseconds(config.server.deadline_ms);
   drawing.batch = config.server.batch;
   drawing.fonts = open_fonts(config.text.fonts);
+  drawing.find_kept = [this](const std::string& fingerprint) { return cache_.find(fingerprint); };
   drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
   auto renderers = start_renderers(config.server.renderer, worker_count(config));
   warm_up(renderers);

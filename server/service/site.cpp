@@ -32,6 +32,7 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kKnownTargetBytes = std::size_t{8} << 20;
+constexpr std::size_t kKnownFingerprintBytes = std::size_t{16} << 20;
 
 // Documents and the viewer may change with every start: ask again, and mostly hear 304.
 constexpr std::string_view kDocumentCaching = "no-cache";
@@ -152,24 +153,46 @@ std::string server_timing(const PaintTimes& times) {
   return text;
 }
 
-HttpResponse tile_headers(int status, const std::string& entity_tag,
-                          const std::string& cache_control) {
+/// Strong: tiles of the same fingerprint have the same bytes.
+std::string entity_tag_of(const std::string& fingerprint) {
+  return fmt::format("\"{}\"", fingerprint);
+}
+
+/// How tiles are sent, whatever they show.
+struct TileHead {
+  TileFormat format = TileFormat::png;
+  std::string cache_control;
+};
+
+HttpResponse tile_headers(int status, const std::string& fingerprint, const TileHead& head) {
   HttpResponse response;
   response.status = status;
-  response.headers = {{"ETag", entity_tag}, {"Cache-Control", cache_control}};
+  response.headers = {{"ETag", entity_tag_of(fingerprint)}, {"Cache-Control", head.cache_control}};
   return response;
 }
 
-HttpResponse tile_response(const TileCache::Tile& tile, const std::string& entity_tag,
-                           const std::string& cache_control, TileFormat format,
-                           std::string_view from) {
-  auto response = tile_headers(200, entity_tag, cache_control);
-  response.headers.emplace_back("Content-Type", content_type_of(format));
+HttpResponse tile_response(const TileCache::Tile& tile, const std::string& fingerprint,
+                           const TileHead& head, std::string_view from) {
+  auto response = tile_headers(200, fingerprint, head);
+  response.headers.emplace_back("Content-Type", content_type_of(head.format));
   response.headers.emplace_back("X-Cache", from);
   if (tile.hint != TileHint::none) {
     response.headers.emplace_back("OATiles-hint", tile.hint == TileHint::empty ? "empty" : "full");
   }
   response.body = tile.bytes;
+  return response;
+}
+
+/// Of a tile that is known by its fingerprint.
+HttpResponse answered_response(const TileAnswer& answer, const std::string& if_none_match,
+                               const TileHead& head) {
+  const PaintedTile& tile = answer.tile;
+  const bool is_drawn = answer.outcome == TileOutcome::drawn;
+  const bool is_held = matches_entity_tag(if_none_match, entity_tag_of(tile.fingerprint));
+  HttpResponse response = is_held ? tile_headers(304, tile.fingerprint, head)
+                                  : tile_response({tile.bytes, tile.hint}, tile.fingerprint, head,
+                                                  is_drawn ? "MISS" : "HIT");
+  response.headers.emplace_back("Server-Timing", server_timing(tile.times));
   return response;
 }
 
@@ -218,6 +241,7 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       tiles_(tiles),
       cache_(cache),
       known_targets_(std::make_unique<KnownTargets>(kKnownTargetBytes)),
+      known_fingerprints_(std::make_shared<KnownFingerprints>(kKnownFingerprintBytes)),
       styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)),
       documents_(std::make_unique<DocumentWorker>()) {}
 
@@ -461,12 +485,13 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
 /// The answer if the tile need not be drawn: for who holds it, or from the cache.
 std::optional<HttpResponse> Site::find_held(const HttpRequest& request,
                                             const KnownTarget& tile) const {
-  if (matches_entity_tag(request.if_none_match, tile.entity_tag)) {
-    return tile_headers(304, tile.entity_tag, options_.cache_control);
+  const TileHead head{tile.format, options_.cache_control};
+  if (matches_entity_tag(request.if_none_match, entity_tag_of(tile.fingerprint))) {
+    return tile_headers(304, tile.fingerprint, head);
   }
-  const auto kept = cache_.find(tile.key);
+  const auto kept = cache_.find(tile.fingerprint);
   if (kept.bytes == nullptr) return std::nullopt;
-  return tile_response(kept, tile.entity_tag, options_.cache_control, tile.format, "HIT");
+  return tile_response(kept, tile.fingerprint, head, "HIT");
 }
 
 void Site::handle_document(const Documents& documents, const Target& target,
@@ -547,33 +572,44 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (const ServedLayer* damaged = plan.damaged_layer()) {
     return respond(problem_response(damaged_layer(*damaged)));
   }
-  std::string key = plan.key();
-  KnownTarget known{key, entity_tag_of(key), tile.format, layers_of(plan)};
-  if (auto held = find_held(request, known)) {
-    if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
-      known_targets_->insert(plan.dataset, request.target, std::move(known));
+  TileService::Order order;
+  order.key = plan.key();
+  if (std::string fingerprint = known_fingerprints_->find(order.key); !fingerprint.empty()) {
+    KnownTarget known{std::move(fingerprint), tile.format, layers_of(plan)};
+    if (auto held = find_held(request, known)) {
+      if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
+        known_targets_->insert(plan.dataset, request.target, std::move(known));
+      }
+      return respond(*std::move(held));
     }
-    return respond(*std::move(held));
+    order.may_be_known = false;
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
   const std::uint64_t cost = drawing_cost(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
+  if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
   // The last answers come while the service ends, when this site may be gone.
-  auto answer_with = [&cache = cache_, cache_control = options_.cache_control, respond,
-                      known = std::move(known), cost](const TileAnswer& answer) {
-    if (answer.outcome != TileOutcome::drawn) return respond(undrawn_response(answer.outcome));
-    const TileCache::Tile drawn{answer.tile.bytes, answer.tile.hint};
-    cache.insert(known.key, drawn);
-    auto response = tile_response(drawn, known.entity_tag, cache_control, known.format, "MISS");
-    response.headers.emplace_back("Server-Timing", server_timing(answer.tile.times));
+  auto answer_with = [&cache = cache_, fingerprints = known_fingerprints_, key = order.key, respond,
+                      head = TileHead{tile.format, options_.cache_control},
+                      if_none_match = request.if_none_match, cost](const TileAnswer& answer) {
+    if (!answer.is_known()) return respond(undrawn_response(answer.outcome));
+    fingerprints->insert(key, answer.tile.fingerprint);
+    if (answer.outcome == TileOutcome::drawn) {
+      cache.insert(answer.tile.fingerprint, {answer.tile.bytes, answer.tile.hint});
+    }
+    auto response = answered_response(answer, if_none_match, head);
     response.headers.emplace_back("X-Tile-Cost", std::to_string(cost));
     respond(std::move(response));
   };
-  const auto ticket =
-      tiles_.submit(std::move(plan), std::move(key),
-                    cost > defaults::kDearTile ? TileService::Cost::dear : TileService::Cost::cheap,
-                    std::move(answer_with));
+  TileService::Holds holds;
+  if (!request.if_none_match.empty()) {
+    holds = [if_none_match = request.if_none_match](const std::string& fingerprint) {
+      return matches_entity_tag(if_none_match, entity_tag_of(fingerprint));
+    };
+  }
+  order.plan = std::move(plan);
+  const auto ticket = tiles_.submit(std::move(order), std::move(answer_with), std::move(holds));
   if (request.disconnection == nullptr) return;
   request.disconnection->act([&tiles = tiles_, ticket] { tiles.withdraw(ticket); });
 }

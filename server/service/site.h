@@ -24,6 +24,7 @@
 #include "server/http/rate_limit.h"
 #include "server/http/static_files.h"
 #include "server/service/document_worker.h"
+#include "server/service/known_fingerprints.h"
 #include "server/service/known_targets.h"
 #include "server/styles/style_book.h"
 #include "server/tiles/tile_cache.h"
@@ -122,6 +123,7 @@ class Site {
   TileService& tiles_;
   TileCache& cache_;
   const std::unique_ptr<KnownTargets> known_targets_;
+  const std::shared_ptr<KnownFingerprints> known_fingerprints_;  // with answers that come late
   const std::unique_ptr<StyleBook> styles_;
   const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the others
 };

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "render/mask/mask_digest.h"
+
 namespace trapeze {
 namespace {
 
@@ -110,6 +112,7 @@ void LayerDrawing::ClassDrawing::clear(std::uint8_t class_number) {
   made_trapezoids.clear();
   all_made = {};
   parts.clear();
+  digest = {};
 }
 
 void LayerDrawing::ClassDrawing::add_place(const Box& place, bool is_hole) {
@@ -183,11 +186,17 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   part_by_class(classes, selection, tools);
   add_places(selection, view, classes, tools);
   check();
-  for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
+  for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, view, classes_[i]);
   if (has_lines()) {
     collect_edges(selection, ink_of_loops(style().stroke, view, plan.scale), classes, tools);
+    leave_out_empty_lines();
   }
-  return class_count_ > 0 || line_count_ > 0;
+  const auto is_seen = [](const ClassDrawing& drawing) {
+    return drawing.is_full || drawing.is_drawn;
+  };
+  return line_count_ > 0 ||
+         std::any_of(classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(class_count_),
+                     is_seen);
 }
 
 LayerDrawing::ClassDrawing& LayerDrawing::new_drawing(std::uint8_t number) {
@@ -371,18 +380,33 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const View& vie
   }
 }
 
-void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing& drawing) {
+void LayerDrawing::finish_class(const Layer::Selection& selection, const View& view,
+                                ClassDrawing& drawing) {
   const bool has_made = !drawing.made_trapezoids.empty();
+  if (drawing.alpha == 0 && !has_pattern()) return;
   drawing.is_full = !has_made && layer_->fill_box(selection, drawing.ranges);
-  drawing.is_drawn = !drawing.is_full && (has_made || !drawing.ranges.empty()) &&
-                     (drawing.alpha > 0 || has_pattern());
-  if (!drawing.is_drawn) return;
+  if (drawing.is_full) return;
   if (!drawing.ranges.empty()) drawing.parts.push_back({layer_->mesh(), drawing.ranges});
-  if (!has_made) return;
-  const MeshView mesh{new_mesh_id(), drawing.made_vertices, drawing.made_edges,
-                      drawing.made_trapezoids};
-  drawing.all_made = {0, static_cast<std::uint32_t>(drawing.made_trapezoids.size())};
-  drawing.parts.push_back({mesh, {&drawing.all_made, 1}});
+  if (has_made) {
+    const MeshView mesh{new_mesh_id(), drawing.made_vertices, drawing.made_edges,
+                        drawing.made_trapezoids};
+    drawing.all_made = {0, static_cast<std::uint32_t>(drawing.made_trapezoids.size())};
+    drawing.parts.push_back({mesh, {&drawing.all_made, 1}});
+  }
+  drawing.digest = mask_digest(drawing.parts, view);
+  drawing.is_full = drawing.digest == whole_mask_digest(view);
+  drawing.is_drawn = !drawing.is_full && !drawing.digest.is_zero();
+  if (!drawing.is_drawn) drawing.digest = {};
+}
+
+void LayerDrawing::leave_out_empty_lines() {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < line_count_; ++i) {
+    if (lines_[i].edges.empty() && lines_[i].seen_edges.empty()) continue;
+    if (left != i) std::swap(lines_[left], lines_[i]);
+    ++left;
+  }
+  line_count_ = left;
 }
 
 void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfLoops& ink,
@@ -535,27 +559,80 @@ void LayerDrawing::forget_made(MaskRenderer& renderer) {
   }
 }
 
+// In the order in which they are painted.
+template <typename Visit>
+void LayerDrawing::for_each_painted(const Visit& visit) const {
+  const auto visit_seen = [&visit](const ClassDrawing& drawing) {
+    if (drawing.is_full || drawing.is_drawn) visit(drawing);
+  };
+  for (const ClassDrawing* drawing : by_number_) {
+    if (drawing != nullptr) visit_seen(*drawing);
+  }
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    if (classes_[i].is_beneath) visit_seen(classes_[i]);
+  }
+}
+
+Rgba LayerDrawing::colour_of(const ClassDrawing& drawing) const {
+  Rgba colour = style().paints[drawing.number].fill;
+  colour.a = drawing.alpha;
+  return colour;
+}
+
 PaintedLayer LayerDrawing::painted() {
   painted_classes_.clear();
   painted_lines_.clear();
-  const auto add = [this](const ClassDrawing& drawing) {
-    if (!drawing.is_full && !drawing.is_drawn) return;
-    Rgba colour = style().paints[drawing.number].fill;
-    colour.a = drawing.alpha;
+  for_each_painted([this](const ClassDrawing& drawing) {
     painted_classes_.push_back(
-        {drawing.is_full ? nullptr : &drawing.mask, colour, drawing.is_beneath});
-  };
-  for (const ClassDrawing* drawing : by_number_) {
-    if (drawing != nullptr) add(*drawing);
-  }
-  for (std::size_t i = 0; i < class_count_; ++i) {
-    if (classes_[i].is_beneath) add(classes_[i]);
-  }
+        {drawing.is_full ? nullptr : &drawing.mask, colour_of(drawing), drawing.is_beneath});
+  });
   for (std::size_t i = 0; i < line_count_; ++i) {
     painted_lines_.push_back({&lines_[i].mask, lines_[i].colour});
   }
   return {painted_classes_, has_pattern() ? &pattern_ : nullptr, style().pattern.colour,
           painted_lines_, style().opacity};
+}
+
+void LayerDrawing::add_to(ContentHash& hash, const View& view) const {
+  hash.add(std::bit_cast<std::uint64_t>(style().opacity));
+  for_each_painted([&](const ClassDrawing& drawing) {
+    hash.add(to_hex(colour_of(drawing)));
+    hash.add(drawing.is_full ? "full" : drawing.is_beneath ? "beneath" : "beside");
+    hash.add(drawing.digest.low());
+    hash.add(drawing.digest.high());
+  });
+  if (has_pattern()) add_pattern_to(hash, view);
+  if (line_count_ > 0) add_lines_to(hash, view);
+}
+
+// Patterns are fixed to the ground.
+void LayerDrawing::add_pattern_to(ContentHash& hash, const View& view) const {
+  const Pattern& pattern = style().pattern;
+  hash.add(kPatternNames.name_of(pattern.kind));
+  hash.add(to_hex(pattern.colour));
+  for (const double length : {pattern.size, pattern.angle, pattern.width, view.cells_per_pixel}) {
+    hash.add(std::bit_cast<std::uint64_t>(length));
+  }
+  hash.add(static_cast<std::uint64_t>(view.origin_x));
+  hash.add(static_cast<std::uint64_t>(view.origin_y));
+}
+
+void LayerDrawing::add_lines_to(ContentHash& hash, const View& view) const {
+  const Stroke& stroke = style().stroke;
+  hash.add(kLineJoinNames.name_of(stroke.join));
+  hash.add(std::bit_cast<std::uint64_t>(stroke.width));
+  hash.add(stroke.dashes.size());
+  for (const double dash : stroke.dashes) hash.add(std::bit_cast<std::uint64_t>(dash));
+  for (std::size_t i = 0; i < line_count_; ++i) {
+    const Lines& lines = lines_[i];
+    hash.add(to_hex(lines.colour));
+    for (const SetHash& digest :
+         {outline_digest(layer_->mesh().vertices, lines.edges, stroke, view),
+          outline_digest(lines.seen_points, lines.seen_edges, stroke, view)}) {
+      hash.add(digest.low());
+      hash.add(digest.high());
+    }
+  }
 }
 
 double LayerDrawing::tolerance(const View& view) const {

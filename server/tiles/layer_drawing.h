@@ -16,8 +16,10 @@
 #include "core/layer/layer.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
+#include "render/mask/set_hash.h"
 #include "render/mask/stroke.h"
 #include "render/picture/compose.h"
+#include "server/base/content_hash.h"
 #include "server/styles/feature_classes.h"
 #include "server/tiles/tile_plan.h"
 
@@ -50,7 +52,7 @@ bool is_plain(const LayerStyle& style);
 class LayerDrawing {
  public:
   /// Selects what is to be drawn. `classes` has the class of every feature; null if the style is
-  /// plain. False if there is nothing of the layer here; the drawing must then not be used. Throws
+  /// plain. False if nothing of the layer is seen here; the drawing must then not be used. Throws
   /// Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
               const FeatureClasses* classes, DrawingTools& tools);
@@ -59,6 +61,10 @@ class LayerDrawing {
   bool hides_all() const;
   /// Whether every pixel has one colour, known without drawing.
   bool is_constant() const;
+
+  /// Adds all that decides what painted() will be: drawings that add the same are painted alike in
+  /// views of the same size, however their layers are numbered.
+  void add_to(ContentHash& hash, const View& view) const;
 
   /// Appends the masks that have to be drawn; they look at memory of the drawing.
   void add_tasks(const View& view, const Cancellation* cancellation, std::vector<MaskTask>& tasks);
@@ -100,6 +106,7 @@ class LayerDrawing {
     std::vector<MeshTrapezoid> made_trapezoids;
     TrapezoidRange all_made;
     std::vector<MeshPart> parts;
+    SetHash digest;  // of the mask, if it is drawn
     Mask mask;
 
     void clear(std::uint8_t class_number);
@@ -149,7 +156,13 @@ class LayerDrawing {
                  OutlineEdge& line) const;
   void add_places(const Layer::Selection& selection, const View& view,
                   const FeatureClasses* classes, DrawingTools& tools);
-  void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);
+  void finish_class(const Layer::Selection& selection, const View& view, ClassDrawing& drawing);
+  void leave_out_empty_lines();
+  template <typename Visit>
+  void for_each_painted(const Visit& visit) const;
+  Rgba colour_of(const ClassDrawing& drawing) const;
+  void add_pattern_to(ContentHash& hash, const View& view) const;
+  void add_lines_to(ContentHash& hash, const View& view) const;
   void collect_edges(const Layer::Selection& selection, const InkOfLoops& ink,
                      const FeatureClasses* classes, DrawingTools& tools);
   Lines& lines_of(Rgba colour);

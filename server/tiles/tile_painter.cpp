@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "render/picture/debug_marks.h"
 #include "render/picture/webp.h"
 #include "render/text/label.h"
+#include "server/base/build_id.h"
+#include "server/base/content_hash.h"
 
 namespace trapeze {
 namespace {
@@ -52,7 +55,10 @@ void add_times(const PaintTimes& more, PaintTimes& times) {
 TilePainter::TilePainter(std::unique_ptr<MaskRenderer> renderer,
                          std::shared_ptr<FeatureClassCache> classes,
                          std::shared_ptr<const Fonts> fonts)
-    : renderer_(std::move(renderer)), classes_(std::move(classes)), fonts_(std::move(fonts)) {}
+    : renderer_(std::move(renderer)),
+      renderer_identity_(renderer_->identity()),
+      classes_(std::move(classes)),
+      fonts_(std::move(fonts)) {}
 
 std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
   return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
@@ -63,6 +69,13 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
   std::vector<Sketch> sketches;
   for (const Job& job : jobs) {
     sketches.push_back(sketch(job, View::of_tile(job.plan->tile, job.plan->scale)));
+    Sketch& last = sketches.back();
+    if (last.is_cancelled) continue;
+    const Stopwatch stopwatch(last.times.select_ms);
+    last.fingerprint = fingerprint_of(*job.plan, last);
+    last.is_wanted = !job.is_wanted || job.is_wanted(last.fingerprint);
+    if (last.is_wanted) continue;
+    drawing_count_ = last.end_drawing = last.first_drawing;
   }
   const DrawTimes drawn = draw(jobs, sketches);
 
@@ -74,9 +87,58 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
       continue;
     }
     note_times(drawn, sketch);
-    tiles.emplace_back(finish(*jobs[i].plan, sketch));
+    if (sketch.is_wanted) {
+      tiles.emplace_back(finish(*jobs[i].plan, sketch));
+    } else {
+      tiles.emplace_back(PaintedTile{{}, nullptr, TileHint::none, sketch.times});
+    }
+    tiles.back()->fingerprint = std::move(sketch.fingerprint);
   }
   return tiles;
+}
+
+std::string TilePainter::identify(const Job& job) {
+  drawing_count_ = 0;
+  const Sketch sketch = this->sketch(job, View::of_tile(job.plan->tile, job.plan->scale));
+  if (sketch.is_cancelled) throw Cancelled();
+  return fingerprint_of(*job.plan, sketch);
+}
+
+bool TilePainter::is_constant(const TilePlan& plan, const Sketch& sketch) const {
+  const auto first = drawings_.begin() + static_cast<std::ptrdiff_t>(sketch.first_drawing);
+  const auto end = drawings_.begin() + static_cast<std::ptrdiff_t>(sketch.end_drawing);
+  return !plan.debug.any() &&
+         std::all_of(first, end, [](const LayerDrawing& drawing) { return drawing.is_constant(); });
+}
+
+std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sketch) const {
+  const View& view = sketch.view;
+  ContentHash hash;
+  hash.add(kPictureVersion);
+  hash.add(static_cast<std::uint64_t>(view.width));
+  hash.add(static_cast<std::uint64_t>(view.height));
+  hash.add(to_hex(plan.background));
+  hash.add(plan.format == TileFormat::webp ? static_cast<std::uint64_t>(webp_version()) : 0);
+  hash.add(kQualityNames.name_of(plan.quality));
+  if (plan.debug.any()) {
+    hash.add(build_id());
+    hash.add(plan.key());
+  }
+  const std::size_t drawings = sketch.end_drawing - sketch.first_drawing;
+  hash.add(drawings);
+  const bool is_drawn = !is_constant(plan, sketch);
+  if (is_drawn) {
+    hash.add(renderer_identity_);
+    hash.add(std::bit_cast<std::uint64_t>(view.cells_per_pixel));
+  }
+  for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
+    // Where layers meet is looked for as far as their boundaries may be from the true ones.
+    if (is_drawn && drawings > 1) {
+      hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance(view)));
+    }
+    drawings_[k].add_to(hash, view);
+  }
+  return hash.hex();
 }
 
 int TilePainter::bands_of(const TilePlan& plan) {
@@ -220,7 +282,7 @@ void TilePainter::draw_details(const Job& job, Sketch& sketch) {
 PaintedTile TilePainter::finish(const TilePlan& plan, Sketch& sketch) {
   const View& view = sketch.view;
   const bool is_constant = !compose(plan, sketch);
-  PaintedTile tile{nullptr, TileHint::none, sketch.times};
+  PaintedTile tile{{}, nullptr, TileHint::none, sketch.times};
   if (plan.debug.any()) {
     const Stopwatch stopwatch(tile.times.compose_ms);
     Picture marked = to_pixels(picture_);
@@ -238,11 +300,10 @@ PaintedTile TilePainter::finish(const TilePlan& plan, Sketch& sketch) {
 bool TilePainter::compose(const TilePlan& plan, Sketch& sketch) {
   const View& view = sketch.view;
   const Stopwatch stopwatch(sketch.times.compose_ms);
-  bool is_constant = !plan.debug.any();
+  const bool is_constant = this->is_constant(plan, sketch);
   painted_.clear();
   tolerances_.clear();
   for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
-    is_constant = is_constant && drawings_[k].is_constant();
     painted_.push_back(drawings_[k].painted());
     tolerances_.push_back(drawings_[k].tolerance(view));
   }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +28,9 @@
 
 namespace trapeze {
 
+/// Of the pictures of tiles: raised whenever the bytes of any tile become others.
+constexpr int kPictureVersion = 1;
+
 /// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
 struct PaintTimes {
   double queue_ms = 0;  // until a worker began
@@ -46,7 +50,8 @@ enum class TileHint : std::uint8_t {
 };
 
 struct PaintedTile {
-  std::shared_ptr<const std::string> bytes;  // PNG or WebP
+  std::string fingerprint;                   // see TilePainter::paint()
+  std::shared_ptr<const std::string> bytes;  // PNG or WebP; null if it was not wanted
   TileHint hint = TileHint::none;
   PaintTimes times;
   bool has_palette = true;  // or would have one, as PNG
@@ -64,6 +69,8 @@ class TilePainter {
   struct Job {
     const TilePlan* plan = nullptr;
     const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
+    /// Whether a tile of that fingerprint has to be painted. Empty: it has.
+    std::function<bool(const std::string& fingerprint)> is_wanted = {};
   };
 
   /// Painters may share what keeps the classes of features, and the fonts, which are for marks.
@@ -77,7 +84,16 @@ class TilePainter {
   /// Paints the tiles, those without a boundary in them from constants and all others in one pass.
   /// Nothing for those that are not wanted any longer. What a tile looks like does not depend on
   /// the others. Throws what the renderer and the encoder throw; Cancelled is of one of the tiles.
+  ///
+  /// The fingerprint, 128 bits as hex digits, is of all that decides the bytes of a tile: its sides
+  /// and lines as they are cut to it, colours, size, format, the renderer, and kPictureVersion.
+  /// Tiles of the same fingerprint have the same bytes, wherever they are, however their layers are
+  /// numbered or called, and whoever paints them; marks for debugging excepted, which have one for
+  /// each tile, layer and build.
   std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
+
+  /// The fingerprint that paint() would find.
+  std::string identify(const Job& job);
 
   /// How many bands of equal height a tile is painted in: 1, or if it is large, several, which
   /// painters may do at the same time. That depends on nothing but the plan, and so do its bytes.
@@ -97,7 +113,9 @@ class TilePainter {
   // The drawings of one tile or band, and what became of it.
   struct Sketch {
     View view;
+    std::string fingerprint;
     bool is_cancelled = false;
+    bool is_wanted = true;
     std::size_t first_drawing = 0;
     std::size_t end_drawing = 0;
     std::size_t tasks = 0;  // of those to be drawn
@@ -105,6 +123,8 @@ class TilePainter {
   };
 
   Sketch sketch(const Job& job, const View& view);
+  std::string fingerprint_of(const TilePlan& plan, const Sketch& sketch) const;
+  bool is_constant(const TilePlan& plan, const Sketch& sketch) const;
   void select(const TilePlan& plan, Sketch& sketch);
   void draw_details(const Job& job, Sketch& sketch);
   std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
@@ -119,6 +139,7 @@ class TilePainter {
   void mark(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<MaskRenderer> renderer_;
+  std::string renderer_identity_;
   std::shared_ptr<FeatureClassCache> classes_;
   std::shared_ptr<const Fonts> fonts_;
   Composer composer_;

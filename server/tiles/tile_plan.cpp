@@ -3,8 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "render/mask/mask.h"
-#include "server/base/build_id.h"
-#include "server/base/content_hash.h"
 #include "server/data/layer_summary.h"
 
 namespace trapeze {
@@ -91,13 +89,6 @@ std::string TilePlan::key() const {
     key += fmt::format(" debug {:d}{:d}{:d}{:d}{:d}", debug.faces, debug.mesh, debug.vertices,
                        debug.junctions, debug.tile);
   return key;
-}
-
-std::string entity_tag_of(std::string_view key) {
-  ContentHash hash;
-  hash.add(build_id());
-  hash.add(key);
-  return fmt::format("\"{}\"", hash.hex());
 }
 
 double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {

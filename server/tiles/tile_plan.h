@@ -54,10 +54,6 @@ struct TilePlan {
   std::string key() const;
 };
 
-/// The strong entity tag, in its quotes, of the picture of a plan with that key: from the key and
-/// the build, so that it is known before anything is drawn.
-std::string entity_tag_of(std::string_view key);
-
 /// The problem is 404 for a layer that is not in the dataset, 400 for a style that does not fit its
 /// layer.
 Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);

@@ -59,26 +59,24 @@ void TileService::stop_workers() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-TileService::Ticket TileService::submit(TilePlan plan, std::string key, Cost cost,
-                                        Callback callback) {
+TileService::Ticket TileService::submit(Order order, Callback callback, Holds holds) {
   const auto now = Clock::now();
+  Asker asker{std::move(callback), std::move(holds)};
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = flights_.find(key);
+    if (const auto found = flights_.find(order.key);
         found != flights_.end() && !found->second->cancellation.is_over()) {
-      return join(found->second, now, std::move(callback));
+      return join(found->second, now, std::move(asker));
     }
-    Queue& queue = queue_of(cost);
+    Queue& queue = queue_of(order.cost);
     if (queue.size() < options_.queue && !is_stopping_) {
       auto flight = std::make_shared<Flight>();
-      flight->plan = std::move(plan);
-      flight->key = std::move(key);
-      flight->cost = cost;
+      flight->order = std::move(order);
       flight->submitted = now;
-      Ticket ticket = join(flight, now, std::move(callback));
+      Ticket ticket = join(flight, now, std::move(asker));
       queue.push_back(flight);
       try {
-        flights_.insert_or_assign(flight->key, flight);
+        flights_.insert_or_assign(flight->order.key, flight);
       } catch (...) {
         queue.pop_back();  // or others would join what no worker takes
         throw;
@@ -89,18 +87,18 @@ TileService::Ticket TileService::submit(TilePlan plan, std::string key, Cost cos
   }
   const TileAnswer saturated{TileOutcome::saturated, {}};
   tell(saturated);
-  callback(saturated);
+  asker.callback(saturated);
   return {};
 }
 
 TileService::Ticket TileService::join(const std::shared_ptr<Flight>& flight, Clock::time_point now,
-                                      Callback callback) const {
+                                      Asker asker) const {
   flight->cancellation.set_deadline(now + options_.deadline);
-  flight->callbacks.push_back(std::move(callback));
+  flight->askers.push_back(std::move(asker));
   ++flight->wanted;
   Ticket ticket;
   ticket.flight_ = flight;
-  ticket.number_ = flight->callbacks.size() - 1;
+  ticket.number_ = flight->askers.size() - 1;
   return ticket;
 }
 
@@ -110,8 +108,8 @@ void TileService::withdraw(const Ticket& ticket) {
   Callback callback;
   {
     const std::lock_guard lock(mutex_);
-    if (ticket.number_ >= flight->callbacks.size()) return;  // all have been answered
-    callback = std::exchange(flight->callbacks[ticket.number_], nullptr);
+    if (ticket.number_ >= flight->askers.size()) return;  // all have been answered
+    callback = std::exchange(flight->askers[ticket.number_].callback, nullptr);
     if (callback == nullptr) return;
     if (--flight->wanted == 0) give_up(flight);
   }
@@ -121,7 +119,7 @@ void TileService::withdraw(const Ticket& ticket) {
 // One that waits is gone at once; a worker notices before long.
 void TileService::give_up(const std::shared_ptr<Flight>& flight) {
   flight->cancellation.cancel();
-  Queue& queue = queue_of(flight->cost);
+  Queue& queue = queue_of(flight->order.cost);
   const auto waiting = std::ranges::find(queue, flight);
   if (waiting == queue.end()) return;
   queue.erase(waiting);
@@ -129,7 +127,7 @@ void TileService::give_up(const std::shared_ptr<Flight>& flight) {
 }
 
 void TileService::forget(const std::shared_ptr<Flight>& flight) {
-  const auto found = flights_.find(flight->key);
+  const auto found = flights_.find(flight->order.key);
   // Another one may have begun when nobody wanted this any longer.
   if (found != flights_.end() && found->second == flight) flights_.erase(found);
 }
@@ -151,7 +149,7 @@ void TileService::work(TilePainter& painter) {
   while (take(most, work)) {
     if (work.bands != nullptr) {
       help(painter, work.bands);
-      if (work.bands->flight->cost == Cost::dear) painter.release_memory();
+      if (work.bands->flight->order.cost == Cost::dear) painter.release_memory();
     } else {
       draw(painter, work.flights);
     }
@@ -206,7 +204,7 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
     spdlog::error("tiles cannot be answered: {}", error.what());
     for (const auto& flight : flights) land(flight, {});
   }
-  const bool is_dear = flights.front()->cost == Cost::dear;
+  const bool is_dear = flights.front()->order.cost == Cost::dear;
   if (is_dear) {
     painter.release_memory();
     return_free_memory();
@@ -236,16 +234,16 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
   std::vector<TileAnswer> answers;
   // This is the boundary of a request: nothing that goes wrong in one may end the worker.
   try {
-    for (auto& tile : paint_tiles(painter, flights)) {
-      answers.push_back(tile ? TileAnswer{TileOutcome::drawn, std::move(*tile)}
-                             : TileAnswer{TileOutcome::late, {}});
+    auto tiles = paint_tiles(painter, flights);
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+      answers.push_back(answer_of(*flights[i], std::move(tiles[i])));
     }
     refuse_damaged(flights, answers);
   } catch (const Cancelled&) {
     const TileOutcome outcome = flights.size() > 1 ? TileOutcome::failed : TileOutcome::late;
     answers.assign(flights.size(), TileAnswer{outcome, {}});
   } catch (const std::exception& error) {
-    spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->key,
+    spdlog::error("tile {}{} cannot be drawn: {}", flights.front()->order.key,
                   flights.size() > 1 ? " or one drawn with it" : "", error.what());
     answers.assign(flights.size(), TileAnswer{});
   }
@@ -261,26 +259,59 @@ std::vector<std::optional<PaintedTile>> TileService::paint_tiles(TilePainter& pa
                                                                  const Flights& flights) {
   std::vector<TilePainter::Job> jobs;
   for (const auto& flight : flights) {
-    if (TilePainter::bands_of(flight->plan) == 1) {
-      jobs.push_back({&flight->plan, &flight->cancellation});
-    }
+    if (TilePainter::bands_of(flight->order.plan) == 1) jobs.push_back(job_of(flight));
   }
   std::vector<std::optional<PaintedTile>> small;
   if (!jobs.empty()) small = painter.paint(jobs);
   auto next = small.begin();
   std::vector<std::optional<PaintedTile>> tiles;
   for (const auto& flight : flights) {
-    const bool is_large = TilePainter::bands_of(flight->plan) > 1;
+    const bool is_large = TilePainter::bands_of(flight->order.plan) > 1;
     tiles.push_back(is_large ? paint_in_bands(painter, flight) : std::move(*next++));
   }
   return tiles;
 }
 
+TilePainter::Job TileService::job_of(const std::shared_ptr<Flight>& flight) {
+  TilePainter::Job job{&flight->order.plan, &flight->cancellation};
+  if (flight->order.may_be_known) {
+    job.is_wanted = [this, flight](const std::string& fingerprint) {
+      return is_wanted(flight, fingerprint);
+    };
+  }
+  return job;
+}
+
+// Once all hold it, nobody joins them any more who might not.
+bool TileService::is_wanted(const std::shared_ptr<Flight>& flight, const std::string& fingerprint) {
+  if (options_.find_kept) flight->kept = options_.find_kept(fingerprint);
+  if (flight->kept.bytes != nullptr) return false;
+  const std::lock_guard lock(mutex_);
+  const bool is_held = std::ranges::all_of(flight->askers, [&](const Asker& asker) {
+    return asker.callback == nullptr || (asker.holds && asker.holds(fingerprint));
+  });
+  if (is_held) forget(flight);
+  return !is_held;
+}
+
+TileAnswer TileService::answer_of(const Flight& flight, std::optional<PaintedTile> tile) {
+  if (!tile) return {TileOutcome::late, {}};
+  if (tile->bytes != nullptr) return {TileOutcome::drawn, *std::move(tile)};
+  if (flight.kept.bytes == nullptr) return {TileOutcome::held, *std::move(tile)};
+  tile->bytes = flight.kept.bytes;
+  tile->hint = flight.kept.hint;
+  return {TileOutcome::kept, *std::move(tile)};
+}
+
 std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
                                                        const std::shared_ptr<Flight>& flight) {
+  const TilePainter::Job job = job_of(flight);
+  PaintedTile tile;
+  tile.fingerprint = painter.identify(job);
+  if (job.is_wanted && !job.is_wanted(tile.fingerprint)) return tile;
   const auto bands = std::make_shared<Bands>();
   bands->flight = flight;
-  bands->painted.resize(static_cast<std::size_t>(TilePainter::bands_of(flight->plan)));
+  bands->painted.resize(static_cast<std::size_t>(TilePainter::bands_of(flight->order.plan)));
   {
     const std::lock_guard lock(mutex_);
     bands_.push_back(bands);
@@ -297,12 +328,15 @@ std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
     if (!band) return std::nullopt;
     painted.push_back(*std::move(band));
   }
-  return painter.join(flight->plan, painted);
+  std::string fingerprint = std::move(tile.fingerprint);
+  tile = painter.join(flight->order.plan, painted);
+  tile.fingerprint = std::move(fingerprint);
+  return tile;
 }
 
 // Whoever waits for the bands is told of what goes wrong.
 void TileService::help(TilePainter& painter, const std::shared_ptr<Bands>& bands) {
-  const TilePainter::Job job{&bands->flight->plan, &bands->flight->cancellation};
+  const TilePainter::Job job{&bands->flight->order.plan, &bands->flight->cancellation};
   while (const auto band = take_band(*bands)) {
     std::exception_ptr failure;
     try {
@@ -331,7 +365,7 @@ std::optional<std::size_t> TileService::take_band(Bands& bands) {
 /// What was drawn while a file was written into may be drawn from anything.
 void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>& answers) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
-    const ServedLayer* damaged = flights[i]->plan.damaged_layer();
+    const ServedLayer* damaged = flights[i]->order.plan.damaged_layer();
     if (damaged == nullptr) continue;
     spdlog::error("{} was written into while it was served; run `trapeze prepare` again",
                   damaged->report.path);
@@ -340,19 +374,19 @@ void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>
 }
 
 void TileService::land(const std::shared_ptr<Flight>& flight, TileAnswer answer) {
-  std::vector<Callback> callbacks;
+  std::vector<Asker> askers;
   {
     const std::lock_guard lock(mutex_);
     if (answer.outcome == TileOutcome::late && is_stopping_) {
       answer.outcome = TileOutcome::saturated;
     }
     forget(flight);
-    callbacks.swap(flight->callbacks);
+    askers.swap(flight->askers);
   }
-  if (callbacks.empty()) return;  // has landed
+  if (askers.empty()) return;  // has landed
   tell(answer);
-  for (const Callback& callback : callbacks) {
-    if (callback != nullptr) attempt([&] { callback(answer); });
+  for (const Asker& asker : askers) {
+    if (asker.callback != nullptr) attempt([&] { asker.callback(answer); });
   }
 }
 

@@ -23,23 +23,40 @@
 #include <vector>
 
 #include "core/grid/cancellation.h"
+#include "core/grid/name_table.h"
 #include "server/base/defaults.h"
+#include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
 
 namespace trapeze {
 
-enum class TileOutcome {
+enum class TileOutcome : std::uint8_t {
   drawn,
+  kept,       // found by its fingerprint, and not drawn
+  held,       // by all who asked: there are no bytes
   saturated,  // the queue is full, or the service is stopping: worth asking again
   late,       // past the deadline, before it was drawn or while it was
   withdrawn,  // by who asked
   failed,     // an error of ours, which has been logged
 };
 
+inline constexpr NameTable<TileOutcome, 7> kTileOutcomeNames({
+    {"drawn", TileOutcome::drawn},
+    {"kept", TileOutcome::kept},
+    {"held", TileOutcome::held},
+    {"saturated", TileOutcome::saturated},
+    {"late", TileOutcome::late},
+    {"withdrawn", TileOutcome::withdrawn},
+    {"failed", TileOutcome::failed},
+});
+
 struct TileAnswer {
   TileOutcome outcome = TileOutcome::failed;
-  PaintedTile tile;  // if drawn
+  PaintedTile tile;  // if drawn, kept or held
+
+  /// Whether the tile is known by its fingerprint.
+  bool is_known() const { return outcome <= TileOutcome::held; }
 };
 
 struct TileServiceOptions {
@@ -51,6 +68,8 @@ struct TileServiceOptions {
   std::size_t batch = defaults::kBatch;
   // For marks.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
+  // Finds a tile that was drawn before by its fingerprint; its bytes are null if it is not there.
+  std::function<TileCache::Tile(const std::string& fingerprint)> find_kept = {};
   // Told once of every tile, however many asked for it, from whatever thread answers.
   std::function<void(const TileAnswer&)> observe = {};
 };
@@ -59,7 +78,19 @@ class TileService {
  public:
   using Clock = std::chrono::steady_clock;
   using Callback = std::function<void(const TileAnswer&)>;
+  /// Whether who asks has the tile of that fingerprint already, and needs no bytes. Called from a
+  /// worker with the service locked.
+  using Holds = std::function<bool(const std::string& fingerprint)>;
   enum class Cost { cheap, dear };
+
+  struct Order {
+    TilePlan plan;
+    std::string key;  // the plan's
+    Cost cost = Cost::cheap;
+    /// Of a tile that is not to be drawn if its fingerprint is found to be kept, or held by all who
+    /// ask. False: it is drawn whatever its fingerprint is.
+    bool may_be_known = true;
+  };
 
  private:
   struct Flight;
@@ -81,9 +112,10 @@ class TileService {
   TileService& operator=(const TileService&) = delete;
 
   /// Calls `callback` exactly once: from a worker, or from within this call if the queue is full,
-  /// or from within withdraw(). `key` is the plan's; plans of equal key that are under way together
-  /// are drawn once. Throws std::bad_alloc, and never calls it, if there is no memory to wait.
-  Ticket submit(TilePlan plan, std::string key, Cost cost, Callback callback);
+  /// or from within withdraw(). Plans of equal key that are under way together are drawn once. An
+  /// empty `holds` holds nothing. Throws std::bad_alloc, and never calls back, if there is no
+  /// memory to wait.
+  Ticket submit(Order order, Callback callback, Holds holds = {});
 
   /// Answers this one who asked, if that has not been done; what nobody else asked for is not drawn
   /// any further.
@@ -103,14 +135,17 @@ class TileService {
   void forget(std::uint64_t mesh_id) { renderer_.forget(mesh_id); }
 
  private:
+  struct Asker {
+    Callback callback;  // empty: withdrew
+    Holds holds;
+  };
   struct Flight {
-    TilePlan plan;
-    std::string key;
-    Cost cost = Cost::cheap;
+    Order order;
     Clock::time_point submitted;
-    Cancellation cancellation;        // at the deadline of the last who asked
-    std::vector<Callback> callbacks;  // empty ones withdrew
-    std::size_t wanted = 0;           // callbacks that did not
+    Cancellation cancellation;  // at the deadline of the last who asked
+    std::vector<Asker> askers;
+    std::size_t wanted = 0;  // askers that did not withdraw
+    TileCache::Tile kept;    // by the worker that draws it, as it was found
   };
   /// The bands of a large tile.
   struct Bands {
@@ -139,14 +174,17 @@ class TileService {
   /// How many of those that wait one worker should take, so that all workers have some.
   std::size_t share_of_queue() const;
   /// The three below are called with the mutex locked.
-  Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now,
-              Callback callback) const;
+  Ticket join(const std::shared_ptr<Flight>& flight, Clock::time_point now, Asker asker) const;
   void give_up(const std::shared_ptr<Flight>& flight);
   void forget(const std::shared_ptr<Flight>& flight);
   void draw(TilePainter& painter, const Flights& flights);
   void answer(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   std::vector<std::optional<PaintedTile>> paint_tiles(TilePainter& painter, const Flights& flights);
+  TilePainter::Job job_of(const std::shared_ptr<Flight>& flight);
+  /// Whether the tile still has to be drawn, once its fingerprint is known.
+  bool is_wanted(const std::shared_ptr<Flight>& flight, const std::string& fingerprint);
+  static TileAnswer answer_of(const Flight& flight, std::optional<PaintedTile> tile);
   std::optional<PaintedTile> paint_in_bands(TilePainter& painter,
                                             const std::shared_ptr<Flight>& flight);
   /// Paints bands that nobody has taken yet.

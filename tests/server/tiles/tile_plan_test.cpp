@@ -33,7 +33,7 @@ class TilePlanTest : public ::testing::Test {
     auto planned = plan_tile(std::get<TileRequest>(*parsed), dataset_);
     return *planned;
   }
-  std::string tag(const std::string& target) const { return entity_tag_of(plan(target).key()); }
+  std::string key(const std::string& target) const { return plan(target).key(); }
   /// The level of the default tolerance in tiles of 256 pixels.
   static Level usual_level(int zoom) {
     return nearest_level(static_cast<double>(TileId{zoom, 0, 0}.side()) / 256 / 4);
@@ -77,38 +77,38 @@ TEST_F(TilePlanTest, OneThatNobodyKnowsIsNotFound) {
   EXPECT_EQ(problem.value, "nosuch");
 }
 
-TEST_F(TilePlanTest, EqualPicturesHaveEqualTags) {
-  const std::string same = tag("rings/3/4/4.png");
+TEST_F(TilePlanTest, EqualPicturesHaveEqualKeys) {
+  const std::string same = key("rings/3/4/4.png");
   for (const char* target :
        {"rings/3/4/4@1x.png", "rings,rings/3/4/4.png", "rings/3/4/4.png?fill=red",
         "rings/3/4/4.png?rings.fill=F00&fill=blue", "rings/3/4/4.png?_=1",
         "rings/3/4/4.png?background=ff000000", "rings/3/4/4.png?fill-opacity=1.0"}) {
-    EXPECT_EQ(tag(target), same) << target;
+    EXPECT_EQ(key(target), same) << target;
   }
 }
 
-TEST_F(TilePlanTest, DifferentPicturesHaveDifferentTags) {
-  const std::string tag = this->tag("rings/3/4/4.png");
+TEST_F(TilePlanTest, DifferentPicturesHaveDifferentKeys) {
+  const std::string key = this->key("rings/3/4/4.png");
   for (const char* target :
        {"rings/3/4/4@2x.png", "rings/3/4/3.png", "rings/3/3/4.png", "rings/2/3/3.png",
         "west/3/4/4.png", "rings,west/3/4/4.png", "rings/3/4/4.png?fill=fe0000",
         "rings/3/4/4.png?background=white", "rings/3/4/4.png?fill-opacity=0.5"}) {
-    EXPECT_NE(this->tag(target), tag) << target;
+    EXPECT_NE(this->key(target), key) << target;
   }
-  EXPECT_NE(this->tag("rings,west/3/4/4.png"), this->tag("west,rings/3/4/4.png"));
+  EXPECT_NE(this->key("rings,west/3/4/4.png"), this->key("west,rings/3/4/4.png"));
 }
 
-TEST_F(TilePlanTest, TheTagDependsOnTheDataAndNotOnTheRun) {
+TEST_F(TilePlanTest, TheKeyDependsOnTheDataAndNotOnTheRun) {
   const auto again = testing::sample_dataset();
   EXPECT_EQ(again->generation(), dataset_->generation());
   TilePlan plan = this->plan("rings/0/0/0.png");
-  const std::string tag = entity_tag_of(plan.key());
+  const std::string key = plan.key();
   plan.dataset = again;
-  EXPECT_EQ(entity_tag_of(plan.key()), tag);
+  EXPECT_EQ(plan.key(), key);
   auto layers = layers_of_files({testing::fixture("west.geojson")});
   layers[0].name = "rings";  // the same name, other contents
   plan.dataset = Dataset::load(layers);
-  EXPECT_NE(entity_tag_of(plan.key()), tag);
+  EXPECT_NE(plan.key(), key);
 }
 
 /// A meadow and a lake, each a ring of coordinates.
@@ -121,7 +121,7 @@ std::string meadow_and_lake(const std::string& meadow, const std::string& lake) 
          feature("lake", lake) + "]}";
 }
 
-TEST_F(TilePlanTest, FeaturesThatChangePlacesChangeTheTag) {
+TEST_F(TilePlanTest, FeaturesThatChangePlacesChangeTheKey) {
   const std::string west = "[0,0],[9,0],[9,9],[0,9],[0,0]";
   const std::string east = "[20,0],[29,0],[29,9],[20,9],[20,0]";
   const TemporaryFolder folder;
@@ -167,16 +167,16 @@ TEST_F(TilePlanTest, EveryLayerMayBeGeneralizedInItsOwnWay) {
 }
 
 TEST_F(TilePlanTest, TheSameGeneralizationHasTheSameTagHoweverWritten) {
-  const std::string same = tag("rings/3/4/4.png");
+  const std::string same = key("rings/3/4/4.png");
   for (const char* query : {"simplify=0.25", "simplify=0.2500001", "small=dust", "topology=strict",
                             "rings.small=dust&small=drop", "topology=strict&simplify=2.5e-1"}) {
-    EXPECT_EQ(tag(std::string("rings/3/4/4.png?") + query), same) << query;
+    EXPECT_EQ(key(std::string("rings/3/4/4.png?") + query), same) << query;
   }
-  EXPECT_EQ(tag("rings/3/4/4.png?debug=tile,mesh"), tag("rings/3/4/4.png?debug=mesh,tile,mesh"));
+  EXPECT_EQ(key("rings/3/4/4.png?debug=tile,mesh"), key("rings/3/4/4.png?debug=mesh,tile,mesh"));
 }
 
 TEST_F(TilePlanTest, EveryGeneralizationAndEveryMarkHasItsOwnTag) {
-  std::set<std::string> tags;
+  std::set<std::string> keys;
   const std::vector<std::string> queries = {"",
                                             "simplify=0",
                                             "simplify=1",
@@ -193,8 +193,8 @@ TEST_F(TilePlanTest, EveryGeneralizationAndEveryMarkHasItsOwnTag) {
                                             "debug=mesh,tile,vertices",
                                             "topology=fast",
                                             "topology=fast&small=drop"};
-  for (const std::string& query : queries) tags.insert(tag("rings/3/4/4.png?" + query));
-  EXPECT_EQ(tags.size(), queries.size());
+  for (const std::string& query : queries) keys.insert(key("rings/3/4/4.png?" + query));
+  EXPECT_EQ(keys.size(), queries.size());
 }
 
 TEST_F(TilePlanTest, AnInvisibleLayerIsKeptForItsMarks) {

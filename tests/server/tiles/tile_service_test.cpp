@@ -51,6 +51,10 @@ class GatedRenderer final : public MaskRenderer {
   Gate& gate_;
 };
 
+TileService::Order order_of(const TilePlan& plan, TileService::Cost cost) {
+  return {plan, plan.key(), cost};
+}
+
 class TileServiceTest : public ::testing::Test {
  protected:
   ~TileServiceTest() override { open(); }
@@ -71,8 +75,7 @@ class TileServiceTest : public ::testing::Test {
   std::future<TileAnswer> submit(int shade, TileService::Cost cost = TileService::Cost::cheap) {
     auto promise = std::make_shared<std::promise<TileAnswer>>();
     auto future = promise->get_future();
-    const TilePlan tile = plan(shade);
-    ticket_ = service_->submit(tile, tile.key(), cost,
+    ticket_ = service_->submit(order_of(plan(shade), cost),
                                [promise](const TileAnswer& answer) { promise->set_value(answer); });
     return future;
   }
@@ -250,8 +253,7 @@ TEST_F(TileServiceTest, AFailingRendererFailsTheRequestAndNotTheWorker) {
 
 TEST_F(TileServiceTest, AnAnswerThatCannotBeSentDoesNotKeepOthersWaiting) {
   start();
-  const TilePlan tile = plan(0);
-  service_->submit(tile, tile.key(), TileService::Cost::cheap,
+  service_->submit(order_of(plan(0), TileService::Cost::cheap),
                    [](const TileAnswer&) { throw std::bad_alloc(); });
   std::future<TileAnswer> same = submit(0);
   std::future<TileAnswer> next = submit(1);
@@ -281,7 +283,7 @@ TilePlan busy_plan(TileId tile, int scale) {
 
 std::string bytes_of(TileService& service, const TilePlan& plan) {
   std::promise<TileAnswer> promise;
-  service.submit(plan, plan.key(), TileService::Cost::dear,
+  service.submit(order_of(plan, TileService::Cost::dear),
                  [&promise](const TileAnswer& answer) { promise.set_value(answer); });
   const TileAnswer answer = promise.get_future().get();
   return answer.outcome == TileOutcome::drawn ? *answer.tile.bytes : std::string();
@@ -349,7 +351,7 @@ TEST_F(TileServiceTest, StoppingEndsTheBandsOfALargeTile) {
   start({}, 3);
   std::promise<TileAnswer> promise;
   const TilePlan large = busy_plan({1, 0, 0}, 4);
-  service_->submit(large, large.key(), TileService::Cost::dear,
+  service_->submit(order_of(large, TileService::Cost::dear),
                    [&promise](const TileAnswer& answer) { promise.set_value(answer); });
   wait_until_drawing(3);
   service_.reset();  // with the gate shut
@@ -360,9 +362,7 @@ TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   TileService service({}, make_renderers({RendererKind::software, {}}, 4).renderers);
   std::vector<std::promise<TileAnswer>> answers(64);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    TilePlan plan = this->plan(static_cast<int>(i) * 4);
-    std::string key = plan.key();
-    service.submit(std::move(plan), std::move(key), TileService::Cost::cheap,
+    service.submit(order_of(plan(static_cast<int>(i) * 4), TileService::Cost::cheap),
                    [&answers, i](const TileAnswer& answer) { answers[i].set_value(answer); });
   }
   for (std::size_t i = 0; i < answers.size(); ++i) {
