@@ -8,7 +8,7 @@
 #include <span>
 
 #include "render/mask/mask.h"
-#include "render/mask/set_hash.h"
+#include "core/grid/set_hash.h"
 #include "render/mask/stroke.h"
 
 namespace trapeze {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "server/changes/changed_tiles.h"
+#include "server/changes/tile_list.h"
 #include "server/cli/option_values.h"
 #include "server/config/load_config.h"
 #include "server/tiles/tile_plan.h"
@@ -52,6 +54,18 @@ struct PrepareArguments {
   SkipLimit max_skipped;      // of each file
 };
 int run_prepare(const PrepareArguments& arguments);
+
+struct DiffArguments {
+  std::string before;  // files of the layer's two states
+  std::string after;
+  std::string zooms;
+  std::string style;  // a query string
+  int scale = 1;
+  CoverageArguments coverage;
+  std::string certainty{kCertaintyNames.name_of(Certainty::fingerprints)};
+  std::string format{kTileListNames.name_of(TileListFormat::text)};
+};
+int run_diff(const DiffArguments& arguments);
 
 struct ExportArguments {
   std::string file;

@@ -21,19 +21,6 @@
 namespace trapeze {
 namespace {
 
-/// The value, or the problem with --style thrown as a sentence for the command line.
-template <typename T>
-T style_or_throw(Result<T> result) {
-  if (!result) {
-    throw UsageError("--style: " +
-                     (result.problem().value.empty()
-                          ? result.problem().detail
-                          : fmt::format("{} Given was \"{}\".", result.problem().detail,
-                                        result.problem().value)));
-  }
-  return *std::move(result);
-}
-
 std::optional<TileId> tile_of_text(std::string_view text) {
   const std::size_t first = text.find('/');
   const std::size_t second = first == std::string::npos ? first : text.find('/', first + 1);
@@ -72,10 +59,7 @@ TileRequest make_request(const RenderArguments& arguments, const std::vector<Lay
   request.tile = tile_or_throw(arguments.tile);
   request.scale = arguments.scale;
   request.format = format_of(arguments.output);
-  const auto query = decode_query(arguments.style);
-  if (!query) throw UsageError("--style takes a query string such as fill=red");
-  request.style =
-      style_or_throw(style_or_throw(StyleBook().read(*query)).style_for(request.layers));
+  request.style = style_or_throw(arguments.style, request.layers);
   return request;
 }
 
@@ -99,8 +83,9 @@ int run_render(const RenderArguments& arguments) {
   const RendererKind kind = word_or_throw("--renderer", arguments.renderer, kRendererNames);
   auto renderers = start_renderers({kind, arguments.device}, 1);
   TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
-  const TilePlan plan = style_or_throw(plan_tile(request, Dataset::load(layers)));
-  const TilePainter::Job job{&plan};
+  const auto plan = plan_tile(request, Dataset::load(layers));
+  if (!plan) throw_wrong_style(plan.problem());
+  const TilePainter::Job job{&*plan};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();
   write_file(arguments.output, *tile.bytes);
   const PaintTimes& times = tile.times;

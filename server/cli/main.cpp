@@ -43,6 +43,7 @@ constexpr const char* kDescription =
     "  trapeze config check trapeze.toml           all that is wrong with it\n"
     "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
     "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
+    "  trapeze diff old.trapeze parcels.gpkg --zooms 0-16   the tiles that an edit has changed\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
     "file\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png\n"
@@ -96,6 +97,17 @@ constexpr const char* kPrepareFooter =
     "otherwise:\n"
     "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
     "under a running server without harm; write into it by no other means.";
+
+constexpr const char* kDiffFooter =
+    "\nExamples:\n"
+    "  trapeze diff yesterday.trapeze parcels.gpkg --zooms 0-16\n"
+    "  trapeze diff old.fgb new.fgb --zooms 12 --style 'color-by=use' --format geojson\n\n"
+    "OLD and NEW are states of one layer, as sources or prepared. A tile is listed if what it is\n"
+    "drawn from has changed: none whose picture has is left out. That of some may be the same all\n"
+    "the same, where the change is too small to be seen: --certainty bytes draws both and lists\n"
+    "those that differ. --certainty candidates looks at no tile, and lists those that any style "
+    "with\n"
+    "that simplify may change, but for styles by id: for purging what is kept of all styles.";
 
 constexpr const char* kExportFooter =
     "\nExamples:\n"
@@ -316,6 +328,33 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->type_name("DIR");
 }
 
+void add_diff(CLI::App& app, trapeze::DiffArguments& arguments) {
+  CLI::App* diff =
+      app.add_subcommand("diff", "List the tiles that differ between two states of a layer");
+  diff->footer(kDiffFooter);
+  diff->add_option("OLD", arguments.before, "A file of polygons, or a prepared one")->required();
+  diff->add_option("NEW", arguments.after, "The same layer later")->required();
+  diff->add_option("--zooms", arguments.zooms, "The zooms of the tiles, such as 0-16")
+      ->required()
+      ->type_name("A-B");
+  diff->add_option("--style", arguments.style, "Style, written as in the query of a URL")
+      ->type_name("QUERY");
+  add_number(*diff, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
+             });
+  add_coverage(*diff, arguments.coverage, coverage_of_files());
+  diff->add_option(
+          "--certainty", arguments.certainty,
+          fmt::format("Which tiles are listed: {}; {} if not set",
+                      trapeze::listed(trapeze::kCertaintyNames.names()), arguments.certainty))
+      ->type_name("NAME");
+  diff->add_option("--format", arguments.format,
+                   fmt::format("{}; text, a line z/x/y for each, if not set",
+                               trapeze::listed(trapeze::kTileListNames.names())))
+      ->type_name("NAME");
+}
+
 void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("export", "Write the polygons of a zoom into a file for other programs");
@@ -489,6 +528,7 @@ int run(int argc, char** argv) {
   trapeze::ServeArguments serve;
   trapeze::CheckArguments check;
   trapeze::PrepareArguments prepare;
+  trapeze::DiffArguments diff;
   trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
   std::string bench;
@@ -498,6 +538,7 @@ int run(int argc, char** argv) {
   add_config(app, config_path, config);
   add_check(app, check);
   add_prepare(app, prepare);
+  add_diff(app, diff);
   add_export(app, to_export);
   add_render(app, render);
   add_bench(app, bench);
@@ -528,6 +569,7 @@ int run(int argc, char** argv) {
   trapeze::end_cleanly_when_interrupted();
   if (app.got_subcommand("check")) return trapeze::run_check(check);
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
+  if (app.got_subcommand("diff")) return trapeze::run_diff(diff);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);
   return trapeze::run_render(render);
 }

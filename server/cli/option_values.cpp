@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "server/base/nearest_name.h"
+#include "server/base/url.h"
 #include "server/config/load_config.h"
+#include "server/styles/style_book.h"
 
 namespace trapeze {
 namespace {
@@ -100,6 +102,23 @@ void apply(const CoverageArguments& arguments, LayerConfig& layer) {
   const std::optional<CoverageMode> coverage = coverage_or_throw(arguments);
   if (coverage) layer.coverage = coverage;
   if (arguments.close_gaps) layer.close_gaps = arguments.close_gaps;
+}
+
+StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers) {
+  const auto parameters = decode_query(query);
+  if (!parameters) throw UsageError("--style takes a query string such as fill=red");
+  const auto style = StyleBook().read(*parameters);
+  if (!style) throw_wrong_style(style.problem());
+  auto of_layers = style->style_for(layers);
+  if (!of_layers) throw_wrong_style(of_layers.problem());
+  return *std::move(of_layers);
+}
+
+void throw_wrong_style(const Problem& problem) {
+  throw UsageError("--style: " +
+                   (problem.value.empty()
+                        ? problem.detail
+                        : fmt::format("{} Given was \"{}\".", problem.detail, problem.value)));
 }
 
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files) {

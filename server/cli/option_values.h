@@ -13,7 +13,9 @@
 #include "core/borders/coverage_groups.h"
 #include "core/grid/name_table.h"
 #include "core/layer/layer_options.h"
+#include "server/base/problem.h"
 #include "server/config/config.h"
+#include "server/styles/style_parameters.h"
 
 namespace trapeze {
 
@@ -59,6 +61,11 @@ std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments
 void apply(const CoverageArguments& arguments, LayerOptions& options);
 /// What is not said stays as the layer has it.
 void apply(const CoverageArguments& arguments, LayerConfig& layer);
+
+/// A style for these layers, written as in the query of a URL.
+StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers);
+/// A problem with a style as a sentence for the command line.
+[[noreturn]] void throw_wrong_style(const Problem& problem);
 
 /// A layer of each file, named after it, each name once.
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files);

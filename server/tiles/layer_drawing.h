@@ -16,7 +16,7 @@
 #include "core/layer/layer.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
-#include "render/mask/set_hash.h"
+#include "core/grid/set_hash.h"
 #include "render/mask/stroke.h"
 #include "render/picture/compose.h"
 #include "server/base/content_hash.h"

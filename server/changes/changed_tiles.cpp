@@ -1,0 +1,175 @@
+#include "server/changes/changed_tiles.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "core/grid/for_each_in_parallel.h"
+#include "core/layer/layer_changes.h"
+#include "render/software/software_renderer.h"
+#include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_plan.h"
+
+namespace trapeze {
+namespace {
+
+/// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
+constexpr double kReachOfDust = 3;
+
+std::optional<int> parse_zoom(std::string_view text) {
+  int zoom = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), zoom);
+  const bool is_whole = error == std::errc() && end == text.data() + text.size();
+  return is_whole && 0 <= zoom && zoom <= kMaxZoom ? std::optional(zoom) : std::nullopt;
+}
+
+/// The states of one layer of the request, and what may look different between them.
+struct ComparedLayer {
+  std::string name;
+  LayerChanges changes;
+  std::optional<LayerChanges> untested;  // of the layers without the test of topology
+};
+
+class Comparison {
+ public:
+  Comparison(const ChangeRequest& request, std::shared_ptr<const Dataset> before,
+             std::shared_ptr<const Dataset> after)
+      : request_(request), before_(std::move(before)), after_(std::move(after)) {
+    const auto classes = TilePainter::new_class_cache();
+    const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+    for (std::size_t i = 0; i < threads; ++i) {
+      painters_.emplace_back(std::make_unique<SoftwareRenderer>(), classes);
+    }
+    for (const std::string& name : request.tile.layers) add_layer(name);
+  }
+
+  Result<ChangedTiles> find() {
+    ChangedTiles found;
+    found.zooms = request_.zooms;
+    for (int zoom = request_.zooms.first; zoom <= request_.zooms.last; ++zoom) {
+      TileRequest tile = request_.tile;
+      tile.tile = {zoom, 0, 0};
+      const auto before = plan_tile(tile, before_);
+      if (!before) return before.problem();
+      const auto after = plan_tile(tile, after_);
+      if (!after) return after.problem();
+      try {
+        const auto tiles = changed(candidates(*before, *after), *before, *after);
+        found.tiles.insert(found.tiles.end(), tiles.begin(), tiles.end());
+      } catch (const std::length_error&) {
+        found.zooms.last = zoom - 1;
+        found.is_complete = false;
+        break;
+      }
+    }
+    return found;
+  }
+
+ private:
+  void add_layer(const std::string& name) {
+    const auto before = before_->find(name);
+    const auto after = after_->find(name);
+    if (!before || !after) return;  // plan_tile() tells
+    const ServedLayer& old = before_->layers()[*before];
+    const ServedLayer& now = after_->layers()[*after];
+    const StyleQuery& style = request_.tile.style;
+    const bool names_ids = style.value_for(name, ParameterId::ids).has_value() ||
+                           style.value_for(name, ParameterId::highlight).has_value();
+    const Ids ids = names_ids ? Ids::matter : Ids::do_not_matter;
+    ComparedLayer compared{name, {}, {}};
+    if (old.layer != now.layer) compared.changes = changes_between(*old.layer, *now.layer, ids);
+    if (old.untested != nullptr && now.untested != nullptr) {
+      compared.untested = changes_between(*old.untested, *now.untested, ids);
+    }
+    layers_.push_back(std::move(compared));
+  }
+
+  const LayerChanges* changes_of(const TilePlan& plan, const LayerPaint& paint) const {
+    const std::string& name = plan.dataset->layers()[paint.layer].config.name;
+    const auto found = std::ranges::find(layers_, name, &ComparedLayer::name);
+    if (found == layers_.end()) return nullptr;
+    return paint.topology == Topology::strict ? &found->changes : &*found->untested;
+  }
+
+  /// Layers that are seen in one state and not in the other are of other zooms or opacities, which
+  /// is no change of the data.
+  std::vector<TileId> candidates(const TilePlan& before, const TilePlan& after) const {
+    std::vector<TileId> tiles;
+    for (const TilePlan* plan : {&before, &after}) {
+      const View view = View::of_tile(plan->tile, plan->scale);
+      for (const LayerPaint& paint : plan->layers) {
+        const LayerChanges* changes = changes_of(*plan, paint);
+        if (changes == nullptr) continue;
+        const Stroke& stroke = paint.style.stroke;
+        const double reach = (stroke.width > 0 ? stroke.reach(plan->scale) : 0) + kReachOfDust;
+        const TileDrawing drawing{plan->tile.z, paint.level, plan->pixel_level(),
+                                  reach * view.cells_per_pixel};
+        const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
+        tiles.insert(tiles.end(), more.begin(), more.end());
+      }
+    }
+    const auto place = [](const TileId& tile) { return std::pair(tile.y, tile.x); };
+    std::ranges::sort(tiles, {}, place);
+    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+    return tiles;
+  }
+
+  /// Those that are different.
+  std::vector<TileId> changed(std::vector<TileId> tiles, const TilePlan& before,
+                              const TilePlan& after) {
+    if (request_.certainty == Certainty::candidates) return tiles;
+    std::vector<char> is_different(tiles.size());
+    for_each_in_parallel(painters_.size(), painters_.size(), [&](std::size_t thread) {
+      TilePlan old = before;
+      TilePlan now = after;
+      for (std::size_t i = thread; i < tiles.size(); i += painters_.size()) {
+        old.tile = now.tile = tiles[i];
+        is_different[i] = are_different(old, now, painters_[thread]) ? 1 : 0;
+      }
+    });
+    std::vector<TileId> left;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      if (is_different[i] != 0) left.push_back(tiles[i]);
+    }
+    return left;
+  }
+
+  bool are_different(const TilePlan& before, const TilePlan& after, TilePainter& painter) const {
+    const TilePainter::Job old{&before};
+    const TilePainter::Job now{&after};
+    if (painter.identify(old) == painter.identify(now)) return false;
+    if (request_.certainty == Certainty::fingerprints) return true;
+    const auto bytes_of = [&painter](const TilePainter::Job& job) {
+      return painter.paint({&job, 1}).front().value().bytes;
+    };
+    return *bytes_of(old) != *bytes_of(now);
+  }
+
+  const ChangeRequest& request_;
+  std::shared_ptr<const Dataset> before_;
+  std::shared_ptr<const Dataset> after_;
+  std::vector<TilePainter> painters_;  // one for each thread
+  std::vector<ComparedLayer> layers_;
+};
+
+}  // namespace
+
+std::optional<ZoomRange> parse_zooms(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  const auto first = parse_zoom(text.substr(0, dash));
+  const auto last = dash == std::string_view::npos ? first : parse_zoom(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return std::nullopt;
+  return ZoomRange{*first, *last};
+}
+
+Result<ChangedTiles> changed_tiles(const ChangeRequest& request,
+                                   const std::shared_ptr<const Dataset>& before,
+                                   const std::shared_ptr<const Dataset>& after) {
+  return Comparison(request, before, after).find();
+}
+
+}  // namespace trapeze

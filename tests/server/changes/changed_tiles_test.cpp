@@ -1,0 +1,172 @@
+#include "server/changes/changed_tiles.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "render/software/software_renderer.h"
+#include "server/changes/tile_list.h"
+#include "server/tiles/tile_painter.h"
+#include "tests/server/service/sample_site.h"
+#include "tests/server/tiles/edited_land.h"
+
+namespace trapeze {
+namespace {
+
+using testing::EditedLand;
+using Tiles = std::set<std::tuple<int, std::uint32_t, std::uint32_t>>;
+
+constexpr ZoomRange kZooms{0, 8};
+
+Tiles set_of(const std::vector<TileId>& tiles) {
+  Tiles set;
+  for (const TileId& tile : tiles) set.emplace(tile.z, tile.x, tile.y);
+  EXPECT_EQ(set.size(), tiles.size()) << "each is listed once";
+  return set;
+}
+
+ChangeRequest request_of(const std::string& style, Certainty certainty) {
+  ChangeRequest request;
+  request.tile.layers = {"land"};
+  request.tile.style = testing::style_of(style);
+  request.zooms = kZooms;
+  request.certainty = certainty;
+  return request;
+}
+
+Tiles changed(const std::string& style, Certainty certainty,
+              const std::shared_ptr<const Dataset>& before,
+              const std::shared_ptr<const Dataset>& after) {
+  const auto found = changed_tiles(request_of(style, certainty), before, after);
+  EXPECT_TRUE(found->is_complete);
+  return set_of(found->tiles);
+}
+
+class Drawn {
+ public:
+  explicit Drawn(std::string style) : style_(std::move(style)) {}
+
+  /// The tiles that have other bytes, of all where there may be any.
+  Tiles different(const std::shared_ptr<const Dataset>& before,
+                  const std::shared_ptr<const Dataset>& after) {
+    Tiles tiles;
+    for (int z = kZooms.first; z <= kZooms.last; ++z) {
+      const double count = 1 << z;
+      const auto tile_at = [count](double share) {
+        return static_cast<std::uint32_t>(std::clamp(std::floor(share * count), 0.0, count - 1));
+      };
+      for (std::uint32_t y = tile_at(0.44); y <= tile_at(0.53); ++y) {
+        for (std::uint32_t x = tile_at(0.47); x <= tile_at(0.59); ++x) {
+          if (bytes_of(before, {z, x, y}) != bytes_of(after, {z, x, y})) tiles.emplace(z, x, y);
+        }
+      }
+    }
+    return tiles;
+  }
+
+ private:
+  std::string bytes_of(const std::shared_ptr<const Dataset>& dataset, TileId tile) {
+    TileRequest request = request_of(style_, Certainty::bytes).tile;
+    request.tile = tile;
+    const auto plan = plan_tile(request, dataset);
+    const TilePainter::Job job{&*plan};
+    return *painter_.paint({&job, 1}).front().value().bytes;
+  }
+
+  std::string style_;
+  TilePainter painter_{std::make_unique<SoftwareRenderer>()};
+};
+
+bool holds_all(const Tiles& all, const Tiles& some) {
+  return std::ranges::includes(all, some);
+}
+
+class ChangedTilesTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ChangedTilesTest, AreAllAndOnlyThoseThatHaveOtherBytes) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  EditedLand land(seed);
+  Drawn drawn(GetParam());
+  auto before = land.load();
+  std::size_t listed = 0;
+  std::size_t truly = 0;
+  for (int round = 0; round < 6; ++round) {
+    const std::string edit = land.edit();
+    const auto after = land.load();
+    const Tiles different = drawn.different(before, after);
+    EXPECT_EQ(changed(GetParam(), Certainty::bytes, before, after), different) << edit;
+    const Tiles by_fingerprint = changed(GetParam(), Certainty::fingerprints, before, after);
+    EXPECT_TRUE(holds_all(by_fingerprint, different)) << edit;
+    EXPECT_TRUE(
+        holds_all(changed(GetParam(), Certainty::candidates, before, after), by_fingerprint))
+        << edit;
+    EXPECT_EQ(changed(GetParam(), Certainty::bytes, after, before), different) << "and back";
+    listed += by_fingerprint.size();
+    truly += different.size();
+    before = after;
+  }
+  // The others show a change that is too small for any pixel.
+  EXPECT_LE(listed, truly * 3 / 2 + 60);
+}
+
+INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
+                         ::testing::Values("", "color-by=value&breaks=1,3&ramp=Blues",
+                                           "stroke=black&stroke-width=2&stroke-dasharray=5,3",
+                                           "fill-opacity=0.5&small=keep&simplify=2",
+                                           "filter=kind='wood'&simplify=0",
+                                           "highlight=3,50,60&pattern=dots"));
+
+TEST(ChangedTiles, OfTheSameDataAreNone) {
+  EditedLand land(3);
+  const auto before = land.load();
+  const auto after = land.load();
+  for (const Certainty certainty : kCertaintyNames.values()) {
+    EXPECT_THAT(changed("", certainty, before, after), ::testing::IsEmpty());
+  }
+}
+
+TEST(ChangedTiles, EndAtTheZoomWithTooMany) {
+  EditedLand one(3);
+  EditedLand other(4);
+  ChangeRequest request = request_of("", Certainty::candidates);
+  request.zooms = {0, 24};
+  request.most_tiles = 5000;
+  const auto found = changed_tiles(request, one.load(), other.load());
+  EXPECT_FALSE(found->is_complete);
+  EXPECT_GT(found->zooms.last, 8);
+  EXPECT_LT(found->zooms.last, 14);
+  EXPECT_EQ(found->tiles.back().z, found->zooms.last);
+}
+
+TEST(ChangedTiles, ZoomsAreParsed) {
+  EXPECT_EQ(parse_zooms("7")->first, 7);
+  EXPECT_EQ(parse_zooms("0-24")->last, 24);
+  for (const char* text :
+       {"", "-", "3-", "-3", "4-3", "0-25", "a", "1-2-3", "1 -2", "99999999999"}) {
+    EXPECT_EQ(parse_zooms(text), std::nullopt) << text;
+  }
+}
+
+TEST(TileList, IsWrittenInEveryFormat) {
+  const std::vector<TileId> tiles = {{0, 0, 0}, {3, 4, 2}};
+  EXPECT_EQ(tile_list(tiles, TileListFormat::text), "0/0/0\n3/4/2\n");
+  EXPECT_EQ(tile_list({}, TileListFormat::text), "");
+  EXPECT_EQ(tile_list(tiles, TileListFormat::json), "[\"0/0/0\",\"3/4/2\"]\n");
+  EXPECT_EQ(tile_list({}, TileListFormat::json), "[]\n");
+  const std::string geojson = tile_list(tiles, TileListFormat::geojson);
+  EXPECT_THAT(geojson, ::testing::HasSubstr(R"("properties":{"z":3,"x":4,"y":2})"));
+  EXPECT_THAT(geojson, ::testing::HasSubstr("[[[0.0000000,40.9798981],[45.0000000,40.9798981],"
+                                            "[45.0000000,66.5132604],[0.0000000,66.5132604],"
+                                            "[0.0000000,40.9798981]]]"));
+}
+
+}  // namespace
+}  // namespace trapeze
