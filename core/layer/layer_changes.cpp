@@ -118,7 +118,8 @@ void Summary::hash_edges() {
 void Summary::hash_identities(Ids ids) {
   const FeatureTable& features = layer_.features();
   std::vector<std::uint64_t> names;
-  for (const Field& field : features.fields()) names.push_back(hash_of(std::string_view(field.name)));
+  for (const Field& field : features.fields())
+    names.push_back(hash_of(std::string_view(field.name)));
   identities_.reserve(rows());
   for (std::uint32_t row = 0; row < rows(); ++row) {
     SetHash hash;
@@ -252,13 +253,9 @@ void Summary::append_motes(HashedPlaces& places) const {
 void Summary::append_pairs(HashedPlaces& places) const {
   for (const FeatureOverlap& pair : layer_.overlaps().pairs()) {
     if (pair.row > pair.other) continue;  // the one that is above the other
-    const Box& one = boxes_[pair.row];
-    const Box& other = boxes_[pair.other];
-    const Box both{std::max(one.min_x, other.min_x), std::max(one.min_y, other.min_y),
-                   std::min(one.max_x, other.max_x), std::min(one.max_y, other.max_y)};
     places.emplace_back(hash_of(hashes_[pair.row].low(), hashes_[pair.other].low(),
                                 std::uint64_t{pair.width} << 32 | pair.along),
-                        LayerChanges::Place{both, kAlways});
+                        LayerChanges::Place{boxes_[pair.row], kAlways, false, boxes_[pair.other]});
   }
 }
 
@@ -337,11 +334,17 @@ class TileMarks {
         last_((std::int64_t{1} << drawing.zoom) - 1),
         most_(most) {}
 
-  /// What lies in the box, or near it.
-  void mark(double min_x, double min_y, double max_x, double max_y) {
-    const std::int64_t last_row = tile_at(max_y + reach_);
-    for (std::int64_t row = tile_at(min_y - reach_); row <= last_row; ++row) {
-      mark_row(row, tile_at(min_x - reach_), tile_at(max_x + reach_));
+  /// Where the boxes of the place lie, and near it.
+  void mark(const LayerChanges::Place& place) {
+    Range range = range_of(place.box);
+    if (!place.other.is_empty()) {
+      const Range other = range_of(place.other);
+      range = {std::max(range.first_row, other.first_row), std::min(range.last_row, other.last_row),
+               std::max(range.first_column, other.first_column),
+               std::min(range.last_column, other.last_column)};
+    }
+    for (std::int64_t row = range.first_row; row <= range.last_row; ++row) {
+      mark_row(row, range.first_column, range.last_column);
     }
   }
   /// Whatever the piece comes near to.
@@ -387,6 +390,17 @@ class TileMarks {
     std::uint64_t weight;
   };
 
+  struct Range {
+    std::int64_t first_row;
+    std::int64_t last_row;
+    std::int64_t first_column;
+    std::int64_t last_column;
+  };
+
+  Range range_of(const Box& box) const {
+    return {tile_at(box.min_y - reach_), tile_at(box.max_y + reach_), tile_at(box.min_x - reach_),
+            tile_at(box.max_x + reach_)};
+  }
   std::int64_t tile_at(double cells) const {
     const auto tile =
         static_cast<std::int64_t>(std::floor((cells - kGridMin) / static_cast<double>(side_)));
@@ -468,8 +482,7 @@ std::vector<TileId> tiles_with_changes(const LayerChanges& changes, const TileDr
   const Level resolution = std::min(drawing.level, drawing.pixel_level);
   for (const LayerChanges::Place& place : changes.places) {
     if (!place.lifespan.contains(place.is_dust ? resolution : drawing.level)) continue;
-    if (place.box.is_empty()) continue;
-    marks.mark(place.box.min_x, place.box.min_y, place.box.max_x, place.box.max_y);
+    if (!place.box.is_empty()) marks.mark(place);
   }
   return marks.take();
 }

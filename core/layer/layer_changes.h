@@ -37,6 +37,9 @@ struct LayerChanges {
     Box box;
     Lifespan lifespan;
     bool is_dust = false;  // its lifespan is of the resolution, not of the tolerance
+    /// If it is not empty, only pictures matter that show something of both boxes: where a feature
+    /// lies over another, all of their outlines is cut up.
+    Box other = {};
   };
 
   std::vector<Side> sides;

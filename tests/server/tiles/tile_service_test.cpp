@@ -350,12 +350,58 @@ TEST_F(TileServiceTest, AFailingBandFailsTheTileAndNotTheWorkers) {
 TEST_F(TileServiceTest, StoppingEndsTheBandsOfALargeTile) {
   start({}, 3);
   std::promise<TileAnswer> promise;
-  const TilePlan large = busy_plan({1, 0, 0}, 4);
+  const TilePlan large = busy_plan({0, 0, 0}, 4);
   service_->submit(order_of(large, TileService::Cost::dear),
                    [&promise](const TileAnswer& answer) { promise.set_value(answer); });
   wait_until_drawing(3);
   service_.reset();  // with the gate shut
   EXPECT_EQ(promise.get_future().get().outcome, TileOutcome::saturated);
+}
+
+TEST_F(TileServiceTest, ATileThatIsKeptIsNotDrawn) {
+  open();
+  const auto bytes = std::make_shared<const std::string>("kept");
+  std::string asked;
+  TileServiceOptions options;
+  options.find_kept = [&](const std::string& fingerprint) {
+    asked = fingerprint;
+    return TileCache::Tile{bytes, TileHint::full};
+  };
+  start(options);
+  const TileAnswer answer = submit(1).get();
+  EXPECT_EQ(answer.outcome, TileOutcome::kept);
+  EXPECT_EQ(answer.tile.bytes, bytes);
+  EXPECT_EQ(answer.tile.hint, TileHint::full);
+  EXPECT_EQ(answer.tile.fingerprint, asked);
+  EXPECT_EQ(gate_.begun, 0);
+}
+
+TEST_F(TileServiceTest, WhatAllHoldWhoAskIsNotDrawn) {
+  open();
+  start();
+  const auto ask = [this](const TilePlan& plan, TileService::Holds holds) {
+    auto promise = std::make_shared<std::promise<TileAnswer>>();
+    service_->submit(
+        order_of(plan, TileService::Cost::dear),
+        [promise](const TileAnswer& answer) { promise->set_value(answer); }, std::move(holds));
+    return promise->get_future().get();
+  };
+  for (const TilePlan& tile : {plan(1), busy_plan({1, 0, 0}, 4)}) {  // and one in bands
+    const TileAnswer drawn = ask(tile, {});
+    EXPECT_EQ(drawn.outcome, TileOutcome::drawn);
+    const int begun = gate_.begun;
+    const auto holds = [&](const std::string& fingerprint) {
+      return fingerprint == drawn.tile.fingerprint;
+    };
+    const TileAnswer held = ask(tile, holds);
+    EXPECT_EQ(held.outcome, TileOutcome::held);
+    EXPECT_EQ(held.tile.bytes, nullptr);
+    EXPECT_EQ(held.tile.fingerprint, drawn.tile.fingerprint);
+    EXPECT_EQ(gate_.begun, begun);
+    const TileAnswer again = ask(tile, [](const std::string&) { return false; });
+    EXPECT_EQ(again.outcome, TileOutcome::drawn);
+    EXPECT_EQ(*again.tile.bytes, *drawn.tile.bytes);
+  }
 }
 
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
