@@ -1,8 +1,8 @@
 #include "server/changes/changed_tiles.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -19,13 +19,6 @@ namespace {
 
 /// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
 constexpr double kReachOfDust = 3;
-
-std::optional<int> parse_zoom(std::string_view text) {
-  int zoom = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), zoom);
-  const bool is_whole = error == std::errc() && end == text.data() + text.size();
-  return is_whole && 0 <= zoom && zoom <= kMaxZoom ? std::optional(zoom) : std::nullopt;
-}
 
 /// The states of one layer of the request, and what may look different between them.
 struct ComparedLayer {
@@ -157,14 +150,6 @@ class Comparison {
 };
 
 }  // namespace
-
-std::optional<ZoomRange> parse_zooms(std::string_view text) {
-  const std::size_t dash = text.find('-');
-  const auto first = parse_zoom(text.substr(0, dash));
-  const auto last = dash == std::string_view::npos ? first : parse_zoom(text.substr(dash + 1));
-  if (!first || !last || *first > *last) return std::nullopt;
-  return ZoomRange{*first, *last};
-}
 
 Result<ChangedTiles> changed_tiles(const ChangeRequest& request,
                                    const std::shared_ptr<const Dataset>& before,

@@ -6,27 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include "core/grid/name_table.h"
 #include "core/grid/web_mercator.h"
 #include "server/base/result.h"
+#include "server/base/zoom_range.h"
 #include "server/data/dataset.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
-
-struct ZoomRange {
-  int first = 0;
-  int last = 0;
-
-  friend bool operator==(const ZoomRange&, const ZoomRange&) = default;
-};
-
-/// "3-12", or one zoom; nothing if it is neither, or not between 0 and kMaxZoom.
-std::optional<ZoomRange> parse_zooms(std::string_view text);
 
 /// How sure it is that a tile that is listed has changed.
 enum class Certainty : std::uint8_t {

@@ -113,6 +113,12 @@ struct AdminConfig {
   std::uint16_t port = 0;  // 0: there is none
 };
 
+/// What is found out when the data has changed.
+struct ChangesConfig {
+  std::string zooms;    // a range of them, of the tiles that are listed; empty: none are
+  std::string command;  // for a shell, see ChangeLog; empty: none
+};
+
 struct ViewerConfig {
   std::string title = "Trapeze";
   std::string start;  // what stands after # in its address, where the address has nothing
@@ -125,6 +131,7 @@ struct Config {
   TextConfig text;
   LogConfig log;
   AdminConfig admin;
+  ChangesConfig changes;
   std::map<std::string, StyleQuery> styles;  // by name, for which is_url_name() holds
   std::vector<LayerConfig> layers;           // names are unique
 };

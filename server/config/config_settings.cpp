@@ -12,6 +12,7 @@
 #include "core/borders/gap_closing.h"
 #include "core/graph/topological_consistency.h"
 #include "server/base/url.h"
+#include "server/base/zoom_range.h"
 #include "server/styles/style_parameters.h"
 
 namespace trapeze {
@@ -528,6 +529,19 @@ void append_log_and_admin(std::vector<Setting<Config>>& all) {
   all.push_back(integer<Config>(
       "admin.port", [](auto& c) -> auto& { return c.admin.port; }, 0, 65'535,
       "its port; 0: there is none"));
+  all.push_back(parsed<Config>(
+      "changes.zooms", [](auto& c) -> auto& { return c.changes.zooms; },
+      "a zoom or a range of them such as \"0-14\", or nothing",
+      [](const std::string& text) {
+        return text.empty() || parse_zooms(text) ? std::optional(text) : std::nullopt;
+      },
+      same,
+      "the zooms for which the tiles are found that may look different when layers have been read "
+      "again, for /changes at the admin address and for changes.command; empty: none"));
+  all.push_back(text<Config>(
+      "changes.command", [](auto& c) -> auto& { return c.changes.command; },
+      "what a shell is to do then: its input has a line \"LAYER Z/X/Y\" for each tile; empty: "
+      "nothing"));
 }
 
 }  // namespace

@@ -359,15 +359,17 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const View& vie
                               const FeatureClasses* classes, DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
   const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
+  // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
+  // picture.
+  Layer::Selection around = selection;
+  around.box = with_margin(selection.box, 2 * view.cells_per_pixel);
   if (classes == nullptr && is_kept) {
-    layer_->small_polygons(selection, tools.places);
+    layer_->small_polygons(around, tools.places);
     for (const Box& place : tools.places) class_drawing(0).add_place(widened(place, pixel), false);
   }
   const GrainIndex::Births births = births_of_dust(*paint_, selection);
   if (births.is_empty()) return;
-  const double margin = 2 * view.cells_per_pixel;  // a mote may reach into the next pixel
-  tools.dust.gather(layer_->grains(),
-                    {with_margin(selection.box, margin), births, view.cells_per_pixel},
+  tools.dust.gather(layer_->grains(), {around.box, births, view.cells_per_pixel},
                     classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
   for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
