@@ -69,6 +69,30 @@ Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) {
           clamped(std::ceil(std::max(left.max, right.max))), y1};
 }
 
+bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box) {
+  const double top = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
+  const double bottom = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
+  if (top > bottom || mesh.vertices[trapezoid.top].y == mesh.vertices[trapezoid.bottom].y) {
+    return false;
+  }
+  // The heights at which a line is to the west of a place, or to the east of it, as a span.
+  double from = top;
+  double to = bottom;
+  const auto narrow = [&](double x_top, double x_bottom, double x, bool is_west_wanted) {
+    const double at_top = is_west_wanted ? x - x_top : x_top - x;  // >= 0 where it is as wanted
+    const double at_bottom = is_west_wanted ? x - x_bottom : x_bottom - x;
+    if (at_top >= 0 && at_bottom >= 0) return;
+    const double crossing = top + (bottom - top) * (at_top / (at_top - at_bottom));
+    if (at_top < 0) from = at_bottom < 0 ? to + 1 : std::max(from, crossing);
+    if (at_bottom < 0 && at_top >= 0) to = std::min(to, crossing);
+  };
+  const EdgeLine left(mesh, trapezoid.left);
+  const EdgeLine right(mesh, trapezoid.right);
+  narrow(left.x_at(top), left.x_at(bottom), box.max_x, true);
+  narrow(right.x_at(top), right.x_at(bottom), box.min_x, false);
+  return from <= to;
+}
+
 bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box) {
   // A tile within a large polygon meets a few trapezoids; with more than this it has a boundary.
   constexpr std::size_t kMaxTrapezoids = 48;

@@ -16,6 +16,11 @@ namespace trapeze {
 /// The smallest box around a trapezoid, rounded outwards to whole cells.
 Box box_of(const MeshView& mesh, const MeshTrapezoid& trapezoid);
 
+/// Whether a trapezoid whose left edge is to the west of its right one has a place in common with
+/// the box. How a polygon is cut into trapezoids does not matter: one of them meets the box if the
+/// polygon does, but for roundings. False for one without height.
+bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box);
+
 /// True only if the trapezoids cover the whole box; may be false although they do, because only the
 /// first few dozen are examined. None of them has negative area.
 bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box);

@@ -22,7 +22,7 @@ std::string_view status_of(const ServerFigures& figures) {
 }
 
 HttpResponse nothing_here() {
-  return problem_response({404, "There are /metrics, /ready and /health here."});
+  return problem_response({404, "There are /metrics, /ready, /health and /changes here."});
 }
 
 Json layer_json(const ServedLayer& served) {
@@ -66,6 +66,7 @@ HttpResponse AdminSite::answer(const HttpRequest& request) const {
   }
   const auto target = split_target(request.target);
   const std::string_view path = target ? target->path : std::string_view();
+  if (path == "/changes") return answer_changes(*target);
   const Area area = area_of(path);
   if (path.size() != 1 + name_of(area).size()) return nothing_here();
   switch (area) {
@@ -84,6 +85,40 @@ HttpResponse AdminSite::answer_ready() const {
   const ServerFigures figures = sources_.figures();
   const bool is_ready = figures.data != nullptr && !figures.is_stopping;
   return plain(is_ready ? 200 : 503, "application/json", state_json(figures, sources_.problem()));
+}
+
+HttpResponse AdminSite::answer_changes(const Target& target) const {
+  if (sources_.changes == nullptr) {
+    return problem_response({404,
+                             "Changes are not looked for: the configuration sets no "
+                             "changes.zooms."});
+  }
+  const auto query = decode_query(target.query);
+  if (!query || query->size() != 1 || query->front().first != "since") {
+    return problem_response({400,
+                             "This takes the generation from which on changes are listed, and "
+                             "nothing else: /changes?since=GENERATION."});
+  }
+  const std::string& since = query->front().second;
+  const ServerFigures figures = sources_.figures();
+  if (figures.data == nullptr) return problem_response({503, "The data is still being loaded."});
+  const std::string& generation = figures.data->generation();
+  const ChangeLog::Answer answer = sources_.changes->between(since, generation);
+  switch (answer.state) {
+    case ChangeLog::Answer::State::pending:
+      return problem_response({503, "What has changed is still being found out. Ask again."});
+    case ChangeLog::Answer::State::unknown:
+      return problem_response(
+          {404,
+           "That generation is not among the last few of this server: all tiles "
+           "may have changed.",
+           "since",
+           since,
+           {}});
+    case ChangeLog::Answer::State::known:
+      break;
+  }
+  return plain(200, "application/json", changes_json(since, generation, answer.layers));
 }
 
 }  // namespace trapeze

@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "server/base/url.h"
+#include "server/changes/change_log.h"
 #include "server/http/http_message.h"
 #include "server/service/metrics.h"
 
@@ -13,14 +15,17 @@ namespace trapeze {
 /// wrong when the layers were last read, empty if nothing did.
 std::string state_json(const ServerFigures& figures, const std::string& problem);
 
-/// Answers /metrics, /ready (503 with the same details while the server is not ready) and /health;
-/// everything else with 404. Thread-safe as far as `figures`, `problem` and `metrics` are.
+/// Answers /metrics, /ready (503 with the same details while the server is not ready), /health and
+/// /changes?since=GENERATION (503 while they are being found, 404 for a generation that is not
+/// among the last few); everything else with 404. Thread-safe as far as `figures`, `problem` and
+/// `metrics` are.
 class AdminSite {
  public:
   struct Sources {
     std::function<ServerFigures()> figures;
     std::function<std::string()> problem;
     std::function<std::string()> metrics;
+    const ChangeLog* changes = nullptr;  // outlives the site; null: none are found
   };
   explicit AdminSite(Sources sources) : sources_(std::move(sources)) {}
 
@@ -28,6 +33,7 @@ class AdminSite {
 
  private:
   HttpResponse answer_ready() const;
+  HttpResponse answer_changes(const Target& target) const;
 
   const Sources sources_;
 };

@@ -23,13 +23,14 @@ struct Reloader::Retired {
 };
 
 Reloader::Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-                   TileService& tiles, Metrics& metrics, std::function<void()> give_up,
-                   std::function<void()> is_loaded)
+                   TileService& tiles, Metrics& metrics, ChangeLog* changes,
+                   std::function<void()> give_up, std::function<void()> is_loaded)
     : source_(std::move(source)),
       watch_(watch),
       data_(data),
       tiles_(tiles),
       metrics_(metrics),
+      changes_(changes),
       give_up_(std::move(give_up)),
       is_loaded_(std::move(is_loaded)),
       retired_(std::make_shared<Retired>()) {}
@@ -119,7 +120,8 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   files_ = watched_files(layers);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
-  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, data_.get().get(), &to_read_);
+  const auto before = data_.get();
+  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, before.get(), &to_read_);
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);
@@ -131,6 +133,7 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
              }});
   metrics_.count_load(true);
   spdlog::info("ready: {} layers, generation {}", layers.size(), served->generation());
+  if (changes_ != nullptr && before != nullptr) changes_->note(before, data_.get());
 }
 
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/changes/change_log.h"
 #include "server/config/config.h"
 #include "server/data/dataset.h"
 #include "server/service/metrics.h"
@@ -36,8 +37,9 @@ class Reloader {
  public:
   /// Does nothing until start(). `watch` is the time between looks at the files, 0 for none: a
   /// change is taken up when two looks in a row see the same. All references outlive the reloader.
+  /// `changes`, if it is not null, is told of all states that follow each other.
   Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-           TileService& tiles, Metrics& metrics, std::function<void()> give_up,
+           TileService& tiles, Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
            std::function<void()> is_loaded);
   /// Waits for the end of what is being read.
   ~Reloader();
@@ -80,6 +82,7 @@ class Reloader {
   CurrentDataset& data_;
   TileService& tiles_;
   Metrics& metrics_;
+  ChangeLog* const changes_;
   const std::function<void()> give_up_;
   const std::function<void()> is_loaded_;
   const std::shared_ptr<Retired> retired_;

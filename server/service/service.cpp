@@ -149,10 +149,14 @@ Service::Service(const Config& config, LayerSource source)
                          ? fmt::format("open {}", local_url(config.server.address, server_->port()))
                          : fmt::format("the layers are at {}catalog",
                                        local_url(config.server.address, server_->port()));
+  if (const auto zooms = parse_zooms(config.changes.zooms)) {
+    changes_ = std::make_unique<ChangeLog>(ChangeLog::Options{*zooms, config.changes.command});
+  }
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(
       std::move(source), milliseconds(config.server.watch_ms), data_, *tiles_, metrics_,
-      [this] { server_->stop(); }, [this] { spdlog::info("{}", address_to_open_); });
+      changes_.get(), [this] { server_->stop(); },
+      [this] { spdlog::info("{}", address_to_open_); });
 }
 
 Service::~Service() = default;
@@ -174,7 +178,7 @@ void Service::open_server(const Config& config) {
 void Service::open_admin(const Config& config) {
   admin_site_ = std::make_unique<AdminSite>(
       AdminSite::Sources{[this] { return figures(); }, [this] { return reloader_->last_problem(); },
-                         [this] { return metrics_text(); }});
+                         [this] { return metrics_text(); }, changes_.get()});
   HttpServerOptions options;
   options.address = config.admin.address;
   options.port = config.admin.port;

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/changes/change_log.h"
 #include "server/config/config.h"
 #include "server/data/dataset.h"
 #include "server/http/http_server.h"
@@ -64,6 +65,7 @@ class Service {
   std::unique_ptr<Site> site_;
   std::vector<std::string> where_;  // it listens, for the log
   std::unique_ptr<HttpServer> server_;
+  std::unique_ptr<ChangeLog> changes_;     // null if changes are not looked for
   std::unique_ptr<AdminSite> admin_site_;  // these two are null if there is no admin address
   std::unique_ptr<HttpServer> admin_;
   std::string address_to_open_;

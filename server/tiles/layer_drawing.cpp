@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/mesh/mesh_index.h"
 #include "render/mask/mask_digest.h"
 
 namespace trapeze {
@@ -228,6 +229,7 @@ LayerDrawing::ClassDrawing& LayerDrawing::drawing_beneath(std::uint8_t number, s
 
 void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
                                  DrawingTools& tools) {
+  if (!layer_->overlaps().empty()) leave_those_that_meet(selection.box, tools.ranges);
   has_stack_ = find_stack(classes, selection, tools);
   if (classes == nullptr && !has_stack_) {
     layer_->keep_uppermost(tools.ranges);
@@ -259,6 +261,18 @@ void LayerDrawing::part_by_class(const FeatureClasses* classes, const Layer::Sel
   });
   if (uppermost) add(*uppermost);
   if (has_stack_) add_stack(classes, selection, tools);
+}
+
+// Which features lie over each other here must not hang on what the index selects beyond the box.
+void LayerDrawing::leave_those_that_meet(const Box& box,
+                                         std::vector<TrapezoidRange>& ranges) const {
+  std::vector<TrapezoidRange> left;
+  const MeshView& mesh = layer_->mesh();
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const bool is_dust = layer_->feature_of(i) == Layer::kNoFeature;
+    if (is_dust || meets(mesh, mesh.trapezoids[i], box)) append_trapezoid(i, left);
+  });
+  ranges.swap(left);
 }
 
 bool LayerDrawing::is_raised(std::uint8_t number) const {

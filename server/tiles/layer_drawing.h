@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "core/grid/cancellation.h"
+#include "core/grid/set_hash.h"
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
-#include "core/grid/set_hash.h"
 #include "render/mask/stroke.h"
 #include "render/picture/compose.h"
 #include "server/base/content_hash.h"
@@ -144,6 +144,7 @@ class LayerDrawing {
   ClassDrawing& drawing_beneath(std::uint8_t number, std::uint8_t alpha);
   void part_by_class(const FeatureClasses* classes, const Layer::Selection& selection,
                      DrawingTools& tools);
+  void leave_those_that_meet(const Box& box, std::vector<TrapezoidRange>& ranges) const;
   bool find_stack(const FeatureClasses* classes, const Layer::Selection& selection,
                   DrawingTools& tools);
   void add_stack(const FeatureClasses* classes, const Layer::Selection& selection,
