@@ -135,6 +135,82 @@ TEST_F(ServiceTest, ReadsItsLayersAgainWhenTold) {
   EXPECT_TRUE(holds_within(10s, [&] { return tag() == old_tag; })) << "same data, same tags";
 }
 
+TEST_F(ServiceTest, TilesThatLookAsBeforeAreHeldAndKeptAfterReadingAgain) {
+  start();
+  const RawResponse empty = get("/tiles/shape/9/510/510.png");
+  const RawResponse old_tile = get(kTile);
+  replace_file("west.geojson");
+  service_->reload();
+  ASSERT_TRUE(holds_within(10s, [&] { return tag() != old_tile.headers.at("etag"); }));
+  // In a place that nobody asked for yet.
+  const RawResponse other = get("/tiles/shape/9/509/509.png");
+  EXPECT_EQ(other.headers.at("etag"), empty.headers.at("etag"));
+  EXPECT_EQ(other.headers.at("x-cache"), "HIT");
+  const RawResponse held =
+      RawClient(service_->port())
+          .get("/tiles/shape/9/508/508.png", "If-None-Match: " + empty.headers.at("etag") + "\r\n");
+  EXPECT_EQ(held.status, 304);
+  replace_file("rings.geojson");
+  service_->reload();
+  ASSERT_TRUE(holds_within(10s, [&] { return tag() == old_tile.headers.at("etag"); }));
+  EXPECT_TRUE(tells("trapeze_tiles_total{outcome=\"kept\"} 2"));
+}
+
+TEST_F(ServiceTest, TellsWhichTilesHaveChanged) {
+  config_.admin.port = free_port();
+  config_.changes.zooms = "0-3";
+  config_.changes.command = "(echo $TRAPEZE_SINCE $TRAPEZE_GENERATION; cat) > " + folder_ +
+                            "/said.new; mv " + folder_ + "/said.new " + folder_ + "/said";
+  start();
+  const auto ask = [this](const std::string& since) {
+    return RawClient(config_.admin.port).get("/changes?since=" + since);
+  };
+  const auto generation = [this] {
+    return nlohmann::json::parse(get("/catalog").body).at("generation").get<std::string>();
+  };
+  const std::string first = generation();
+  EXPECT_EQ(nlohmann::json::parse(ask(first).body).at("layers").size(), 0u);
+  EXPECT_EQ(ask("0123456789abcdef").status, 404);
+  EXPECT_EQ(RawClient(config_.admin.port).get("/changes").status, 400);
+  replace_file("west.geojson");
+  service_->reload();
+  ASSERT_TRUE(holds_within(10s, [&] { return generation() != first; }));
+  ASSERT_TRUE(holds_within(10s, [&] { return ask(first).status == 200; }));
+  const auto changes = nlohmann::json::parse(ask(first).body);
+  EXPECT_EQ(changes.at("generation"), generation());
+  const auto& layer = changes.at("layers").at(0);
+  EXPECT_EQ(layer.at("name"), "shape");
+  EXPECT_EQ(layer.at("all_from_zoom"), nullptr);
+  const auto tiles = layer.at("tiles").get<std::vector<std::string>>();
+  EXPECT_EQ(tiles.front(), "0/0/0");
+  EXPECT_GT(tiles.size(), 4u);
+  EXPECT_LT(tiles.size(), 1u + 4 + 16 + 64) << "not all";
+  ASSERT_TRUE(holds_within(10s, [this] { return std::filesystem::exists(folder_ + "/said"); }));
+  std::ifstream file(folder_ + "/said");
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, first + " " + generation());
+  for (const std::string& tile : tiles) {
+    std::getline(file, line);
+    ASSERT_EQ(line, "shape " + tile);
+  }
+  // There and back again is the same tiles, since either.
+  replace_file("rings.geojson");
+  service_->reload();
+  ASSERT_TRUE(holds_within(10s, [&] { return generation() == first; }));
+  EXPECT_EQ(ask(first).body.find("shape"), std::string::npos) << "nothing since it was as it is";
+}
+
+TEST_F(ServiceTest, ACommandThatDoesNotEndIsEndedWithTheServer) {
+  config_.changes.zooms = "0";
+  config_.changes.command = "echo > " + folder_ + "/began; trap '' TERM; sleep 600";
+  start();
+  replace_file("west.geojson");
+  service_->reload();
+  ASSERT_TRUE(holds_within(10s, [this] { return std::filesystem::exists(folder_ + "/began"); }));
+  stop();  // or the test does not end
+}
+
 TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheirFileHasChanged) {
   config_.server.watch_ms = 30;
   start();
@@ -355,7 +431,7 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
   // up.
   Reloader reloader(
-      {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+      {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
   reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto draw = [&](const char* query) {
@@ -394,7 +470,7 @@ TEST(ReloaderTest, TheRendererKeepsMeshesOfLayersThatAreServedOn) {
   TileService tiles({}, std::move(renderers));
   {
     Reloader reloader(
-        {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+        {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
     reloader.start();
     ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
     const std::uint64_t mesh = data.get()->layers()[0].layer->mesh().id;
@@ -436,7 +512,7 @@ TEST(ReloaderTest, ALayerThatLostMostOfItsFeaturesIsNotTakenUnlessItMayShrink) {
   Metrics metrics;
   TileService tiles({}, make_renderers({RendererKind::software, {}}, 1).renderers);
   Reloader reloader(
-      {layers, ""}, 1h, data, tiles, metrics, [] { FAIL(); }, [] {});
+      {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
   reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto bands_served = [&data] { return data.get()->layers()[0].report.loaded; };
@@ -462,7 +538,7 @@ TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {
     throw std::runtime_error("there is no map");
   };
   Reloader reloader(
-      {layers, ""}, 0ms, data, tiles, metrics, [&] { has_given_up = true; },
+      {layers, ""}, 0ms, data, tiles, metrics, nullptr, [&] { has_given_up = true; },
       [] { FAIL() << "nothing is loaded"; });
   reloader.start();
   EXPECT_TRUE(holds_within(5s, [&] { return has_given_up.load(); }));
