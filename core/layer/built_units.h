@@ -41,7 +41,7 @@ struct FeatureUnit {
 
 /// A group of a coverage, and what became of it; see CoverageOutcome. One that failed is not kept.
 struct GroupUnit {
-  Digest digest;  // of the rings of all its features in their order
+  Digest digest;  // of the digests of its features in their order
   StoredTolerance most_tolerance;
   std::uint32_t members_end = 0;   // where its features end among the members
   std::uint32_t overlaps_end = 0;  // where its pairs end among the overlaps
@@ -56,6 +56,7 @@ struct GroupUnit {
 
 /// A feature of a group.
 struct GroupMember {
+  Digest digest;  // of its rings as they were grouped
   std::uint32_t row = 0;
   std::uint32_t is_apart = 0;  // not in the graph of the group, but a unit by itself
 };
@@ -95,9 +96,9 @@ struct BuiltUnits {
   BuiltUnitsView view() const { return {features, groups, members, overlaps}; }
 };
 
-/// Of the rings of a feature that is built by itself.
+/// Of the rings of a feature.
 Digest digest_of(const Rings& rings);
-/// Of those of the features of a group. Never that of a single feature.
-Digest digest_of(std::span<const Rings* const> features);
+/// Of a group of features with these digests. Never that of a single feature.
+Digest digest_of(std::span<const Digest> features);
 
 }  // namespace trapeze

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/borders/coverage_groups.h"
+
 namespace trapeze {
 namespace {
 
@@ -60,6 +62,13 @@ std::size_t EarlierLayer::Table::slot_of(std::span<const Unit> units, const Dige
 }
 
 template <typename Unit>
+std::optional<std::uint32_t> EarlierLayer::Table::find(std::span<const Unit> units,
+                                                       const Digest& digest) const {
+  const std::uint32_t first = slots_[slot_of(units, digest)];
+  return first == kNone ? std::nullopt : std::optional(first);
+}
+
+template <typename Unit>
 std::optional<std::uint32_t> EarlierLayer::Table::claim(std::span<const Unit> units,
                                                         const Digest& digest) {
   const std::uint32_t first = slots_[slot_of(units, digest)];
@@ -76,13 +85,16 @@ EarlierLayer::EarlierLayer(std::shared_ptr<const Layer> layer)
       arrays_(arrays_of(*layer_)),
       units_(copy_of(arrays_.units)),
       features_(units().features),
-      groups_(units().groups) {
+      groups_(units().groups),
+      members_(units().members) {
   find_first_rows();
 }
 
 void EarlierLayer::find_first_rows() {
   first_rows_.resize(arrays_.cells.ids.size());
   std::iota(first_rows_.begin(), first_rows_.end(), 0u);
+  is_member_.resize(first_rows_.size());
+  for (const GroupMember& member : units_.members) is_member_[member.row] = true;
   for (std::size_t g = 0; g < units_.groups.size(); ++g) {
     std::optional<std::uint32_t> first;
     for (const GroupMember& member : units().members_of(g)) {
@@ -92,6 +104,39 @@ void EarlierLayer::find_first_rows() {
       first_rows_[member.row] = std::min(*first, member.row);
     }
   }
+}
+
+/// A group is known if all its features are there: which of several with the same rings does not
+/// matter, as these are tied to the same others.
+std::vector<std::uint32_t> EarlierLayer::known_groups(std::span<const Digest> features,
+                                                      bool are_drawn) const {
+  std::vector<std::uint32_t> group_of(units_.members.size());
+  for (std::uint32_t g = 0; g < units_.groups.size(); ++g) {
+    const std::size_t end = units_.groups[g].members_end;
+    const std::size_t begin = end - units().members_of(g).size();
+    std::fill(group_of.begin() + static_cast<std::ptrdiff_t>(begin),
+              group_of.begin() + static_cast<std::ptrdiff_t>(end), g);
+  }
+  std::vector<std::uint32_t> known(features.size(), kUnknownGroup);
+  std::vector<bool> is_there(units_.members.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (const auto member = members_.find(units().members, features[i])) {
+      is_there[*member] = true;
+      known[i] = group_of[*member];
+    } else if (const auto unit = features_.find(units().features, features[i]);
+               unit && are_drawn && !is_member_[units_.features[*unit].row]) {
+      known[i] = static_cast<std::uint32_t>(units_.groups.size()) + *unit;
+    }
+  }
+  std::vector<bool> is_broken(units_.groups.size());
+  for (std::size_t m = 0; m < units_.members.size(); ++m) {
+    const auto first = members_.find(units().members, units_.members[m].digest);
+    if (!is_there[*first]) is_broken[group_of[m]] = true;
+  }
+  for (std::uint32_t& group : known) {
+    if (group < is_broken.size() && is_broken[group]) group = kUnknownGroup;
+  }
+  return known;
 }
 
 std::optional<std::uint32_t> EarlierLayer::claim_feature(const Digest& digest) {

@@ -36,6 +36,11 @@ class EarlierLayer {
   std::optional<std::uint32_t> claim_feature(const Digest& digest);
   std::optional<std::uint32_t> claim_group(const Digest& digest, std::size_t members);
 
+  /// What is known of the grouping of features with rings of these digests, for group_features().
+  /// `are_drawn` says that what is drawn of a feature by itself are the rings by which it was
+  /// grouped, so that something is known of features that were in no group.
+  std::vector<std::uint32_t> known_groups(std::span<const Digest> features, bool are_drawn) const;
+
   /// Whether there is another feature of the same digest as that unit.
   bool has_double(std::uint32_t feature_unit) const { return features_.has_double(feature_unit); }
 
@@ -52,6 +57,9 @@ class EarlierLayer {
     /// The next unit of that digest that nobody has claimed.
     template <typename Unit>
     std::optional<std::uint32_t> claim(std::span<const Unit> units, const Digest& digest);
+    /// The first unit of that digest.
+    template <typename Unit>
+    std::optional<std::uint32_t> find(std::span<const Unit> units, const Digest& digest) const;
     /// Whether there are several units of the digest of that one.
     bool has_double(std::uint32_t unit) const { return has_double_[unit] != 0; }
 
@@ -75,7 +83,9 @@ class EarlierLayer {
   const BuiltUnits units_;  // a copy, which nobody changes
   Table features_;
   Table groups_;
+  Table members_;
   std::vector<std::uint32_t> first_rows_;
+  std::vector<bool> is_member_;  // by row: of a group
 };
 
 }  // namespace trapeze

@@ -1,7 +1,9 @@
 #include "core/layer/join_stocks.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -76,12 +78,6 @@ struct GrowingMesh {
   std::vector<Lifespan> lifespans;
   std::vector<std::uint32_t> feature_of;
 
-  /// Growing by doubling would leave much of the room unused.
-  void add_room(std::size_t more) {
-    trapezoids.reserve(trapezoids.size() + more);
-    lifespans.reserve(lifespans.size() + more);
-    feature_of.reserve(feature_of.size() + more);
-  }
   void add(const MeshTrapezoid& trapezoid, Lifespan lifespan, std::uint32_t row) {
     trapezoids.push_back(trapezoid);
     lifespans.push_back(lifespan);
@@ -98,13 +94,10 @@ struct GrowingLayer {
   std::vector<MilestoneNote> milestone_notes;
   GrowingMesh mesh;
   GrowingMesh horizontal_edges;  // each as a trapezoid without height, between the edge and itself
-  std::vector<FeatureGrain> grains;
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
   std::vector<std::uint32_t> graph_of;  // by row: the first row of its graph
   std::vector<FeatureOverlap> shared;   // of features of one graph
-
-  MeshView view() const { return {0, vertices, edges, mesh.trapezoids}; }
 };
 
 FeatureGrain stored(const Grain& grain) {
@@ -174,6 +167,17 @@ void note_graphs(const std::vector<PartOf>& parts, const TakenOver& taken,
   for (const TakenRow& row : taken.rows()) note(row.row, row.first);
 }
 
+std::vector<FeatureGrain> take_grains(std::vector<Stock>& stocks,
+                                      const std::vector<PartOf>& parts) {
+  std::vector<FeatureGrain> grains;
+  const auto as_it_is = [](auto&, const PartOf&) {};
+  for (const Grain& grain :
+       take_items(stocks, parts, &History::grains, &Stock::Part::grains, as_it_is)) {
+    grains.push_back(stored(grain));
+  }
+  return grains;
+}
+
 /// Those of the earlier layer, of dust among them; what is not used goes later.
 void begin_with(const LayerArrays& earlier, GrowingLayer& layer) {
   const OutlineView& outline = earlier.outline;
@@ -190,11 +194,9 @@ void begin_with(const LayerArrays& earlier, GrowingLayer& layer) {
   }
 }
 
-void concatenate_histories(std::vector<Stock>& stocks, const TakenOver& taken,
+void concatenate_histories(std::vector<Stock>& stocks, const std::vector<PartOf>& parts,
                            const LayerArrays& earlier, GrowingLayer& layer) {
   using Part = Stock::Part;
-  const std::vector<PartOf> parts =
-      in_order_of_rows(stocks, earlier.vertices.size(), earlier.edges.size());
   const auto as_it_is = [](auto&, const PartOf&) {};
   layer.mesh.trapezoids = take_items(stocks, parts, &History::trapezoids, &Part::trapezoids,
                                      [](MeshTrapezoid& t, const PartOf& part) {
@@ -203,13 +205,9 @@ void concatenate_histories(std::vector<Stock>& stocks, const TakenOver& taken,
                                        t.left += part.edge_shift;
                                        t.right += part.edge_shift;
                                      });
-  note_graphs(parts, taken, layer.graph_of);
   layer.mesh.feature_of = take_items(stocks, parts, &History::rows, &Part::trapezoids, as_it_is);
   layer.mesh.lifespans =
       take_items(stocks, parts, &History::lifespans, &Part::trapezoids, as_it_is);
-  for (const Grain& grain : take_items(stocks, parts, &History::grains, &Part::grains, as_it_is)) {
-    layer.grains.push_back(stored(grain));
-  }
   layer.edges = take_items(
       stocks, parts, &History::edges, &Part::edges,
       [](MeshEdge& e, const PartOf& part) {
@@ -231,7 +229,6 @@ void concatenate_histories(std::vector<Stock>& stocks, const TakenOver& taken,
                  [](HorizontalEdge& horizontal_edge, const PartOf& part) {
                    horizontal_edge.edge += part.edge_shift;
                  });
-  layer.horizontal_edges.add_room(horizontal_edges.size());
   for (const HorizontalEdge& it : horizontal_edges) {
     const MeshEdge& edge = layer.edges[it.edge];
     layer.horizontal_edges.add({edge.upper, edge.lower, it.edge, it.edge}, it.lifespan, it.row);
@@ -286,26 +283,30 @@ void take_shared(const TakenOver& taken, std::vector<FeatureOverlap>& shared) {
   }
 }
 
-GrowingLayer concatenate(std::vector<Stock> stocks, const TakenOver& taken) {
-  const LayerArrays earlier = taken.empty() ? LayerArrays() : taken.earlier().arrays();
-  check_counts(stocks, earlier);
-  GrowingLayer layer;
-  concatenate_histories(stocks, taken, earlier, layer);
-  concatenate_outlines(stocks, taken, layer);
-  for (const Stock& stock : stocks) {
-    layer.shared.insert(layer.shared.end(), stock.shared.begin(), stock.shared.end());
-  }
-  take_shared(taken, layer.shared);
-  return layer;
+/// Vertices of the graphs that a layer is built of.
+std::size_t count_vertices(const LayerContents& layer) {
+  std::size_t vertices = 0;
+  for (const FeatureUnit& unit : layer.feature_units) vertices += unit.vertices;
+  for (const GroupUnit& unit : layer.group_units) vertices += unit.vertices;
+  return vertices;
 }
 
-template <class T>
-void permute(std::vector<T>& items, const LargeArray<KeyedIndex>& order, unsigned threads) {
-  std::vector<T> moved(items.size());
-  for_each_piece(order.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) moved[i] = items[order[i].index];
-  });
-  items.swap(moved);
+/// The dust of a layer.
+struct Dust {
+  std::vector<FeatureGrain> grains;  // in order for the index
+  std::vector<Mote> motes;
+};
+
+/// What small loops left behind where features are not told apart: a place that others cover is as
+/// it was.
+std::vector<Grain> uncovered(const std::vector<FeatureGrain>& grains) {
+  std::vector<Grain> result;
+  result.reserve(grains.size());
+  for (const FeatureGrain& grain : grains) {
+    if (grain.is_covered != 0) continue;
+    result.push_back({{grain.from, grain.to}, grain.area(), grain.born, grain.row});
+  }
+  return result;
 }
 
 /// The order of `count` items by key; of equal keys, by index.
@@ -320,106 +321,155 @@ LargeArray<KeyedIndex> order_by(std::size_t count, const KeyOf& key_of, unsigned
   return order;
 }
 
-/// Puts new trapezoids, or horizontal edges, in order for the index; returns their places.
-std::vector<OrderPlace> put_in_order(GrowingMesh& mesh, const GrowingLayer& layer,
-                                     unsigned threads) {
-  const MeshView view = layer.view();
+/// New trapezoids, or horizontal edges, in order for the index.
+LargeArray<KeyedIndex> order_for_index(const GrowingMesh& mesh, const MeshView& view,
+                                       unsigned threads) {
   const auto key_of = [&](std::size_t i) {
     return order_key(box_of(view, mesh.trapezoids[i]), mesh.lifespans[i]);
   };
-  const LargeArray<KeyedIndex> order = order_by(mesh.trapezoids.size(), key_of, threads);
-  permute(mesh.trapezoids, order, threads);
-  permute(mesh.lifespans, order, threads);
-  permute(mesh.feature_of, order, threads);
-  std::vector<OrderPlace> places;
-  places.reserve(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    places.push_back({order[i].key, layer.graph_of[mesh.feature_of[i]]});
-  }
-  return places;
+  return order_by(mesh.trapezoids.size(), key_of, threads);
 }
 
-/// Merges those of the earlier layer from `begin` to `end` with the new ones, which are in order.
-void merge_earlier(const TakenOver& taken, std::pair<std::size_t, std::size_t> range,
-                   std::span<const OrderPlace> places, GrowingMesh& mesh, unsigned threads) {
-  const LayerArrays& earlier = taken.earlier().arrays();
-  const MeshView view = taken.earlier().layer().mesh();
-  const auto key_of = [&](std::size_t i) {
-    return order_key(box_of(view, earlier.trapezoids[i]), earlier.lifespans[i]);
-  };
-  const auto row_of = [&](std::size_t i) { return earlier.feature_of[i]; };
-  GrowingMesh merged;
-  merged.add_room(mesh.trapezoids.size() + range.second - range.first);
-  const auto take = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t row = taken.row_now(earlier.feature_of[i]);
-      if (row == TakenOver::kNotTaken) continue;
-      merged.add(earlier.trapezoids[i], earlier.lifespans[i], row);
+/// A piece of an array in order: items of the earlier layer, of which those that are not taken over
+/// are to be left out, or one that is new.
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  bool is_fresh = false;
+};
+
+/// Adds what is new, in that order, and those trapezoids of the earlier layer from the first up to
+/// the second of `range` that are taken over.
+void add_in_order(const TakenOver& taken, std::pair<std::size_t, std::size_t> range,
+                  const GrowingMesh& fresh, const LargeArray<KeyedIndex>& order,
+                  const std::vector<std::uint32_t>& graph_of, GrowingMesh& mesh, unsigned threads) {
+  const LayerArrays earlier = taken.empty() ? LayerArrays() : taken.earlier().arrays();
+  std::vector<Run> runs;
+  if (!taken.empty()) {
+    const MeshView view = taken.earlier().layer().mesh();
+    std::vector<OrderPlace> places;
+    places.reserve(order.size());
+    for (const KeyedIndex& item : order) {
+      places.push_back({item.key, graph_of[fresh.feature_of[item.index]]});
+    }
+    taken.merge(
+        range,
+        [&](std::size_t i) {
+          return order_key(box_of(view, earlier.trapezoids[i]), earlier.lifespans[i]);
+        },
+        [&](std::size_t i) { return earlier.feature_of[i]; }, places,
+        [&](std::size_t begin, std::size_t end) {
+          runs.push_back({begin, end, false});
+        },
+        [&](std::size_t k) {
+          runs.push_back({order[k].index, order[k].index + 1, true});
+        },
+        threads);
+  }
+  const auto add_runs = [&](const auto& of_earlier, const auto& of_fresh, auto& to,
+                            const auto& changed) {
+    if (taken.empty()) {
+      for (const KeyedIndex& item : order) to.push_back(of_fresh[item.index]);
+      return;
+    }
+    for (const Run& run : runs) {
+      if (run.is_fresh) {
+        to.push_back(of_fresh[run.begin]);
+        continue;
+      }
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        const std::uint32_t row = taken.row_now(earlier.feature_of[i]);
+        if (row != TakenOver::kNotTaken) to.push_back(changed(of_earlier[i], row));
+      }
     }
   };
-  const auto take_fresh = [&](std::size_t k) {
-    merged.add(mesh.trapezoids[k], mesh.lifespans[k], mesh.feature_of[k]);
-  };
-  taken.merge(range, key_of, row_of, places, take, take_fresh, threads);
-  mesh = std::move(merged);
+  const auto as_it_is = [](const auto& item, std::uint32_t) { return item; };
+  for_each_in_parallel(2, threads, [&](std::size_t i) {
+    if (i == 0) return add_runs(earlier.trapezoids, fresh.trapezoids, mesh.trapezoids, as_it_is);
+    add_runs(earlier.lifespans, fresh.lifespans, mesh.lifespans, as_it_is);
+    add_runs(earlier.feature_of, fresh.feature_of, mesh.feature_of,
+             [](std::uint32_t, std::uint32_t row) { return row; });
+  });
 }
 
-/// Orders trapezoids and horizontal edges for the index, those that are taken over among them.
-void order_mesh(const TakenOver& taken, GrowingLayer& layer, unsigned threads) {
-  const std::vector<OrderPlace> places = put_in_order(layer.mesh, layer, threads);
-  const std::vector<OrderPlace> edge_places = put_in_order(layer.horizontal_edges, layer, threads);
-  if (taken.empty()) return;
-  const LayerArrays& earlier = taken.earlier().arrays();
-  const std::size_t all = earlier.feature_of.size();
-  const std::size_t polygons = all - earlier.horizontal_edges;
-  merge_earlier(taken, {0, polygons}, places, layer.mesh, threads);
-  merge_earlier(taken, {polygons, all}, edge_places, layer.horizontal_edges, threads);
+std::size_t count_taken(const TakenOver& taken, unsigned threads) {
+  if (taken.empty()) return 0;
+  const std::span<const std::uint32_t> rows = taken.earlier().arrays().feature_of;
+  std::atomic<std::size_t> count = 0;
+  for_each_piece(rows.size(), threads, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (const std::uint32_t row : rows.subspan(begin, end - begin)) {
+      here += taken.row_now(row) != TakenOver::kNotTaken;
+    }
+    count += here;
+  });
+  return count;
+}
+
+/// Puts trapezoids in order for the index, those that are taken over among them, and behind them
+/// the horizontal edges, with room for so many motes. Returns the number of trapezoids.
+std::uint32_t order_mesh(const TakenOver& taken, std::size_t motes, GrowingLayer& layer,
+                         unsigned threads) {
+  const GrowingMesh fresh = std::exchange(layer.mesh, {});
+  const GrowingMesh edges = std::exchange(layer.horizontal_edges, {});
+  const MeshView view{0, layer.vertices, layer.edges, {}};
+  const LargeArray<KeyedIndex> order = order_for_index(fresh, view, threads);
+  const LargeArray<KeyedIndex> edge_order = order_for_index(edges, view, threads);
+  std::size_t all = 0;
+  std::size_t polygons = 0;
+  if (!taken.empty()) {
+    all = taken.earlier().arrays().feature_of.size();
+    polygons = all - taken.earlier().arrays().horizontal_edges;
+  }
+  GrowingMesh& mesh = layer.mesh;
+  const std::size_t count = count_taken(taken, threads) + order.size() + edge_order.size();
+  mesh.trapezoids.reserve(count + motes);
+  mesh.lifespans.reserve(count + motes);
+  mesh.feature_of.reserve(count);
+  add_in_order(taken, {0, polygons}, fresh, order, layer.graph_of, mesh, threads);
+  const auto trapezoids = static_cast<std::uint32_t>(mesh.trapezoids.size());
+  add_in_order(taken, {polygons, all}, edges, edge_order, layer.graph_of, mesh, threads);
+  return trapezoids;
 }
 
 /// Puts grains in order for the index, those that are taken over among them.
-void order_grains(const TakenOver& taken, GrowingLayer& layer, unsigned threads) {
-  std::vector<FeatureGrain>& grains = layer.grains;
+void order_grains(const TakenOver& taken, const std::vector<std::uint32_t>& graph_of,
+                  std::vector<FeatureGrain>& grains) {
   const LargeArray<KeyedIndex> order = order_by(
-      grains.size(), [&](std::size_t i) { return order_key(grains[i]); }, threads);
-  permute(grains, order, threads);
-  if (taken.empty()) return;
+      grains.size(), [&](std::size_t i) { return order_key(grains[i]); }, 1);
+  std::vector<FeatureGrain> ordered;
   std::vector<OrderPlace> places;
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    places.push_back({order[i].key, layer.graph_of[grains[i].row]});
+  const std::span<const FeatureGrain> earlier =
+      taken.empty() ? std::span<const FeatureGrain>() : taken.earlier().arrays().grains;
+  ordered.reserve(grains.size() + earlier.size());
+  if (taken.empty()) {
+    for (const KeyedIndex& item : order) ordered.push_back(grains[item.index]);
+    return grains.swap(ordered);
   }
-  const std::span<const FeatureGrain> earlier = taken.earlier().arrays().grains;
-  std::vector<FeatureGrain> merged;
-  merged.reserve(grains.size() + earlier.size());
+  for (const KeyedIndex& item : order) {
+    places.push_back({item.key, graph_of[grains[item.index].row]});
+  }
   const auto take = [&](std::size_t begin, std::size_t end) {
     for (FeatureGrain grain : earlier.subspan(begin, end - begin)) {
       grain.row = taken.row_now(grain.row);
-      if (grain.row != TakenOver::kNotTaken) merged.push_back(grain);
+      if (grain.row != TakenOver::kNotTaken) ordered.push_back(grain);
     }
   };
   taken.merge(
       {0, earlier.size()}, [&](std::size_t i) { return order_key(earlier[i]); },
       [&](std::size_t i) { return earlier[i].row; }, places, take,
-      [&](std::size_t k) { merged.push_back(grains[k]); }, threads);
-  grains.swap(merged);
-}
-
-/// Horizontal edges stand behind the trapezoids.
-void append_horizontal_edges(GrowingLayer& layer) {
-  const GrowingMesh edges = std::move(layer.horizontal_edges);
-  GrowingMesh& mesh = layer.mesh;
-  mesh.add_room(edges.trapezoids.size());
-  mesh.trapezoids.insert(mesh.trapezoids.end(), edges.trapezoids.begin(), edges.trapezoids.end());
-  mesh.lifespans.insert(mesh.lifespans.end(), edges.lifespans.begin(), edges.lifespans.end());
-  mesh.feature_of.insert(mesh.feature_of.end(), edges.feature_of.begin(), edges.feature_of.end());
+      [&](std::size_t k) { ordered.push_back(grains[order[k].index]); }, 1);
+  grains.swap(ordered);
 }
 
 /// Numbers edges and vertices anew in the order in which the trapezoids use them, so that what is
-/// drawn together lies together in memory; unused ones go.
-void order_edges_and_vertices(GrowingLayer& layer) {
+/// drawn together lies together in memory; unused ones go. There is room for so many motes after
+/// it.
+void order_edges_and_vertices(std::size_t motes, GrowingLayer& layer) {
   std::vector<std::uint32_t> number(layer.edges.size(), kUnused);
   std::vector<MeshEdge> edges;
   std::vector<LoopSize> loop_sizes;
-  edges.reserve(layer.edges.size());
+  edges.reserve(layer.edges.size() + 2 * motes);
   loop_sizes.reserve(layer.edges.size());
   const auto edge = [&](std::uint32_t& e) {
     if (number[e] == kUnused) {
@@ -440,7 +490,7 @@ void order_edges_and_vertices(GrowingLayer& layer) {
 
   number.assign(layer.vertices.size(), kUnused);
   std::vector<Point> vertices;
-  vertices.reserve(layer.vertices.size());
+  vertices.reserve(layer.vertices.size() + 4 * motes);
   const auto vertex = [&](std::uint32_t& v) {
     if (number[v] == kUnused) {
       number[v] = static_cast<std::uint32_t>(vertices.size());
@@ -485,18 +535,6 @@ void order_milestones(GrowingLayer& layer, LayerContents& to) {
   to.milestone_levels = std::move(levels);
 }
 
-/// What small loops left behind where features are not told apart: a place that others cover is as
-/// it was. In the order of the grains, so that sums do not depend on who built what.
-std::vector<Grain> uncovered(const std::vector<FeatureGrain>& grains) {
-  std::vector<Grain> result;
-  result.reserve(grains.size());
-  for (const FeatureGrain& grain : grains) {
-    if (grain.is_covered != 0) continue;
-    result.push_back({{grain.from, grain.to}, grain.area(), grain.born, grain.row});
-  }
-  return result;
-}
-
 /// The square of a mote as a trapezoid; one of negative area has its edges swapped.
 void append_mote(const Mote& mote, GrowingLayer& layer) {
   append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), layer.vertices, layer.edges,
@@ -520,10 +558,6 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
                       static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
-  layer.vertices.reserve(layer.vertices.size() + 4 * motes.size());
-  layer.edges.reserve(layer.edges.size() + 2 * motes.size());
-  layer.mesh.trapezoids.reserve(layer.mesh.trapezoids.size() + motes.size());
-  layer.mesh.lifespans.reserve(layer.mesh.lifespans.size() + motes.size());
   std::uint32_t singles = 0;
   for (const auto& [is_merged, key, i] : keys) {
     append_mote(motes[i], layer);
@@ -605,29 +639,52 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   layer->options = options;
   move_units(stocks, *layer);
   const TakenOver taken = take_over(stocks, earlier);
-  GrowingLayer arrays = concatenate(std::move(stocks), taken);
+  const LayerArrays before = taken.empty() ? LayerArrays() : earlier->arrays();
+  check_counts(stocks, before);
+  const std::vector<PartOf> parts =
+      in_order_of_rows(stocks, before.vertices.size(), before.edges.size());
+  GrowingLayer arrays;
+  note_graphs(parts, taken, arrays.graph_of);
+  const auto launch = threads > 1 ? std::launch::async : std::launch::deferred;
+  // In the order of the grains, so that sums do not depend on who built what.
+  std::future<Dust> settling = std::async(launch, [&, grains = take_grains(stocks, parts),
+                                                   vertices = count_vertices(*layer)]() mutable {
+    order_grains(taken, arrays.graph_of, grains);
+    std::vector<Mote> motes = settle(uncovered(grains), vertices);
+    return Dust{std::move(grains), std::move(motes)};
+  });
+  concatenate_histories(stocks, parts, before, arrays);
+  concatenate_outlines(stocks, taken, arrays);
+  for (const Stock& stock : stocks) {
+    arrays.shared.insert(arrays.shared.end(), stock.shared.begin(), stock.shared.end());
+  }
+  take_shared(taken, arrays.shared);
+  stocks.clear();
 
   tell(0.2);
-  order_mesh(taken, arrays, threads);
-  order_grains(taken, arrays, threads);
-  tell(0.5);
-  const auto polygons = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
-  FeatureOverlaps overlaps =
-      find_overlaps({arrays.view(), arrays.mesh.lifespans, arrays.mesh.feature_of, arrays.graph_of},
-                    std::move(arrays.shared));
-  layer->has_all_overlaps = overlaps.is_complete;
-  layer->overlaps = OverlapTable(std::move(overlaps.pairs), arrays.graph_of.size());
-  append_horizontal_edges(arrays);
+  Dust dust = settling.get();
+  const std::uint32_t polygons = order_mesh(taken, dust.motes.size(), arrays, threads);
   const auto horizontal_edges = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
-  order_edges_and_vertices(arrays);
-  order_milestones(arrays, *layer);
-  tell(0.7);
-  for (const Point p : arrays.vertices) layer->bounds.include(p);
+  tell(0.5);
+  order_edges_and_vertices(dust.motes.size(), arrays);
   layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
-  const std::uint32_t motes =
-      append_dust(settle(uncovered(arrays.grains), arrays.vertices.size()), arrays);
+  // What is appended meanwhile moves none of what is looked at, as there is room for it.
+  std::future<FeatureOverlaps> finding = std::async(
+      launch, [input = OverlapInput{{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids},
+                                    std::span(arrays.mesh.lifespans).first(polygons),
+                                    std::span(arrays.mesh.feature_of).first(polygons),
+                                    arrays.graph_of},
+               shared = std::move(arrays.shared),
+               threads] { return find_overlaps(input, shared, threads); });
+  order_milestones(arrays, *layer);
+  for (const Point p : arrays.vertices) layer->bounds.include(p);
+  const std::uint32_t motes = append_dust(dust.motes, arrays);
   const auto all = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
   layer->size.motes = all - horizontal_edges;
+  FeatureOverlaps overlaps = finding.get();
+  layer->has_all_overlaps = overlaps.is_complete;
+  layer->overlaps = OverlapTable(std::move(overlaps.pairs), arrays.graph_of.size());
+  tell(0.7);
 
   move_arrays(arrays, *layer);
   features.shrink_to_fit();
@@ -635,15 +692,15 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->outline = OutlineView{layer->loop_sizes, layer->milestone_ends, layer->milestones,
                                layer->milestone_levels};
-  const auto index = [&layer](std::uint32_t from, std::uint32_t to) {
-    return MeshIndex(layer->view, {from, to - from}, layer->lifespans);
+  const auto index = [&layer, threads](std::uint32_t from, std::uint32_t to) {
+    return MeshIndex(layer->view, {from, to - from}, layer->lifespans, threads);
   };
   tell(0.8);
   layer->polygon_index = index(0, polygons);
   layer->horizontal_edge_index = index(polygons, horizontal_edges);
   layer->mote_index = index(horizontal_edges, horizontal_edges + motes);
   layer->merged_mote_index = index(horizontal_edges + motes, all);
-  layer->grains = GrainIndex(std::move(arrays.grains));
+  layer->grains = GrainIndex(std::move(dust.grains));
   return std::make_unique<Layer>(std::move(layer));
 }
 

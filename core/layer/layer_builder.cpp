@@ -58,22 +58,22 @@ BuildOutcome outcome_of(const FeatureUnit& unit, std::size_t rings) {
   return outcome;
 }
 
-void add_group(const Digest& digest, std::span<const std::uint32_t> rows, const Assembly& assembly,
-               std::optional<double> most_tolerance, BuiltUnits& units) {
+void add_group(std::span<const Digest> digests, std::span<const std::uint32_t> rows,
+               const Assembly& assembly, std::optional<double> most_tolerance, BuiltUnits& units) {
   const CoverageOutcome& outcome = assembly.outcome;
   const std::size_t first = units.members.size();
-  for (const std::uint32_t row : rows) units.members.push_back({row, 0});
+  for (std::size_t i = 0; i < rows.size(); ++i) units.members.push_back({digests[i], rows[i], 0});
   for (const std::uint32_t i : assembly.apart) units.members[first + i].is_apart = 1;
   for (const Overlap& overlap : outcome.overlaps) {
     units.overlaps.push_back({overlap.lower, overlap.upper,
                               std::bit_cast<std::uint64_t>(overlap.area),
                               std::bit_cast<std::uint64_t>(outcome.areas[overlap.lower])});
   }
-  units.groups.push_back({digest, StoredTolerance(most_tolerance), stored(units.members.size()),
-                          stored(units.overlaps.size()), stored(outcome.vertices),
-                          stored(outcome.shared_edges), stored(outcome.junctions),
-                          stored(outcome.gaps), stored(outcome.filled), outcome.noded,
-                          outcome.is_crowded});
+  units.groups.push_back({digest_of(digests), StoredTolerance(most_tolerance),
+                          stored(units.members.size()), stored(units.overlaps.size()),
+                          stored(outcome.vertices), stored(outcome.shared_edges),
+                          stored(outcome.junctions), stored(outcome.gaps), stored(outcome.filled),
+                          outcome.noded, outcome.is_crowded});
 }
 
 Assembly assembly_of(const BuiltUnitsView& units, std::uint32_t number) {
@@ -143,7 +143,7 @@ struct LayerBuilder::State {
     return outcome_of(unit, rings.size());
   }
 
-  Assembly take_over_group(std::uint32_t number, const Digest& digest,
+  Assembly take_over_group(std::uint32_t number, std::span<const Digest> digests,
                            std::span<const std::uint32_t> rows) {
     Assembly assembly = assembly_of(earlier->units(), number);
     const std::span<const GroupMember> members = earlier->units().members_of(number);
@@ -151,7 +151,7 @@ struct LayerBuilder::State {
       stock.taken.push_back({members[i].row, rows[i], rows[assembly.together.front()]});
     }
     most_tolerance = earlier->units().groups[number].most_tolerance.get();
-    add_group(digest, rows, assembly, most_tolerance, stock.units);
+    add_group(digests, rows, assembly, most_tolerance, stock.units);
     return assembly;
   }
 
@@ -207,10 +207,11 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
 Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
                                     std::span<const Rings* const> features, unsigned threads) {
   State& state = *state_;
-  const Digest digest = digest_of(features);
+  std::vector<Digest> digests;
+  for (const Rings* rings : features) digests.push_back(digest_of(*rings));
   if (state.earlier != nullptr) {
-    if (const auto unit = state.earlier->claim_group(digest, rows.size())) {
-      return state.take_over_group(*unit, digest, rows);
+    if (const auto unit = state.earlier->claim_group(digest_of(digests), rows.size())) {
+      return state.take_over_group(*unit, digests, rows);
     }
   }
   if (state.share != nullptr) state.share->enter(0, kAssemblyShare);
@@ -219,7 +220,7 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
   state.most_tolerance.reset();
   if (!assembly.together.empty()) state.build_group(rows, assembly, threads);
   if (assembly.outcome.failure.empty()) {
-    add_group(digest, rows, assembly, state.most_tolerance, state.stock.units);
+    add_group(digests, rows, assembly, state.most_tolerance, state.stock.units);
   }
   return assembly;
 }

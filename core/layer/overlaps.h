@@ -90,7 +90,8 @@ struct FeatureOverlaps {
 
 /// Overlaps wider than two cells, which is more than what snapping borders to the grid makes of
 /// neighbours. Does not depend on the order of trapezoids. With those that are known, of features
-/// of one graph, each once or more often.
-FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {});
+/// of one graph, each once or more often. On up to `threads` threads, on which nothing depends.
+FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {},
+                              unsigned threads = 1);
 
 }  // namespace trapeze

@@ -140,7 +140,8 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
   const auto joining = [&progress](double share) {
     progress(kPipelineShare + share * (1 - kPipelineShare));
   };
-  FeaturePipeline pipeline(source, options.generalization, workers, building);
+  FeaturePipeline pipeline(source, options.generalization, workers, building,
+                           earlier ? &*earlier : nullptr);
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
   fill_report(pipeline, builders, source, loaded.report);
   loaded.layer = join_layer(builders, table.take_table(), joining, threads);

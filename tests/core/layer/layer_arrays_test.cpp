@@ -220,11 +220,11 @@ TEST(LayerArrays, AreRefusedInWordsWhereSomethingLeadsNowhere) {
       {[](Copies& c) { c.grains[2].is_covered = 2; }, "grain of dust"},
       {[](Copies& c) { c.feature_units[3].row = 80; }, "feature of a unit"},
       {[](Copies& c) {
-         c.group_members.push_back({80, 0});
+         c.group_members.push_back({{}, 80, 0});
        },
        "feature of a unit"},
       {[](Copies& c) {
-         c.group_members.push_back({0, 0});
+         c.group_members.push_back({{}, 0, 0});
        },
        "groups are not in order"},
       {[](Copies& c) { c.group_units.emplace_back().members_end = 1; }, "groups are not in order"},
