@@ -92,6 +92,9 @@ struct GrowingLayer {
   std::vector<MeshEdge> edges;
   std::vector<LoopSize> loop_sizes;
   std::vector<MilestoneNote> milestone_notes;
+  // What takes the place of vertices and edges, see order_edges_and_vertices().
+  std::vector<Point> ordered_vertices;
+  std::vector<MeshEdge> ordered_edges;
   GrowingMesh mesh;
   GrowingMesh horizontal_edges;  // each as a trapezoid without height, between the edge and itself
   Rings outlines;
@@ -270,6 +273,18 @@ void concatenate_outlines(const std::vector<Stock>& stocks, const TakenOver& tak
   }
 }
 
+/// By row, around the feature.
+std::vector<Box> boxes_of(const GrowingLayer& layer) {
+  std::vector<Box> boxes(layer.graph_of.size());
+  std::size_t ring = 0;
+  for (std::size_t row = 0; row < std::min(boxes.size(), layer.outline_ends.size()); ++row) {
+    for (; ring < layer.outline_ends[row]; ++ring) {
+      for (const Point p : layer.outlines[ring]) boxes[row].include(p);
+    }
+  }
+  return boxes;
+}
+
 /// The pairs of features with a face in common, of which both are taken over.
 void take_shared(const TakenOver& taken, std::vector<FeatureOverlap>& shared) {
   if (taken.empty() || !taken.earlier().layer().overlaps().are_any_in_common()) return;
@@ -429,6 +444,9 @@ std::uint32_t order_mesh(const TakenOver& taken, std::size_t motes, GrowingLayer
   add_in_order(taken, {0, polygons}, fresh, order, layer.graph_of, mesh, threads);
   const auto trapezoids = static_cast<std::uint32_t>(mesh.trapezoids.size());
   add_in_order(taken, {polygons, all}, edges, edge_order, layer.graph_of, mesh, threads);
+  // Of a file that is cut off there may be more than was counted.
+  mesh.trapezoids.reserve(mesh.trapezoids.size() + motes);
+  mesh.lifespans.reserve(mesh.lifespans.size() + motes);
   return trapezoids;
 }
 
@@ -462,58 +480,74 @@ void order_grains(const TakenOver& taken, const std::vector<std::uint32_t>& grap
   grains.swap(ordered);
 }
 
-/// Numbers edges and vertices anew in the order in which the trapezoids use them, so that what is
-/// drawn together lies together in memory; unused ones go. There is room for so many motes after
-/// it.
-void order_edges_and_vertices(std::size_t motes, GrowingLayer& layer) {
-  std::vector<std::uint32_t> number(layer.edges.size(), kUnused);
+/// New numbers of edges and vertices, in the order in which the trapezoids use them, so that what
+/// is drawn together lies together in memory; kUnused if they go.
+struct Numbering {
+  std::vector<std::uint32_t> edges;
+  std::vector<std::uint32_t> vertices;
+};
+
+/// Numbers edges and vertices anew; the trapezoids are not changed. There is room for so many motes
+/// after them.
+Numbering order_edges_and_vertices(std::size_t motes, GrowingLayer& layer) {
+  Numbering number;
+  number.edges.assign(layer.edges.size(), kUnused);
   std::vector<MeshEdge> edges;
   std::vector<LoopSize> loop_sizes;
   edges.reserve(layer.edges.size() + 2 * motes);
   loop_sizes.reserve(layer.edges.size());
-  const auto edge = [&](std::uint32_t& e) {
-    if (number[e] == kUnused) {
-      number[e] = static_cast<std::uint32_t>(edges.size());
-      edges.push_back(layer.edges[e]);
-      loop_sizes.push_back(layer.loop_sizes[e]);
-    }
-    e = number[e];
+  const auto edge = [&](std::uint32_t e) {
+    if (number.edges[e] != kUnused) return;
+    number.edges[e] = static_cast<std::uint32_t>(edges.size());
+    edges.push_back(layer.edges[e]);
+    loop_sizes.push_back(layer.loop_sizes[e]);
   };
-  for (MeshTrapezoid& t : layer.mesh.trapezoids) {
+  for (const MeshTrapezoid& t : layer.mesh.trapezoids) {
     edge(t.left);
     edge(t.right);
   }
-  layer.edges.swap(edges);
-  edges = {};
   layer.loop_sizes.swap(loop_sizes);
-  loop_sizes = {};
 
-  number.assign(layer.vertices.size(), kUnused);
+  number.vertices.assign(layer.vertices.size(), kUnused);
   std::vector<Point> vertices;
   vertices.reserve(layer.vertices.size() + 4 * motes);
-  const auto vertex = [&](std::uint32_t& v) {
-    if (number[v] == kUnused) {
-      number[v] = static_cast<std::uint32_t>(vertices.size());
+  const auto vertex = [&](std::uint32_t v) {
+    if (number.vertices[v] == kUnused) {
+      number.vertices[v] = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(layer.vertices[v]);
     }
-    v = number[v];
+    return number.vertices[v];
   };
-  for (MeshEdge& e : layer.edges) {
-    vertex(e.upper);
-    vertex(e.lower);
+  for (MeshEdge& e : edges) {
+    e.upper = vertex(e.upper);
+    e.lower = vertex(e.lower);
   }
-  for (MeshTrapezoid& t : layer.mesh.trapezoids) {
+  for (const MeshTrapezoid& t : layer.mesh.trapezoids) {
     vertex(t.top);
     vertex(t.bottom);
   }
-  layer.vertices.swap(vertices);
-  vertices = {};
-  for (MilestoneNote& note : layer.milestone_notes) note.vertex = number[note.vertex];
+  layer.ordered_edges = std::move(edges);
+  layer.ordered_vertices = std::move(vertices);
+  for (MilestoneNote& note : layer.milestone_notes) note.vertex = number.vertices[note.vertex];
+  return number;
+}
+
+/// Puts the ordered edges and vertices in place of those that there were.
+void renumber(const Numbering& number, GrowingLayer& layer, unsigned threads) {
+  layer.edges = std::move(layer.ordered_edges);
+  layer.vertices = std::move(layer.ordered_vertices);
+  for_each_piece(layer.mesh.trapezoids.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      MeshTrapezoid& t = layer.mesh.trapezoids[i];
+      t = {number.vertices[t.top], number.vertices[t.bottom], number.edges[t.left],
+           number.edges[t.right]};
+    }
+  });
 }
 
 /// Those of each vertex together, in the order in which they were noted: in that of levels.
 void order_milestones(GrowingLayer& layer, LayerContents& to) {
-  std::vector<std::uint32_t> ends(layer.vertices.size() + 1, 0);
+  std::vector<std::uint32_t> ends(layer.ordered_vertices.size() + 1, 0);
   for (const MilestoneNote& note : layer.milestone_notes) {
     if (note.vertex != kUnused) ++ends[note.vertex + 1];
   }
@@ -653,8 +687,10 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
     std::vector<Mote> motes = settle(uncovered(grains), vertices);
     return Dust{std::move(grains), std::move(motes)};
   });
-  concatenate_histories(stocks, parts, before, arrays);
-  concatenate_outlines(stocks, taken, arrays);
+  for_each_in_parallel(2, threads, [&](std::size_t i) {
+    if (i == 0) concatenate_histories(stocks, parts, before, arrays);
+    if (i == 1) concatenate_outlines(stocks, taken, arrays);
+  });
   for (const Stock& stock : stocks) {
     arrays.shared.insert(arrays.shared.end(), stock.shared.begin(), stock.shared.end());
   }
@@ -666,24 +702,26 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   const std::uint32_t polygons = order_mesh(taken, dust.motes.size(), arrays, threads);
   const auto horizontal_edges = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
   tell(0.5);
-  order_edges_and_vertices(dust.motes.size(), arrays);
-  layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
-  // What is appended meanwhile moves none of what is looked at, as there is room for it.
-  std::future<FeatureOverlaps> finding = std::async(
-      launch, [input = OverlapInput{{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids},
-                                    std::span(arrays.mesh.lifespans).first(polygons),
-                                    std::span(arrays.mesh.feature_of).first(polygons),
-                                    arrays.graph_of},
-               shared = std::move(arrays.shared),
-               threads] { return find_overlaps(input, shared, threads); });
+  const std::vector<Box> boxes = boxes_of(arrays);
+  std::future<FeatureOverlaps> finding = std::async(launch, [&] {
+    const MeshView mesh{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids};
+    const GrowingMesh& all = arrays.mesh;
+    return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
+                          std::span(all.feature_of).first(polygons), arrays.graph_of, boxes},
+                         std::move(arrays.shared), threads);
+  });
+  const Numbering number = order_edges_and_vertices(dust.motes.size(), arrays);
   order_milestones(arrays, *layer);
-  for (const Point p : arrays.vertices) layer->bounds.include(p);
-  const std::uint32_t motes = append_dust(dust.motes, arrays);
-  const auto all = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
-  layer->size.motes = all - horizontal_edges;
+  for (const Point p : arrays.ordered_vertices) layer->bounds.include(p);
   FeatureOverlaps overlaps = finding.get();
   layer->has_all_overlaps = overlaps.is_complete;
   layer->overlaps = OverlapTable(std::move(overlaps.pairs), arrays.graph_of.size());
+  tell(0.6);
+  renumber(number, arrays, threads);
+  layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
+  const std::uint32_t motes = append_dust(dust.motes, arrays);
+  const auto all = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
+  layer->size.motes = all - horizontal_edges;
   tell(0.7);
 
   move_arrays(arrays, *layer);

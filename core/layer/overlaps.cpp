@@ -61,19 +61,29 @@ struct Common {
 
 class OverlapSearch {
  public:
-  OverlapSearch(const OverlapInput& input, unsigned threads) : input_(input), threads_(threads) {
-    collect_items();
+  OverlapSearch(const OverlapInput& input, unsigned threads)
+      : input_(input), threads_(threads), is_compared_(input.graph_of.size()) {
+    const auto untouched =
+        static_cast<std::uint64_t>(std::ranges::count(input.lifespans, Level{0}, &Lifespan::born));
+    most_steps_ = kLeastSteps + kMostStepsOf * untouched;
+    most_pairs_ = kLeastPairs + kMostPairsOf * untouched;
   }
 
   FeatureOverlaps run() {
     std::vector<std::uint32_t> rows;
     Box all;
-    for (std::uint32_t row = 0; row < boxes_.size(); ++row) {
-      if (boxes_[row].is_empty()) continue;
+    for (std::uint32_t row = 0; row < input_.boxes.size(); ++row) {
+      if (input_.boxes[row].is_empty()) continue;
       rows.push_back(row);
-      all.include(boxes_[row]);
+      all.include(input_.boxes[row]);
     }
-    if (!rows.empty()) join(rows, all, kMostHalvings);
+    if (!rows.empty()) {
+      join(rows, all, kMostHalvings);
+      collect_items();
+      is_looking_ahead_ = false;
+      steps_ = 0;
+      join(rows, all, kMostHalvings);
+    }
     found_.is_complete = !is_over();
     std::ranges::sort(found_.pairs, {}, [](const FeatureOverlap& overlap) {
       return std::pair(overlap.row, overlap.other);
@@ -100,9 +110,10 @@ class OverlapSearch {
 
   const OverlapInput& input_;
   const unsigned threads_;
-  std::vector<Item> items_;          // by row, and by top
-  std::vector<std::size_t> begins_;  // by row; and the end
-  std::vector<Box> boxes_;           // by row; empty if there is nothing of it
+  std::vector<Item> items_;                // by row, and by top
+  std::vector<std::size_t> begins_;        // by row; and the end
+  std::vector<std::uint8_t> is_compared_;  // by row
+  bool is_looking_ahead_ = true;           // only which features are to be compared is looked for
   FeatureOverlaps found_;
   std::uint64_t steps_ = 0;
   std::uint64_t most_steps_ = 0;
@@ -111,6 +122,7 @@ class OverlapSearch {
   std::vector<const Item*> others_;
 };
 
+/// Only of features that are to be compared, which are few on most maps.
 void OverlapSearch::collect_items() {
   struct Owned {
     Item item;
@@ -121,11 +133,11 @@ void OverlapSearch::collect_items() {
   for_each_in_parallel(pieces, threads_, [&](std::size_t piece) {
     const std::size_t end = std::min(input_.feature_of.size(), (piece + 1) * kItemsAtOnce);
     for (std::size_t i = piece * kItemsAtOnce; i < end; ++i) {
-      if (input_.lifespans[i].born != 0) continue;
+      const std::uint32_t row = input_.feature_of[i];
+      if (input_.lifespans[i].born != 0 || is_compared_[row] == 0) continue;
       const MeshTrapezoid& t = input_.mesh.trapezoids[i];
       if (input_.mesh.vertices[t.top].y >= input_.mesh.vertices[t.bottom].y) continue;
-      found[piece].push_back(
-          {{box_of(input_.mesh, t), static_cast<std::uint32_t>(i), 0}, input_.feature_of[i]});
+      found[piece].push_back({{box_of(input_.mesh, t), static_cast<std::uint32_t>(i), 0}, row});
     }
   });
   const std::size_t rows = input_.graph_of.size();
@@ -140,7 +152,6 @@ void OverlapSearch::collect_items() {
     for (const Owned& owned : piece) items_[next[owned.row]++] = owned.item;
     piece = {};
   }
-  boxes_.resize(rows);
   const std::size_t blocks = (rows + kRowsAtOnce - 1) / kRowsAtOnce;
   for_each_in_parallel(blocks, threads_, [&](std::size_t block) {
     const std::size_t end = std::min(rows, (block + 1) * kRowsAtOnce);
@@ -148,8 +159,6 @@ void OverlapSearch::collect_items() {
       order_items(static_cast<std::uint32_t>(row));
     }
   });
-  most_steps_ = kLeastSteps + kMostStepsOf * items_.size();
-  most_pairs_ = kLeastPairs + kMostPairsOf * items_.size();
 }
 
 void OverlapSearch::order_items(std::uint32_t row) {
@@ -159,10 +168,7 @@ void OverlapSearch::order_items(std::uint32_t row) {
     return std::tuple(box.min_y, box.min_x, box.max_y, box.max_x);
   });
   std::int32_t reach = kGridMin;
-  for (Item& item : items) {
-    boxes_[row].include(item.box);
-    item.reach = reach = std::max(reach, item.box.max_y);
-  }
+  for (Item& item : items) item.reach = reach = std::max(reach, item.box.max_y);
 }
 
 /// Halves the region, so many times at most, until few features are left in each part of it.
@@ -177,7 +183,7 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
 
   const bool is_wide = width >= height;
   const auto middle_of = [&](std::uint32_t row) {
-    const Box box = common_part(boxes_[row], region);
+    const Box box = common_part(input_.boxes[row], region);
     const std::int64_t sum =
         is_wide ? std::int64_t{box.min_x} + box.max_x : std::int64_t{box.min_y} + box.max_y;
     return static_cast<std::int32_t>(sum / 2);
@@ -194,8 +200,8 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
   std::vector<std::uint32_t> some;
   std::vector<std::uint32_t> others;
   for (const std::uint32_t row : rows) {
-    if (!common_part(boxes_[row], before).is_empty()) some.push_back(row);
-    if (!common_part(boxes_[row], after).is_empty()) others.push_back(row);
+    if (!common_part(input_.boxes[row], before).is_empty()) some.push_back(row);
+    if (!common_part(input_.boxes[row], after).is_empty()) others.push_back(row);
   }
   // Of features that are all as large as the region there are no fewer in its parts.
   if (some.size() + others.size() > rows.size() * 7 / 4) return join_each(rows, region);
@@ -210,11 +216,16 @@ void OverlapSearch::join_each(std::span<const std::uint32_t> rows, const Box& re
     for (std::size_t k = i + 1; k < rows.size(); ++k) {
       const auto [a, b] = std::minmax(rows[i], rows[k]);
       if (input_.graph_of[a] == input_.graph_of[b]) continue;
-      const Box place = common_part(boxes_[a], boxes_[b]);
+      const Box place = common_part(input_.boxes[a], input_.boxes[b]);
       const bool begins_here = !place.is_empty() && place.min_x >= region.min_x &&
                                place.min_x < region.max_x && place.min_y >= region.min_y &&
                                place.min_y < region.max_y;
-      if (begins_here) compare(a, b, place);
+      if (!begins_here) continue;
+      if (is_looking_ahead_) {
+        is_compared_[a] = is_compared_[b] = 1;
+      } else {
+        compare(a, b, place);
+      }
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grid/grid.h"
 #include "core/grid/stored_array.h"
 #include "core/grid/tolerance.h"
 #include "core/mesh/trapezoid_mesh.h"
@@ -81,6 +82,7 @@ struct OverlapInput {
   std::span<const Lifespan> lifespans;        // by trapezoid, as many as feature_of
   std::span<const std::uint32_t> feature_of;  // row, by trapezoid; others of the mesh do not count
   std::span<const std::uint32_t> graph_of;    // by row: features of one graph are not compared
+  std::span<const Box> boxes;                 // by row, around the feature: as many
 };
 
 struct FeatureOverlaps {
