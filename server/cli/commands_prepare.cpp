@@ -31,21 +31,23 @@ void make_folder(const std::string& folder) {
       fmt::format("the folder {} cannot be made: {}", folder, error.message()));
 }
 
-/// The file to take over from, of `reuse`, that or a folder; empty if that has none of that name.
+/// The file to take over from: `reuse` itself, or the one for that output in the folder.
 std::string earlier_file(const std::string& reuse, const std::string& output) {
-  if (!std::filesystem::is_directory(reuse)) return reuse;
-  const auto file = std::filesystem::path(reuse) / std::filesystem::path(output).filename();
-  return std::filesystem::exists(file) ? file.string() : "";
+  if (reuse.empty() || !std::filesystem::is_directory(reuse)) return reuse;
+  return (std::filesystem::path(reuse) / std::filesystem::path(output).filename()).string();
 }
 
-/// What `reuse` has for the file; nothing, and why, if there is nothing to take over.
-EarlierPrepared find_earlier(const std::string& reuse, const std::string& output,
+/// Nothing, and why, if there is nothing to take over from the file; it may be missing in a folder.
+EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
                              const LayerOptions& options) {
-  if (reuse.empty()) return {};
-  const std::string file = earlier_file(reuse, output);
-  if (file.empty()) return {nullptr, nullptr, "holds no file of that name"};
-  if (!std::filesystem::exists(file)) throw std::runtime_error(file + ": there is no such file");
-  if (!is_prepared_file(file)) throw std::runtime_error(file + ": is no prepared file");
+  if (file.empty()) return {};
+  if (!std::filesystem::exists(file)) {
+    if (file != reuse) return {nullptr, nullptr, "is not there"};
+    throw std::runtime_error(file + ": there is no such file to take over from");
+  }
+  if (!is_prepared_file(file)) {
+    throw std::runtime_error(file + ": is no prepared file to take over from");
+  }
   return open_earlier_layer(file, options);
 }
 
@@ -57,15 +59,15 @@ LoadedLayer load(const std::string& file, const LoadOptions& how, const EarlierP
   return load_layer(file, options);
 }
 
-void print_reuse(const std::string& reuse, const EarlierPrepared& earlier,
+void print_reuse(const std::string& file, const EarlierPrepared& earlier,
                  const LoadReport& report) {
-  if (reuse.empty()) return;
+  if (file.empty()) return;
   if (earlier.layer == nullptr) {
-    fmt::print("  nothing is taken over: {} {}\n", reuse, earlier.unfit);
+    fmt::print("  nothing is taken over: {} {}\n", file, earlier.unfit);
     return;
   }
   fmt::print("  {} of {} features are as they were and taken over from {}\n", report.taken_over,
-             report.loaded, reuse);
+             report.loaded, file);
 }
 
 void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skipped,
@@ -75,10 +77,11 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   }
   // Before the file is read, so that a change from here on is noticed now or later.
   const SourceStamp source = stamp_source(file);
-  const EarlierPrepared earlier = find_earlier(reuse, output, how.generalization);
+  const std::string earlier_name = earlier_file(reuse, output);
+  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization);
   const LoadedLayer loaded = load(file, how, earlier);
   if (earlier.file != nullptr && !earlier.file->is_whole()) {
-    throw std::runtime_error(reuse + ": was written into while it was read");
+    throw std::runtime_error(earlier_name + ": was written into while it was read");
   }
   const std::string change = change_since(source, file);
   if (!change.empty()) {
@@ -92,7 +95,7 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
              static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
-  print_reuse(reuse, earlier, report);
+  print_reuse(earlier_name, earlier, report);
   for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   if (report.repaired > 0 || report.skipped > 0) {
     fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",

@@ -161,9 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(
         ::testing::Values("malta_buildings", "malta_landuse", "melbourne_natural", "us_counties"),
         ::testing::Values(CoverageMode::off, CoverageMode::automatic, CoverageMode::on)),
-    [](const auto& info) {
-      return std::get<std::string>(info.param) + "_" +
-             std::string(kCoverageNames.name_of(std::get<CoverageMode>(info.param)));
+    [](const auto& of) {
+      return std::get<std::string>(of.param) + "_" +
+             std::string(kCoverageNames.name_of(std::get<CoverageMode>(of.param)));
     });
 
 }  // namespace
