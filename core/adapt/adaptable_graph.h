@@ -40,6 +40,8 @@ namespace trapeze {
 struct GeneralizationOptions {
   WeightRule weights = WeightRule::douglas_peucker;
   Topology topology = Topology::strict;
+
+  friend bool operator==(const GeneralizationOptions&, const GeneralizationOptions&) = default;
 };
 
 /// The corners of a graph in the order in which they are to be removed, and those that are blocked.

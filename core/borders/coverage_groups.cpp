@@ -122,6 +122,54 @@ void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
                    [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
 }
 
+/// Those of which nothing is known, and those that may be tied to one of them; all if that is not
+/// known to be less. In ascending order.
+std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> features,
+                                           std::span<const std::uint32_t> known) {
+  constexpr std::size_t kMostStepsOfEach = 64;  // less than grouping takes
+  std::vector<std::uint32_t> all(features.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const auto unknown = static_cast<std::size_t>(std::ranges::count(known, kUnknownGroup));
+  if (known.empty() || unknown > features.size() / 4) return all;
+
+  const std::vector<Place> places = places_of(features);
+  std::vector<Place> wanted;
+  std::int64_t widest = 0;
+  for (const Place& place : places) {
+    if (known[place.feature] != kUnknownGroup) continue;
+    wanted.push_back(place);
+    widest = std::max(widest, std::int64_t{place.box.max_x} - place.box.min_x);
+  }
+  std::vector<std::uint32_t> found;
+  std::size_t steps = 0;
+  std::size_t first = 0;  // before it, all end west of the place
+  for (const Place& place : places) {
+    while (first < wanted.size() && wanted[first].box.min_x + widest < place.box.min_x) ++first;
+    bool is_near = known[place.feature] == kUnknownGroup;
+    for (std::size_t i = first; !is_near && i < wanted.size(); ++i, ++steps) {
+      if (wanted[i].box.min_x > place.box.max_x) break;
+      is_near = wanted[i].box.intersects(place.box);
+    }
+    if (is_near) found.push_back(place.feature);
+    if (steps > kMostStepsOfEach * features.size()) return all;
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+void tie_known(std::span<const std::uint32_t> known, Ties& ties) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_group;
+  for (std::uint32_t i = 0; i < known.size(); ++i) {
+    if (known[i] != kUnknownGroup) by_group.emplace_back(known[i], i);
+  }
+  std::ranges::sort(by_group);
+  for (std::size_t i = 1; i < by_group.size(); ++i) {
+    if (by_group[i - 1].first == by_group[i].first) {
+      ties.tie(by_group[i - 1].second, by_group[i].second);
+    }
+  }
+}
+
 // The greatest overlap of two neighbours, as a share of the area of the smaller one.
 constexpr double kMostOverlap = 0.01;
 
@@ -136,13 +184,22 @@ constexpr double kNarrowestOverlap = 32;
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       CoverageMode coverage, unsigned threads) {
+                                                       CoverageMode coverage, unsigned threads,
+                                                       std::span<const std::uint32_t> known) {
   Ties ties(features.size());
+  const std::vector<std::uint32_t> open = to_be_looked_at(features, known);
+  std::vector<const Rings*> rings;
+  for (const std::uint32_t i : open) rings.push_back(features[i]);
+  Ties found(open.size());
   if (coverage == CoverageMode::on) {
-    tie_by_boxes(features, ties);
+    tie_by_boxes(rings, found);
   } else {
-    tie_by_edges(features, threads, ties);
+    tie_by_edges(rings, threads, found);
   }
+  for (const auto& group : found.groups()) {
+    for (const std::uint32_t i : group) ties.tie(open[group.front()], open[i]);
+  }
+  tie_known(known, ties);
   return ties.groups();
 }
 

@@ -29,12 +29,20 @@ inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
     {"off", CoverageMode::off},
 });
 
+/// Nothing is known of the group of a feature.
+constexpr std::uint32_t kUnknownGroup = 0xffffffff;
+
 /// Groups of two or more features, each feature by its position in `features`, in ascending order;
 /// the groups are in order of their first features. With `automatic`, two features are in the same
 /// group if they have an edge in common; with `on`, if their boxes meet. `coverage` is not `off`.
 /// Rings are clean (see clean_rings.h). On up to `threads` threads.
+///
+/// What is `known` of an earlier grouping spares looking for it: features of the same number are in
+/// the same group whatever the others are, and two of different numbers have no edge in common, or
+/// boxes that do not meet; by feature, or empty. The groups are the same without it.
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
-                                                       CoverageMode coverage, unsigned threads = 1);
+                                                       CoverageMode coverage, unsigned threads = 1,
+                                                       std::span<const std::uint32_t> known = {});
 
 /// A group, split into the features that share a graph and those that do not; by their positions,
 /// in ascending order.

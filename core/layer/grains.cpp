@@ -4,22 +4,11 @@
 
 namespace trapeze {
 
-void sort_for_index(std::vector<FeatureGrain>& grains) {
-  const auto key = [](const FeatureGrain& grain) {
-    const Point middle{static_cast<std::int32_t>((std::int64_t{grain.from.x} + grain.to.x) / 2),
-                       static_cast<std::int32_t>((std::int64_t{grain.from.y} + grain.to.y) / 2)};
-    return std::uint64_t{grain.born / kLevelsPerOctave} << 32 | hilbert(middle);
-  };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  order.reserve(grains.size());
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    order.emplace_back(key(grains[i]), static_cast<std::uint32_t>(i));
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<FeatureGrain> sorted;
-  sorted.reserve(grains.size());
-  for (const auto& [unused, i] : order) sorted.push_back(grains[i]);
-  grains.swap(sorted);
+std::uint64_t order_key(const FeatureGrain& grain) {
+  const Point middle{static_cast<std::int32_t>((std::int64_t{grain.from.x} + grain.to.x) / 2),
+                     static_cast<std::int32_t>((std::int64_t{grain.from.y} + grain.to.y) / 2)};
+  return std::uint64_t{static_cast<unsigned>(grain.born / kLevelsPerOctave)} << 32 |
+         hilbert(middle);
 }
 
 GrainIndex::GrainIndex(StoredArray<FeatureGrain> grains)
@@ -27,8 +16,8 @@ GrainIndex::GrainIndex(StoredArray<FeatureGrain> grains)
   for (std::size_t i = 0; i < grains_.size(); ++i) {
     Block& block = blocks_[i / kBlock];
     block.box.include(grains_[i].box());
-    block.min_born = std::min(block.min_born, grains_[i].born);
-    block.max_born = std::max(block.max_born, grains_[i].born);
+    block.min_born = std::min<std::uint32_t>(block.min_born, grains_[i].born);
+    block.max_born = std::max<std::uint32_t>(block.max_born, grains_[i].born);
   }
 }
 

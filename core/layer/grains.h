@@ -24,7 +24,9 @@ struct FeatureGrain {
   Point to;
   std::int64_t doubled_area = 0;  // cells squared; negative if it was a hole
   std::uint32_t row = 0;          // of the feature
-  std::uint32_t born = 0;         // the level
+  Level born = 0;
+  std::uint8_t is_covered = 0;  // see Grain: 1 if other features cover the place before and after
+  std::uint16_t unused = 0;     // in place of padding, so that equal grains are equal bytes
 
   double area() const { return static_cast<double>(doubled_area) / 2; }
   Strip strip() const { return strip_of({from, to}, area()); }
@@ -42,9 +44,9 @@ inline Box FeatureGrain::box() const {
           cell(std::max(from.x, to.x) + reach), cell(std::max(from.y, to.y) + reach)};
 }
 
-/// Sorts grains so that those born in the same octave and near each other on the map are near each
-/// other in the array.
-void sort_for_index(std::vector<FeatureGrain>& grains);
+/// By this key grains are in order for the index: those born in the same octave and near each other
+/// on the map are near each other in the array.
+std::uint64_t order_key(const FeatureGrain& grain);
 
 /// Thread-safety: immutable, any number of threads may read.
 class GrainIndex {

@@ -140,8 +140,10 @@ std::size_t Layer::memory() const {
          c.milestone_ends.memory() + c.milestones.memory() + c.milestone_levels.memory() +
          c.trapezoids.memory() + c.lifespans.memory() + c.feature_of.memory() +
          c.outline_points.memory() + c.ring_ends.memory() + c.outline_ends.memory() +
-         c.polygon_index.memory() + c.horizontal_edge_index.memory() + c.mote_index.memory() +
-         c.merged_mote_index.memory() + c.grains.memory() + c.overlaps.memory();
+         c.feature_units.memory() + c.group_units.memory() + c.group_members.memory() +
+         c.group_overlaps.memory() + c.polygon_index.memory() + c.horizontal_edge_index.memory() +
+         c.mote_index.memory() + c.merged_mote_index.memory() + c.grains.memory() +
+         c.overlaps.memory();
 }
 
 }  // namespace trapeze

@@ -88,14 +88,29 @@ void check_features(const LayerArrays& a) {
           "the feature of a trapezoid is not there");
   require(all_of(a.grains,
                  [rows](const FeatureGrain& grain) {
-                   return grain.row < rows && grain.born <= kLastLevel && kIsOnGrid(grain.from) &&
-                          kIsOnGrid(grain.to);
+                   return grain.row < rows && grain.born <= kLastLevel && grain.is_covered <= 1 &&
+                          kIsOnGrid(grain.from) && kIsOnGrid(grain.to);
                  }),
           "a grain of dust has no feature or no place");
   require(a.outline_ends.size() <= rows, "there are outlines without a feature");
   require(is_sorted_up_to(a.outline_ends, a.ring_ends.size()), "outlines are not in order");
   require(is_sorted_up_to(a.ring_ends, a.outline_points.size()), "rings are not in order");
   require(all_of(a.outline_points, kIsOnGrid), "a point of an outline is not on the grid");
+}
+
+void check_units(const LayerArrays& a) {
+  const std::size_t rows = a.cells.ids.size();
+  const BuiltUnitsView& units = a.units;
+  const auto is_row = [rows](const auto& unit) { return unit.row < rows; };
+  require(all_of(units.features, is_row) && all_of(units.members, is_row),
+          "the feature of a unit is not there");
+  const auto is_sorted = [&units](auto end, std::size_t all) {
+    return std::ranges::is_sorted(units.groups, {}, end) &&
+           (units.groups.empty() ? 0 : units.groups.back().*end) == all;
+  };
+  require(is_sorted(&GroupUnit::members_end, units.members.size()) &&
+              is_sorted(&GroupUnit::overlaps_end, units.overlaps.size()),
+          "groups are not in order");
 }
 
 void check_sums(const LayerArrays& a) {
@@ -139,6 +154,10 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
+  arrays.units = {{c.feature_units.data(), c.feature_units.size()},
+                  {c.group_units.data(), c.group_units.size()},
+                  {c.group_members.data(), c.group_members.size()},
+                  {c.group_overlaps.data(), c.group_overlaps.size()}};
   arrays.cells = c.features.cells();
   arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
   arrays.horizontal_edges = c.horizontal_edge_index.range().count;
@@ -153,6 +172,7 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   check_mesh(arrays);
   check_outline(arrays);
   check_features(arrays);
+  check_units(arrays);
   check_sums(arrays);
   auto layer = std::make_unique<LayerContents>();
   layer->mapping = std::move(mapping);
@@ -169,6 +189,10 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   look_at(arrays.outline_points, layer->outline_points);
   look_at(arrays.ring_ends, layer->ring_ends);
   look_at(arrays.outline_ends, layer->outline_ends);
+  look_at(arrays.units.features, layer->feature_units);
+  look_at(arrays.units.groups, layer->group_units);
+  look_at(arrays.units.members, layer->group_members);
+  look_at(arrays.units.overlaps, layer->group_overlaps);
   const std::size_t horizontal_edges = arrays.feature_of.size();
   const std::size_t polygons = horizontal_edges - arrays.horizontal_edges;
   const std::size_t singles = horizontal_edges + arrays.single_motes;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/layer/built_units.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
@@ -33,6 +34,7 @@ struct LayerArrays {
   std::span<const Point> outline_points;
   std::span<const std::uint32_t> ring_ends;
   std::span<const std::uint32_t> outline_ends;
+  BuiltUnitsView units;
   FeatureTable::Cells cells;
 
   std::vector<Field> fields;

@@ -14,6 +14,7 @@
 #include "core/borders/coverage_builder.h"
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"
+#include "core/layer/earlier_layer.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
@@ -26,8 +27,12 @@ namespace trapeze {
 /// feature.
 class LayerBuilder {
  public:
-  /// Tells `share`, if there is one, how far it is with what it adds; it must outlive the builder.
-  explicit LayerBuilder(const LayerOptions& options = {}, WorkShare* share = nullptr);
+  /// Tells `share`, if there is one, how far it is with what it adds. What has the same rings as in
+  /// `earlier`, if there is one, is taken over from there and not built: the outcomes and the layer
+  /// are the same. It was built with equal options by the same program, and is that of all builders
+  /// that are joined. Both must outlive the builder, and `earlier` the joining.
+  explicit LayerBuilder(const LayerOptions& options = {}, WorkShare* share = nullptr,
+                        EarlierLayer* earlier = nullptr);
   ~LayerBuilder();
   LayerBuilder(LayerBuilder&&) noexcept;
   LayerBuilder& operator=(LayerBuilder&&) noexcept;
@@ -39,7 +44,8 @@ class LayerBuilder {
 
   /// Builds one graph of those features of a group that can live in one, see assemble(): the
   /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
-  /// rings are clean. On up to `threads` threads.
+  /// rings are clean. On up to `threads` threads. Where the group is taken over, the outcome lacks
+  /// the faces, and the areas of features that do not lie under others.
   Assembly add_coverage(std::span<const std::uint32_t> rows, std::span<const Rings* const> features,
                         unsigned threads = 1);
 
@@ -47,12 +53,16 @@ class LayerBuilder {
   /// that would take too long; none as a rule. See HistoryRecorder::record().
   std::optional<double> most_tolerance() const;
 
+  /// How many features have been taken over.
+  std::size_t taken_over() const;
+
   /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
   /// with the same options. Calls `progress`, if there is one, with the share of the time that has
-  /// gone. Throws std::length_error if there are more of anything than 32 bits count; so do add()
-  /// and add_coverage().
+  /// gone. On up to `threads` threads, on which nothing depends. Throws std::length_error if there
+  /// are more of anything than 32 bits count; so do add() and add_coverage().
   static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features,
-                                     const std::function<void(double)>& progress = {});
+                                     const std::function<void(double)>& progress = {},
+                                     unsigned threads = 1);
 
  private:
   struct State;

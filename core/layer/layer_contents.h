@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/grid/stored_array.h"
+#include "core/layer/built_units.h"
 #include "core/layer/feature_table.h"
 #include "core/layer/grains.h"
 #include "core/layer/layer_options.h"
@@ -43,6 +44,11 @@ struct LayerContents {
   StoredArray<Point> outline_points;
   StoredArray<std::uint32_t> ring_ends;
   StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
+  // As in BuiltUnitsView.
+  StoredArray<FeatureUnit> feature_units;
+  StoredArray<GroupUnit> group_units;
+  StoredArray<GroupMember> group_members;
+  StoredArray<GroupOverlap> group_overlaps;
   Box bounds;
   FeatureTable features;
 };

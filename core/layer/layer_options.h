@@ -10,6 +10,8 @@ namespace trapeze {
 struct LayerOptions : GeneralizationOptions {
   CoverageMode coverage = kUsualCoverage;
   double close_gaps = 0;  // metres on the ground, up to kWidestGap; where there are coverages
+
+  friend bool operator==(const LayerOptions&, const LayerOptions&) = default;
 };
 
 }  // namespace trapeze

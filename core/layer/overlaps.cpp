@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/grid/for_each_in_parallel.h"
 #include "core/grid/grid.h"
 #include "core/mesh/mesh_index.h"
 
@@ -20,6 +21,8 @@ constexpr std::size_t kMostPairsOf = 16;                   // for each trapezoid
 constexpr std::size_t kLeastPairs = std::size_t{1} << 20;  // 12 MB
 constexpr std::uint64_t kMostStepsOf = 1024;               // for each trapezoid
 constexpr int kMostHalvings = 64;
+constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;  // by a thread
+constexpr std::size_t kRowsAtOnce = 1024;
 constexpr std::uint64_t kLeastSteps = std::uint64_t{1} << 24;
 
 /// The common part of two boxes; empty if they only touch.
@@ -58,17 +61,29 @@ struct Common {
 
 class OverlapSearch {
  public:
-  explicit OverlapSearch(const OverlapInput& input) : input_(input) { collect_items(); }
+  OverlapSearch(const OverlapInput& input, unsigned threads)
+      : input_(input), threads_(threads), is_compared_(input.graph_of.size()) {
+    const auto untouched =
+        static_cast<std::uint64_t>(std::ranges::count(input.lifespans, Level{0}, &Lifespan::born));
+    most_steps_ = kLeastSteps + kMostStepsOf * untouched;
+    most_pairs_ = kLeastPairs + kMostPairsOf * untouched;
+  }
 
   FeatureOverlaps run() {
     std::vector<std::uint32_t> rows;
     Box all;
-    for (std::uint32_t row = 0; row < boxes_.size(); ++row) {
-      if (boxes_[row].is_empty()) continue;
+    for (std::uint32_t row = 0; row < input_.boxes.size(); ++row) {
+      if (input_.boxes[row].is_empty()) continue;
       rows.push_back(row);
-      all.include(boxes_[row]);
+      all.include(input_.boxes[row]);
     }
-    if (!rows.empty()) join(rows, all, kMostHalvings);
+    if (!rows.empty()) {
+      join(rows, all, kMostHalvings);
+      collect_items();
+      is_looking_ahead_ = false;
+      steps_ = 0;
+      join(rows, all, kMostHalvings);
+    }
     found_.is_complete = !is_over();
     std::ranges::sort(found_.pairs, {}, [](const FeatureOverlap& overlap) {
       return std::pair(overlap.row, overlap.other);
@@ -83,6 +98,7 @@ class OverlapSearch {
   bool is_over() const { return steps_ > most_steps_ || found_.pairs.size() >= most_pairs_; }
 
   void collect_items();
+  void order_items(std::uint32_t row);
   void join(std::span<const std::uint32_t> rows, const Box& region, int halvings);
   void join_each(std::span<const std::uint32_t> rows, const Box& region);
   void compare(std::uint32_t a, std::uint32_t b, const Box& place);
@@ -93,9 +109,11 @@ class OverlapSearch {
   Common common(const Item& a, const Item& b) const;
 
   const OverlapInput& input_;
-  std::vector<Item> items_;          // by row, and by top
-  std::vector<std::size_t> begins_;  // by row; and the end
-  std::vector<Box> boxes_;           // by row; empty if there is nothing of it
+  const unsigned threads_;
+  std::vector<Item> items_;                // by row, and by top
+  std::vector<std::size_t> begins_;        // by row; and the end
+  std::vector<std::uint8_t> is_compared_;  // by row
+  bool is_looking_ahead_ = true;           // only which features are to be compared is looked for
   FeatureOverlaps found_;
   std::uint64_t steps_ = 0;
   std::uint64_t most_steps_ = 0;
@@ -104,38 +122,53 @@ class OverlapSearch {
   std::vector<const Item*> others_;
 };
 
+/// Only of features that are to be compared, which are few on most maps.
 void OverlapSearch::collect_items() {
+  struct Owned {
+    Item item;
+    std::uint32_t row = 0;
+  };
+  const std::size_t pieces = (input_.feature_of.size() + kItemsAtOnce - 1) / kItemsAtOnce;
+  std::vector<std::vector<Owned>> found(pieces);
+  for_each_in_parallel(pieces, threads_, [&](std::size_t piece) {
+    const std::size_t end = std::min(input_.feature_of.size(), (piece + 1) * kItemsAtOnce);
+    for (std::size_t i = piece * kItemsAtOnce; i < end; ++i) {
+      const std::uint32_t row = input_.feature_of[i];
+      if (input_.lifespans[i].born != 0 || is_compared_[row] == 0) continue;
+      const MeshTrapezoid& t = input_.mesh.trapezoids[i];
+      if (input_.mesh.vertices[t.top].y >= input_.mesh.vertices[t.bottom].y) continue;
+      found[piece].push_back({{box_of(input_.mesh, t), static_cast<std::uint32_t>(i), 0}, row});
+    }
+  });
   const std::size_t rows = input_.graph_of.size();
   begins_.assign(rows + 1, 0);
-  const auto for_each_item = [this](const auto& visit) {
-    for (std::uint32_t i = 0; i < input_.feature_of.size(); ++i) {
-      const MeshTrapezoid& t = input_.mesh.trapezoids[i];
-      const bool has_height = input_.mesh.vertices[t.top].y < input_.mesh.vertices[t.bottom].y;
-      if (input_.lifespans[i].born == 0 && has_height) visit(i, input_.feature_of[i]);
-    }
-  };
-  for_each_item([this](std::uint32_t, std::uint32_t row) { ++begins_[row + 1]; });
+  for (const auto& piece : found) {
+    for (const Owned& owned : piece) ++begins_[owned.row + 1];
+  }
   for (std::size_t row = 0; row < rows; ++row) begins_[row + 1] += begins_[row];
   items_.resize(begins_.back());
   std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
-  for_each_item([&](std::uint32_t i, std::uint32_t row) {
-    items_[next[row]++] = {box_of(input_.mesh, input_.mesh.trapezoids[i]), i, 0};
-  });
-  boxes_.resize(rows);
-  for (std::uint32_t row = 0; row < rows; ++row) {
-    const std::span<Item> items = std::span(items_).subspan(begins_[row], items_of(row).size());
-    std::ranges::sort(items, {}, [](const Item& item) {
-      const Box& box = item.box;
-      return std::tuple(box.min_y, box.min_x, box.max_y, box.max_x);
-    });
-    std::int32_t reach = kGridMin;
-    for (Item& item : items) {
-      boxes_[row].include(item.box);
-      item.reach = reach = std::max(reach, item.box.max_y);
-    }
+  for (auto& piece : found) {
+    for (const Owned& owned : piece) items_[next[owned.row]++] = owned.item;
+    piece = {};
   }
-  most_steps_ = kLeastSteps + kMostStepsOf * items_.size();
-  most_pairs_ = kLeastPairs + kMostPairsOf * items_.size();
+  const std::size_t blocks = (rows + kRowsAtOnce - 1) / kRowsAtOnce;
+  for_each_in_parallel(blocks, threads_, [&](std::size_t block) {
+    const std::size_t end = std::min(rows, (block + 1) * kRowsAtOnce);
+    for (std::size_t row = block * kRowsAtOnce; row < end; ++row) {
+      order_items(static_cast<std::uint32_t>(row));
+    }
+  });
+}
+
+void OverlapSearch::order_items(std::uint32_t row) {
+  const std::span<Item> items = std::span(items_).subspan(begins_[row], items_of(row).size());
+  std::ranges::sort(items, {}, [](const Item& item) {
+    const Box& box = item.box;
+    return std::tuple(box.min_y, box.min_x, box.max_y, box.max_x);
+  });
+  std::int32_t reach = kGridMin;
+  for (Item& item : items) item.reach = reach = std::max(reach, item.box.max_y);
 }
 
 /// Halves the region, so many times at most, until few features are left in each part of it.
@@ -150,7 +183,7 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
 
   const bool is_wide = width >= height;
   const auto middle_of = [&](std::uint32_t row) {
-    const Box box = common_part(boxes_[row], region);
+    const Box box = common_part(input_.boxes[row], region);
     const std::int64_t sum =
         is_wide ? std::int64_t{box.min_x} + box.max_x : std::int64_t{box.min_y} + box.max_y;
     return static_cast<std::int32_t>(sum / 2);
@@ -167,8 +200,8 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
   std::vector<std::uint32_t> some;
   std::vector<std::uint32_t> others;
   for (const std::uint32_t row : rows) {
-    if (!common_part(boxes_[row], before).is_empty()) some.push_back(row);
-    if (!common_part(boxes_[row], after).is_empty()) others.push_back(row);
+    if (!common_part(input_.boxes[row], before).is_empty()) some.push_back(row);
+    if (!common_part(input_.boxes[row], after).is_empty()) others.push_back(row);
   }
   // Of features that are all as large as the region there are no fewer in its parts.
   if (some.size() + others.size() > rows.size() * 7 / 4) return join_each(rows, region);
@@ -183,11 +216,16 @@ void OverlapSearch::join_each(std::span<const std::uint32_t> rows, const Box& re
     for (std::size_t k = i + 1; k < rows.size(); ++k) {
       const auto [a, b] = std::minmax(rows[i], rows[k]);
       if (input_.graph_of[a] == input_.graph_of[b]) continue;
-      const Box place = common_part(boxes_[a], boxes_[b]);
+      const Box place = common_part(input_.boxes[a], input_.boxes[b]);
       const bool begins_here = !place.is_empty() && place.min_x >= region.min_x &&
                                place.min_x < region.max_x && place.min_y >= region.min_y &&
                                place.min_y < region.max_y;
-      if (begins_here) compare(a, b, place);
+      if (!begins_here) continue;
+      if (is_looking_ahead_) {
+        is_compared_[a] = is_compared_[b] = 1;
+      } else {
+        compare(a, b, place);
+      }
     }
   }
 }
@@ -320,8 +358,9 @@ OverlapTable::OverlapTable(StoredArray<FeatureOverlap> pairs, std::size_t rows)
   }
 }
 
-FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known) {
-  FeatureOverlaps found = OverlapSearch(input).run();
+FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known,
+                              unsigned threads) {
+  FeatureOverlaps found = OverlapSearch(input, threads).run();
   if (known.empty()) return found;
   const auto by_rows = [](const FeatureOverlap& pair) { return std::pair(pair.row, pair.other); };
   found.pairs.insert(found.pairs.end(), known.begin(), known.end());

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/grid/grid.h"
 #include "core/grid/stored_array.h"
 #include "core/grid/tolerance.h"
 #include "core/mesh/trapezoid_mesh.h"
@@ -81,6 +82,7 @@ struct OverlapInput {
   std::span<const Lifespan> lifespans;        // by trapezoid, as many as feature_of
   std::span<const std::uint32_t> feature_of;  // row, by trapezoid; others of the mesh do not count
   std::span<const std::uint32_t> graph_of;    // by row: features of one graph are not compared
+  std::span<const Box> boxes;                 // by row, around the feature: as many
 };
 
 struct FeatureOverlaps {
@@ -90,7 +92,8 @@ struct FeatureOverlaps {
 
 /// Overlaps wider than two cells, which is more than what snapping borders to the grid makes of
 /// neighbours. Does not depend on the order of trapezoids. With those that are known, of features
-/// of one graph, each once or more often.
-FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {});
+/// of one graph, each once or more often. On up to `threads` threads, on which nothing depends.
+FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {},
+                              unsigned threads = 1);
 
 }  // namespace trapeze

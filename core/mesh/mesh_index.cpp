@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/grid/for_each_in_parallel.h"
 #include "core/grid/hilbert.h"
 
 namespace trapeze {
@@ -126,16 +127,22 @@ std::uint64_t order_key(const Box& box, Lifespan lifespan) {
 }
 
 MeshIndex::MeshIndex(const MeshView& mesh, TrapezoidRange range,
-                     std::span<const Lifespan> lifespans)
+                     std::span<const Lifespan> lifespans, unsigned threads)
     : range_(range), heights_(heights_over(range.count, kFanout)) {
+  constexpr std::size_t kItemsAtOnce = std::size_t{1} << 14;
+  static_assert(kItemsAtOnce % kFanout == 0);
   std::vector<Entry> entries(heights_.back());
-  for (std::size_t i = 0; i < range.count; ++i) {
-    Entry& entry = entries[i / kFanout];
-    const std::size_t t = range.first + i;
-    entry.box.include(box_of(mesh, mesh.trapezoids[t]));
-    entry.min_born = std::min(entry.min_born, lifespans[t].born);
-    entry.max_dies = std::max(entry.max_dies, lifespans[t].dies);
-  }
+  const std::size_t pieces = (range.count + kItemsAtOnce - 1) / kItemsAtOnce;
+  for_each_in_parallel(pieces, threads, [&](std::size_t piece) {
+    const std::size_t end = std::min<std::size_t>(range.count, (piece + 1) * kItemsAtOnce);
+    for (std::size_t i = piece * kItemsAtOnce; i < end; ++i) {
+      Entry& entry = entries[i / kFanout];
+      const std::size_t t = range.first + i;
+      entry.box.include(box_of(mesh, mesh.trapezoids[t]));
+      entry.min_born = std::min(entry.min_born, lifespans[t].born);
+      entry.max_dies = std::max(entry.max_dies, lifespans[t].dies);
+    }
+  });
   for (std::size_t height = 1; height + 1 < heights_.size(); ++height) {
     const std::size_t below = heights_[height - 1];
     for (std::size_t i = below; i < heights_[height]; ++i) {

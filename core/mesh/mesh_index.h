@@ -43,8 +43,10 @@ class MeshIndex {
   };
 
   MeshIndex() = default;
-  /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh.
-  MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans);
+  /// Over the trapezoids of `range`; `lifespans` has one for every trapezoid of the mesh. On up to
+  /// `threads` threads.
+  MeshIndex(const MeshView& mesh, TrapezoidRange range, std::span<const Lifespan> lifespans,
+            unsigned threads = 1);
   /// A view of the entries() of another index over as many trapezoids; they must outlive it. Throws
   /// std::invalid_argument if their number does not fit that of the trapezoids.
   MeshIndex(TrapezoidRange range, std::span<const Entry> entries);

@@ -48,6 +48,7 @@ int run_check(const CheckArguments& arguments);
 struct PrepareArguments {
   std::vector<std::string> files;
   std::string output;  // a folder, made if it is not there
+  std::string reuse;   // a prepared file, or a folder of them; empty: nothing is taken over
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
   SourceSelection selection;  // of each file

@@ -89,7 +89,8 @@ constexpr const char* kCheckFooter =
 constexpr const char* kPrepareFooter =
     "\nExamples:\n"
     "  trapeze prepare buildings.gpkg water.fgb --output prepared\n"
-    "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n\n"
+    "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n"
+    "  trapeze prepare buildings.gpkg --output prepared --reuse prepared\n\n"
     "A prepared file holds a layer as it is served: it is mapped and not built again, servers on\n"
     "one machine share its memory, and tiles and their ETags are those of FILE. It is refused if "
     "it\n"
@@ -326,6 +327,12 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
                    "The folder to write into; each file is named after FILE, and ends in .trapeze")
       ->required()
       ->type_name("DIR");
+  prepare
+      ->add_option("--reuse", arguments.reuse,
+                   "A file prepared before, or the folder of such files, perhaps that of --output: "
+                   "polygons, and groups of polygons with shared borders, that have not changed "
+                   "since are taken over from there. What is written is the same without it")
+      ->type_name("OLD");
 }
 
 void add_diff(CLI::App& app, trapeze::DiffArguments& arguments) {

@@ -59,6 +59,9 @@ void log_report(const LoadReport& report, const Layer& layer) {
       layer.mesh().trapezoids.size(),
       static_cast<double>(layer.memory() + layer.features().memory()) / 1e6, report.total_seconds,
       report.origin());
+  if (report.taken_over > 0) {
+    spdlog::info("{}: {} features are as they were and taken over", report.path, report.taken_over);
+  }
   if (report.other_geometry > 0) {
     spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
                  report.other_geometry);
@@ -203,14 +206,33 @@ void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previou
   if (!problems.empty()) throw std::runtime_error(problems);
 }
 
+/// The layer of `previous`, if any, of which the same polygons may be a part.
+const ServedLayer* find_earlier(const LayerConfig& layer, const Dataset* previous) {
+  if (previous == nullptr) return nullptr;
+  const auto position = previous->find(layer.name);
+  if (!position || !previous->layers()[*position].is_whole()) return nullptr;
+  return &previous->layers()[*position];
+}
+
+/// What has not changed since `earlier` is taken over from there, unless that is null.
+LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const ServedLayer* earlier) {
+  if (earlier != nullptr) options.earlier = earlier->layer;
+  LoadedLayer loaded = open_layer(layer.file_to_open(), options);
+  if (earlier == nullptr || earlier->is_whole()) return loaded;
+  // Its file was written into meanwhile.
+  options.earlier = nullptr;
+  return open_layer(layer.file_to_open(), options);
+}
+
 /// `progress` is called by the thread that calls this.
-ServedLayer read_layer(const LayerConfig& layer, const std::function<void(double)>& progress) {
+ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
+                       const std::function<void(double)>& progress) {
   ServedLayer served;
   served.config = layer;
   served.source_state = state_of_sources(layer);  // before reading: what changes meanwhile is read
   OpenOptions options = how_to_open(layer);
   options.progress = progress;
-  LoadedLayer loaded = open_layer(layer.file_to_open(), options);
+  LoadedLayer loaded = open_with(layer, options, earlier);
   served.revision = loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
   served.layer = std::move(loaded.layer);
   if (layer.has_fast_topology()) served.untested = build_without_topology_test(*served.layer);
@@ -282,8 +304,10 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       show(1);
       progress.finish(i);
     } else {
-      reading.emplace_back(i, std::async(std::launch::async, [&layers, &progress, i, show] {
-                             ServedLayer layer = read_layer(layers[i], show);
+      const ServedLayer* earlier = find_earlier(layers[i], previous);
+      reading.emplace_back(i,
+                           std::async(std::launch::async, [&layers, &progress, i, show, earlier] {
+                             ServedLayer layer = read_layer(layers[i], earlier, show);
                              progress.finish(i);
                              return layer;
                            }));

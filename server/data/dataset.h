@@ -54,7 +54,8 @@ class Dataset {
  public:
   /// Loads all layers at once, or maps those that are prepared, on all cores, with progress and a
   /// summary in the log. A layer that `previous` has, if that is not null, is taken from there if
-  /// neither its files nor how it is read have changed. Throws std::runtime_error naming the file
+  /// neither its files nor how it is read have changed; of one whose files have, what is built of
+  /// the same rings is (see LoadOptions::earlier). Throws std::runtime_error naming the file
   /// if one cannot be read, was prepared otherwise than configured, has more skipped features than
   /// its configuration allows, or, unless that allows it, fewer than half of the features that
   /// `previous` draws of the layer of that name, of whose source the same was selected.

@@ -38,10 +38,13 @@ PreparedHeader read_header(std::span<const std::byte> file) {
   if (file.size() < sizeof header) fail("is cut off");
   std::memcpy(&header, file.data(), sizeof header);
   if (header.magic != kPreparedMagic) fail("is no prepared file");
-  if (header.byte_order != kByteOrderMark) fail("was prepared on a machine of another byte order");
+  if (header.byte_order != kByteOrderMark) {
+    throw OtherFormatError("was prepared on a machine of another byte order");
+  }
   if (header.version != kPreparedVersion) {
-    fail("has format " + std::to_string(header.version) + ", and this version of Trapeze reads " +
-         std::to_string(kPreparedVersion));
+    throw OtherFormatError("has format " + std::to_string(header.version) +
+                           ", and this version of Trapeze reads " +
+                           std::to_string(kPreparedVersion));
   }
   if (header.header_checksum != checksum_of_header(header)) fail("is damaged: its header");
   if (header.file_size != file.size()) {
@@ -77,7 +80,7 @@ class Cutter {
 }  // namespace
 
 std::string name_of(SectionKind kind) {
-  static constexpr std::array<const char*, 25> kNames = {"description",
+  static constexpr std::array<const char*, 29> kNames = {"description",
                                                          "vertices",
                                                          "edges",
                                                          "trapezoids",
@@ -96,6 +99,10 @@ std::string name_of(SectionKind kind) {
                                                          "ends of milestones",
                                                          "milestones",
                                                          "levels of milestones",
+                                                         "features built by themselves",
+                                                         "groups",
+                                                         "features of groups",
+                                                         "overlaps in groups",
                                                          "ids",
                                                          "texts",
                                                          "ends of texts",

@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be incremented when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 5;
+constexpr std::uint32_t kPreparedVersion = 6;
 
 /// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
@@ -61,6 +61,10 @@ enum class SectionKind : std::uint32_t {
   milestone_ends,
   milestones,
   milestone_levels,
+  feature_units,
+  group_units,
+  group_members,
+  group_overlaps,
   ids,
   string_bytes,
   string_ends,
@@ -82,6 +86,12 @@ struct DirectoryEntry {
 class PreparedFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// It is not damaged, as far as can be told, but no file of this version or byte order.
+class OtherFormatError : public PreparedFileError {
+ public:
+  using PreparedFileError::PreparedFileError;
 };
 
 /// Whether `path` is a file that begins like a prepared file. Never throws.

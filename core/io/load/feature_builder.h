@@ -13,13 +13,16 @@ namespace trapeze {
 /// Belongs to one thread at a time. Gets features that stand by themselves in ascending order.
 class FeatureBuilder : public FeatureWorker {
  public:
-  explicit FeatureBuilder(const LayerOptions& generalization) : builder_(generalization, &share_) {}
+  /// Takes over from `earlier`, if it is not null; see LayerBuilder.
+  FeatureBuilder(const LayerOptions& generalization, EarlierLayer* earlier)
+      : builder_(generalization, &share_, earlier) {}
 
   void build_apart(const FeatureKey& feature, Rings& rings) override;
   /// Builds one graph of the features, but for those that have to be built apart (see assemble()).
   void build_together(std::span<WaitingFeature* const> features, unsigned threads) override;
 
   const FeatureTally& tally() const { return tally_; }
+  std::size_t taken_over() const { return builder_.taken_over(); }
   LayerBuilder take_builder() { return std::move(builder_); }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "core/borders/gap_closing.h"
 #include "core/borders/part_union.h"
+#include "core/grid/for_each_in_parallel.h"
 #include "core/io/load/bounded_queue.h"
 #include "core/sweep/clean_rings.h"
 
@@ -41,13 +42,14 @@ double work_of(std::span<WaitingFeature* const> task) {
 
 /// The groups of features, and all others each by itself.
 std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& waiting,
-                                                   CoverageMode coverage, unsigned threads) {
+                                                   CoverageMode coverage, unsigned threads,
+                                                   std::span<const std::uint32_t> known) {
   std::vector<const Rings*> rings;
   rings.reserve(waiting.size());
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
   std::vector<std::vector<WaitingFeature*>> tasks;
   std::vector<bool> is_grouped(waiting.size(), false);
-  for (const auto& group : group_features(rings, coverage, threads)) {
+  for (const auto& group : group_features(rings, coverage, threads, known)) {
     auto& task = tasks.emplace_back();
     for (const std::uint32_t i : group) {
       task.push_back(&waiting[i]);
@@ -188,8 +190,8 @@ class FeaturePipeline::Pool {
 
 FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                                  const std::vector<FeatureWorker*>& workers,
-                                 std::function<void(double)> progress)
-    : source_(source), options_(options), progress_(std::move(progress)) {
+                                 std::function<void(double)> progress, const EarlierLayer* earlier)
+    : source_(source), options_(options), progress_(std::move(progress)), earlier_(earlier) {
   for (FeatureWorker* worker : workers) {
     lanes_.push_back(std::make_unique<Lane>(source, options, *worker));
   }
@@ -281,6 +283,16 @@ void FeaturePipeline::close_gaps_between(std::vector<WaitingFeature>& waiting) {
   remark(done.kept, "would change or overlap by too much");
 }
 
+/// See group_features().
+std::vector<std::uint32_t> FeaturePipeline::known_groups(
+    const std::vector<WaitingFeature>& waiting) const {
+  if (earlier_ == nullptr) return {};
+  std::vector<Digest> digests(waiting.size());
+  for_each_in_parallel(waiting.size(), lanes_.size(),
+                       [&](std::size_t i) { digests[i] = digest_of(waiting[i].rings); });
+  return earlier_->known_groups(digests, options_.close_gaps == 0);
+}
+
 /// Builds all features that wait, with those with which they share borders. What comes of it does
 /// not depend on the number of lanes.
 void FeaturePipeline::build_waiting() {
@@ -291,7 +303,7 @@ void FeaturePipeline::build_waiting() {
     show_progress();
   }
   const auto threads = static_cast<unsigned>(lanes_.size());
-  std::vector<Task> tasks = tasks_of(waiting, options_.coverage, threads);
+  std::vector<Task> tasks = tasks_of(waiting, options_.coverage, threads, known_groups(waiting));
   work_read_ = 0;
   for (const Task& task : tasks) work_read_ += work_of(task);
   is_grouped_ = true;

@@ -19,6 +19,7 @@
 #include "core/io/load/feature_tally.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_ring_reader.h"
+#include "core/layer/earlier_layer.h"
 #include "core/layer/layer_options.h"
 
 namespace trapeze {
@@ -69,8 +70,11 @@ class FeaturePipeline {
   /// workers must outlive the pipeline. `progress` is as in LoadOptions, and may be empty: it is
   /// called now and then with the share of the expected time that has gone, as far as it is spent
   /// here.
+  /// Of `earlier`, if it is not null, is taken which features share borders: it was built with the
+  /// same options, and must outlive the pipeline.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
-                  const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress);
+                  const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress,
+                  const EarlierLayer* earlier = nullptr);
   ~FeaturePipeline();
 
   /// Reads features until the limit is reached or the source has no more, and has all of them
@@ -104,6 +108,7 @@ class FeaturePipeline {
   bool read(const Take& take, const RoundLimit& limit, Pool& pool);
   void accept(SourceFeature& next, const Take& take);
   std::vector<WaitingFeature> take_waiting();
+  std::vector<std::uint32_t> known_groups(const std::vector<WaitingFeature>& waiting) const;
   void close_gaps_between(std::vector<WaitingFeature>& waiting);
   void build_waiting();
   void build(std::span<const Task> tasks, std::size_t lanes, unsigned threads);
@@ -114,6 +119,7 @@ class FeaturePipeline {
   FeatureSource& source_;
   const LayerOptions options_;
   const std::function<void(double)> progress_;
+  const EarlierLayer* const earlier_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   FeatureTally tally_;  // of features that never reached a lane
   std::size_t features_ = 0;

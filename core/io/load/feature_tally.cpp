@@ -11,9 +11,10 @@ void FeatureTally::skip(const FeatureKey& feature, std::string reason) {
 }
 
 void FeatureTally::remark(const FeatureKey& feature, std::string words) {
-  if (remarks.size() < kMaxRemarks) {
-    remarks.push_back({feature.order, {feature.id, std::move(words)}});
-  }
+  remarks.push_back({feature.order, {feature.id, std::move(words)}});
+  if (remarks.size() < 2 * kMaxRemarks) return;
+  sort_by_order(remarks);
+  remarks.resize(kMaxRemarks);
 }
 
 void sort_by_order(std::vector<OrderedNote>& notes) {

@@ -38,12 +38,12 @@ struct FeatureTally {
   std::size_t repaired = 0;
   CoverageCounts coverage;
   std::vector<OrderedNote> skips;
-  std::vector<OrderedNote> remarks;  // the first kMaxRemarks, on features that were not skipped
+  // On features that were not skipped: the first kMaxRemarks in the order of the source, and some.
+  std::vector<OrderedNote> remarks;
 
   static constexpr std::size_t kMaxRemarks = 100;
 
   void skip(const FeatureKey& feature, std::string reason);
-  /// Remarks come in ascending order of features, but for those on features that share borders.
   void remark(const FeatureKey& feature, std::string words);
 };
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "core/io/load/feature_builder.h"
@@ -12,6 +13,8 @@
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
+#include "core/layer/earlier_layer.h"
+#include "core/layer/layer_arrays.h"
 
 namespace trapeze {
 namespace {
@@ -85,7 +88,10 @@ void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilde
   report.features = pipeline.features() + source.passed_over();
   report.other_geometry = source.passed_over();
   std::vector<const FeatureTally*> tallies = pipeline.tallies();
-  for (const FeatureBuilder& builder : builders) tallies.push_back(&builder.tally());
+  for (const FeatureBuilder& builder : builders) {
+    tallies.push_back(&builder.tally());
+    report.taken_over += builder.taken_over();
+  }
   for (const FeatureTally* tally : tallies) add_sums(*tally, report);
   report.notes = join_notes(tallies);
 }
@@ -98,21 +104,29 @@ void warn_of_unknown_overlaps(const Layer& layer, LoadReport& report) {
 }
 
 std::unique_ptr<Layer> join_layer(std::deque<FeatureBuilder>& builders, FeatureTable table,
-                                  const std::function<void(double)>& progress) {
+                                  const std::function<void(double)>& progress, unsigned threads) {
   std::vector<LayerBuilder> parts;
   parts.reserve(builders.size());
   for (FeatureBuilder& builder : builders) parts.push_back(builder.take_builder());
-  std::unique_ptr<Layer> layer = LayerBuilder::join(parts, std::move(table), progress);
+  std::unique_ptr<Layer> layer = LayerBuilder::join(parts, std::move(table), progress, threads);
   move_to_huge_pages(*layer);
   return layer;
+}
+
+bool can_take_over(const LoadOptions& options) {
+  return options.earlier != nullptr &&
+         arrays_of(*options.earlier).options == options.generalization;
 }
 
 LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {
   LoadedLayer loaded;
   TableReader table(source, options.selection);
+  const unsigned threads = thread_count(options.threads);
+  std::optional<EarlierLayer> earlier;
+  if (can_take_over(options)) earlier.emplace(options.earlier);
   std::deque<FeatureBuilder> builders;
-  for (unsigned i = 0; i < thread_count(options.threads); ++i) {
-    builders.emplace_back(options.generalization);
+  for (unsigned i = 0; i < threads; ++i) {
+    builders.emplace_back(options.generalization, earlier ? &*earlier : nullptr);
   }
   std::vector<FeatureWorker*> workers;
   workers.reserve(builders.size());
@@ -126,10 +140,11 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
   const auto joining = [&progress](double share) {
     progress(kPipelineShare + share * (1 - kPipelineShare));
   };
-  FeaturePipeline pipeline(source, options.generalization, workers, building);
+  FeaturePipeline pipeline(source, options.generalization, workers, building,
+                           earlier ? &*earlier : nullptr);
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
   fill_report(pipeline, builders, source, loaded.report);
-  loaded.layer = join_layer(builders, table.take_table(), joining);
+  loaded.layer = join_layer(builders, table.take_table(), joining, threads);
   warn_of_unknown_overlaps(*loaded.layer, loaded.report);
   progress(1);
   loaded.report.read_seconds = seconds_between(start, pipeline.read_until());

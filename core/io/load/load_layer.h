@@ -21,6 +21,10 @@ struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
   LayerOptions generalization = {};
   SourceSelection selection = {};
+  /// A layer of which to take over what is built of the same rings, or null: the result is the same
+  /// and is there sooner. Nothing is taken over of one that was built with other options. It was
+  /// built by the same program: see build_fingerprint().
+  std::shared_ptr<const Layer> earlier = {};
   /// Called from the thread that called load_layer now and then, with about the share of the time
   /// that has gone, reading and building alike: in [0, 1] and never falling, or < 0 while unknown;
   /// at the end with 1. What it throws ends the loading.

@@ -56,7 +56,9 @@ struct LoadReport {
   std::size_t vertices = 0;  // in the finished graphs
   std::size_t collapsed_rings = 0;
   std::size_t repaired = 0;  // noded: crossings, touches, overlaps
-  CoverageCounts coverage;   // all 0 if that was off
+  /// Drawn features that were taken over from an earlier layer; not kept prepared.
+  std::size_t taken_over = 0;
+  CoverageCounts coverage;  // all 0 if that was off
   std::vector<FeatureNote>
       notes;                // one for each skipped feature, the first hundred of others (repaired)
   double read_seconds = 0;  // wall time until the last feature was read, or the file mapped

@@ -96,7 +96,7 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
   const std::unique_ptr<Layer> layer = build_probe(options);
   const LayerArrays a = arrays_of(*layer);
   const std::array<std::int64_t, 4> projected = probe_projection();
-  const std::array<std::uint64_t, 17> parts = {
+  const std::array<std::uint64_t, 21> parts = {
       kReadingVersion,
       checksum_of(a.vertices),
       checksum_of(a.edges),
@@ -113,6 +113,10 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
       checksum_of(a.grains),
       checksum_of(a.overlaps),
       checksum_of(a.outline_points),
+      checksum_of(a.units.features),
+      checksum_of(a.units.groups),
+      checksum_of(a.units.members),
+      checksum_of(a.units.overlaps),
       checksum_of(std::span<const std::int64_t>(projected))};
   return checksum_of(std::span<const std::uint64_t>(parts));
 }

@@ -99,6 +99,7 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   if (!idle_gaps.empty()) throw std::runtime_error(idle_gaps);
   load.selection = options.selection;
   load.progress = options.progress;
+  load.earlier = options.earlier;
   return load_layer(path, load);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct OpenOptions {
   std::optional<CoverageMode> coverage =
       {};                                 // unset: that of a prepared layer, else kUsualCoverage
   std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
+  std::shared_ptr<const Layer> earlier = {};  // see LoadOptions; of no use to a prepared layer
 };
 
 /// What of the options a finding is about, or the file itself.

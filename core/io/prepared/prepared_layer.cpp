@@ -20,6 +20,12 @@ namespace {
 
 constexpr const char* kPrepareAgain = "; run `trapeze prepare` again";
 
+/// The file is whole, but no layer as it would be built now.
+class UnfitError : public PreparedFileError {
+ public:
+  using PreparedFileError::PreparedFileError;
+};
+
 /// The small parts of a file: what is not an array.
 struct Description {
   LayerArrays numbers;  // all but the arrays
@@ -190,6 +196,10 @@ void add_arrays(const LayerArrays& a, SectionWriter& out) {
   out.add(SectionKind::milestone_ends, a.outline.milestone_ends);
   out.add(SectionKind::milestones, a.outline.milestones);
   out.add(SectionKind::milestone_levels, a.outline.milestone_levels);
+  out.add(SectionKind::feature_units, a.units.features);
+  out.add(SectionKind::group_units, a.units.groups);
+  out.add(SectionKind::group_members, a.units.members);
+  out.add(SectionKind::group_overlaps, a.units.overlaps);
   out.add(SectionKind::ids, a.cells.ids);
   out.add(SectionKind::string_bytes, a.cells.string_bytes);
   out.add(SectionKind::string_ends, a.cells.string_ends);
@@ -219,6 +229,10 @@ void take_arrays(SectionReader& in, LayerArrays& a) {
   a.outline.milestone_ends = in.take<std::uint32_t>(SectionKind::milestone_ends);
   a.outline.milestones = in.take<Milestone>(SectionKind::milestones);
   a.outline.milestone_levels = in.take<Level>(SectionKind::milestone_levels);
+  a.units.features = in.take<FeatureUnit>(SectionKind::feature_units);
+  a.units.groups = in.take<GroupUnit>(SectionKind::group_units);
+  a.units.members = in.take<GroupMember>(SectionKind::group_members);
+  a.units.overlaps = in.take<GroupOverlap>(SectionKind::group_overlaps);
   a.cells.ids = in.take<std::int64_t>(SectionKind::ids);
   a.cells.string_bytes = in.take<char>(SectionKind::string_bytes);
   a.cells.string_ends = in.take<std::uint64_t>(SectionKind::string_ends);
@@ -238,24 +252,24 @@ std::string text_of(double number) {
 
 void check_options(const LayerOptions& options, const PreparedDemands& demands) {
   if (demands.weights && *demands.weights != options.weights) {
-    throw PreparedFileError(
-        "was prepared with the weights " + std::string(kWeightNames.name_of(options.weights)) +
-        ", and " + std::string(kWeightNames.name_of(*demands.weights)) + " are configured");
+    throw UnfitError("was prepared with the weights " +
+                     std::string(kWeightNames.name_of(options.weights)) + ", and " +
+                     std::string(kWeightNames.name_of(*demands.weights)) + " are configured");
   }
   if (demands.coverage && *demands.coverage != options.coverage) {
-    throw PreparedFileError(
-        "was prepared with coverage " + std::string(kCoverageNames.name_of(options.coverage)) +
-        ", and " + std::string(kCoverageNames.name_of(*demands.coverage)) + " is configured");
+    throw UnfitError("was prepared with coverage " +
+                     std::string(kCoverageNames.name_of(options.coverage)) + ", and " +
+                     std::string(kCoverageNames.name_of(*demands.coverage)) + " is configured");
   }
   if (demands.close_gaps && *demands.close_gaps != options.close_gaps) {
-    throw PreparedFileError("was prepared with gaps closed up to " + text_of(options.close_gaps) +
-                            " m, and " + text_of(*demands.close_gaps) + " m are configured");
+    throw UnfitError("was prepared with gaps closed up to " + text_of(options.close_gaps) +
+                     " m, and " + text_of(*demands.close_gaps) + " m are configured");
   }
 }
 
 void check_fingerprint(const LayerOptions& options, std::uint64_t fingerprint) {
   if (build_fingerprint(options) == fingerprint) return;
-  throw PreparedFileError("was prepared by a version of Trapeze that builds layers otherwise");
+  throw UnfitError("was prepared by a version of Trapeze that builds layers otherwise");
 }
 
 void check_source(const SourceStamp& stamp, const PreparedDemands& demands) {
@@ -325,6 +339,29 @@ LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& 
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": is damaged: " + error.what() + kPrepareAgain);
   }
+}
+
+EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options) {
+  EarlierPrepared earlier;
+  try {
+    const auto file = std::make_shared<const MappedFile>(path);
+    SectionReader sections(file->bytes());
+    Description description = take_description(sections);
+    check_options(description.numbers.options,
+                  {options.weights, "", options.coverage, options.close_gaps});
+    check_fingerprint(options, sections.fingerprint());
+    earlier.layer = layer_from_sections(sections, std::move(description), file).layer;
+    earlier.file = file;
+  } catch (const UnfitError& error) {
+    earlier.unfit = error.what();
+  } catch (const OtherFormatError& error) {
+    earlier.unfit = error.what();
+  } catch (const PreparedFileError& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": is damaged: " + error.what());
+  }
+  return earlier;
 }
 
 LoadedLayer layer_of_prepared_bytes(std::span<const std::byte> bytes,

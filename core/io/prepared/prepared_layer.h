@@ -36,6 +36,19 @@ struct PreparedDemands {
 /// than its source. The source itself need not exist.
 LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands = {});
 
+/// A prepared layer of which another one is to take over what has not changed.
+struct EarlierPrepared {
+  std::shared_ptr<const Layer> layer;      // null if nothing can be taken over
+  std::shared_ptr<const MappedFile> file;  // that the layer looks at
+  std::string unfit;                       // why nothing can be; empty if there is a layer
+};
+
+/// Maps a prepared file for LoadOptions::earlier, whatever it was prepared from. A file of another
+/// version of Trapeze, or prepared with other options than these, is unfit. Throws
+/// std::runtime_error that names the path if there is no file, or one that is no prepared file or
+/// is damaged.
+EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options);
+
 /// The same of a file in memory, kept by `memory` and beginning at a multiple of 64 bytes; its
 /// source and its fingerprint are not checked. Throws std::exception.
 LoadedLayer layer_of_prepared_bytes(std::span<const std::byte> bytes,

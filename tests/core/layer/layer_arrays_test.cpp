@@ -49,6 +49,9 @@ struct Copies {
         loop_sizes(a.outline.loop_sizes.begin(), a.outline.loop_sizes.end()),
         milestone_ends(a.outline.milestone_ends.begin(), a.outline.milestone_ends.end()),
         milestone_levels(a.outline.milestone_levels.begin(), a.outline.milestone_levels.end()),
+        feature_units(a.units.features.begin(), a.units.features.end()),
+        group_units(a.units.groups.begin(), a.units.groups.end()),
+        group_members(a.units.members.begin(), a.units.members.end()),
         rest(a) {}
 
   LayerArrays arrays() const {
@@ -68,6 +71,9 @@ struct Copies {
     a.outline.loop_sizes = loop_sizes;
     a.outline.milestone_ends = milestone_ends;
     a.outline.milestone_levels = milestone_levels;
+    a.units.features = feature_units;
+    a.units.groups = group_units;
+    a.units.members = group_members;
     return a;
   }
 
@@ -86,6 +92,9 @@ struct Copies {
   std::vector<LoopSize> loop_sizes;
   std::vector<std::uint32_t> milestone_ends;
   std::vector<Level> milestone_levels;
+  std::vector<FeatureUnit> feature_units;
+  std::vector<GroupUnit> group_units;
+  std::vector<GroupMember> group_members;
   LayerArrays rest;
 };
 
@@ -136,8 +145,9 @@ TEST(LayerArrays, OfABuiltLayerTakeNoMoreMemoryThanTheirItems) {
       a.horizontal_edge_index.size_bytes() + a.outline_points.size_bytes() +
       a.ring_ends.size_bytes() + a.outline_ends.size_bytes() + a.outline.loop_sizes.size_bytes() +
       a.outline.milestone_ends.size_bytes() + a.outline.milestones.size_bytes() +
-      a.outline.milestone_levels.size_bytes() + layer->grains().memory() +
-      layer->overlaps().memory();
+      a.outline.milestone_levels.size_bytes() + a.units.features.size_bytes() +
+      a.units.groups.size_bytes() + a.units.members.size_bytes() + a.units.overlaps.size_bytes() +
+      layer->grains().memory() + layer->overlaps().memory();
   EXPECT_EQ(layer->memory(), items);
   EXPECT_LE(layer->grains().memory(), a.grains.size_bytes() * 11 / 10 + 64);
   EXPECT_LE(layer->overlaps().memory(),
@@ -207,6 +217,18 @@ TEST(LayerArrays, AreRefusedInWordsWhereSomethingLeadsNowhere) {
       {[&](Copies& c) { c.rest.horizontal_edges = far; }, "sums"},
       {[](Copies& c) { c.grains[2].row = 80; }, "grain of dust"},
       {[](Copies& c) { c.grains[2].born = kLastLevel + 1; }, "grain of dust"},
+      {[](Copies& c) { c.grains[2].is_covered = 2; }, "grain of dust"},
+      {[](Copies& c) { c.feature_units[3].row = 80; }, "feature of a unit"},
+      {[](Copies& c) {
+         c.group_members.push_back({{}, 80, 0});
+       },
+       "feature of a unit"},
+      {[](Copies& c) {
+         c.group_members.push_back({{}, 0, 0});
+       },
+       "groups are not in order"},
+      {[](Copies& c) { c.group_units.emplace_back().members_end = 1; }, "groups are not in order"},
+      {[](Copies& c) { c.group_units.emplace_back().overlaps_end = 1; }, "groups are not in order"},
       {[](Copies& c) { c.grains[2].to.y = kGridMax + 1; }, "grain of dust"},
       {[](Copies& c) { c.outline_points[1].x = kGridMin - 1; }, "point of an outline"},
       {[&](Copies& c) { c.ring_ends.back() = far; }, "rings are not in order"},

@@ -99,7 +99,8 @@ TEST(OverlapsTest, FeaturesOfOneGraphAreNotCompared) {
   const LayerContents& c = layer->contents();
   const std::vector<std::uint32_t> apart = {0, 1};
   const std::vector<std::uint32_t> together = {5, 5};
-  OverlapInput input{layer->mesh(), c.lifespans, c.feature_of, apart};
+  const std::vector<Box> boxes = {{0, 0, 100, 100}, {20, 20, 60, 60}};
+  OverlapInput input{layer->mesh(), c.lifespans, c.feature_of, apart, boxes};
   EXPECT_EQ(find_overlaps(input).pairs.size(), 2u);
   input.graph_of = together;
   EXPECT_THAT(find_overlaps(input).pairs, IsEmpty());

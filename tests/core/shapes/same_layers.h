@@ -22,7 +22,9 @@ inline void expect_same_layers(const Layer& one, const Layer& other) {
   EXPECT_TRUE(are_same(a.lifespans, b.lifespans));
   EXPECT_TRUE(are_same(a.feature_of, b.feature_of));
   EXPECT_TRUE(are_same(a.outline.loop_sizes, b.outline.loop_sizes));
+  EXPECT_TRUE(are_same(a.outline.milestone_ends, b.outline.milestone_ends));
   EXPECT_TRUE(are_same(a.outline.milestones, b.outline.milestones));
+  EXPECT_TRUE(are_same(a.outline.milestone_levels, b.outline.milestone_levels));
   EXPECT_TRUE(are_same(a.polygon_index, b.polygon_index));
   EXPECT_TRUE(are_same(a.horizontal_edge_index, b.horizontal_edge_index));
   EXPECT_TRUE(are_same(a.mote_index, b.mote_index));
@@ -32,6 +34,10 @@ inline void expect_same_layers(const Layer& one, const Layer& other) {
   EXPECT_TRUE(are_same(a.outline_points, b.outline_points));
   EXPECT_TRUE(are_same(a.ring_ends, b.ring_ends));
   EXPECT_TRUE(are_same(a.outline_ends, b.outline_ends));
+  EXPECT_TRUE(are_same(a.units.features, b.units.features));
+  EXPECT_TRUE(are_same(a.units.groups, b.units.groups));
+  EXPECT_TRUE(are_same(a.units.members, b.units.members));
+  EXPECT_TRUE(are_same(a.units.overlaps, b.units.overlaps));
 }
 
 }  // namespace trapeze

@@ -839,6 +839,31 @@ TEST(ProgramTest, ExportsThePolygonsOfAZoomAndSaysWhatIsLeft) {
   std::filesystem::remove(path);
 }
 
+TEST(ProgramTest, PreparesAgainWithWhatHasNotChanged) {
+  const std::string folder = scratch_path("prepared");
+  std::filesystem::remove_all(folder);
+  const auto prepare = [&](std::vector<std::string> more, int status) {
+    more.insert(more.begin(), {"prepare", fixture("rings.geojson"), "--output", folder});
+    Program program(more);
+    EXPECT_EQ(program.wait(), status);
+    return program.output();
+  };
+  EXPECT_THAT(prepare({"--reuse", "nosuch"}, 1), HasSubstr("nosuch: there is no such file"));
+  EXPECT_THAT(prepare({"--reuse", folder}, 0),
+              HasSubstr("nothing is taken over: " + folder + "/rings.trapeze is not there"));
+  const std::string file = folder + "/rings.trapeze";
+  const std::string anew = read_file(file);
+  EXPECT_THAT(prepare({"--reuse", folder}, 0),
+              HasSubstr("1 of 1 features are as they were and taken over from " + file));
+  EXPECT_EQ(read_file(file), anew);
+  EXPECT_THAT(prepare({"--reuse", file, "--weights", "effective-area"}, 0),
+              HasSubstr("nothing is taken over: " + file + " was prepared with the weights"));
+  EXPECT_THAT(prepare({"--reuse", fixture("rings.geojson")}, 1), HasSubstr("is no prepared file"));
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  std::filesystem::resize_file(file, 1000);
+  EXPECT_THAT(prepare({"--reuse", file}, 1), HasSubstr(file + ": is damaged"));
+}
+
 TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {
   const std::string folder = scratch_path("prepared");
   std::filesystem::remove_all(folder);

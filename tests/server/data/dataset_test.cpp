@@ -135,6 +135,34 @@ TEST_F(LoadedAgain, ReadsWhatMayHaveChangedInAnotherFile) {
   EXPECT_THAT(kept(), ElementsAre("other"));
 }
 
+/// Squares in a row, the first of them as high as that.
+std::string row_of_squares(int count, int height) {
+  std::string text = R"({"type": "FeatureCollection", "features": [)";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format(R"({0}{{"type": "Feature", "properties": {{}}, "geometry": {{)"
+                        R"("type": "Polygon", "coordinates": )"
+                        R"([[[{1},0],[{2},0],[{2},{3}],[{1},{3}],[{1},0]]]}}}})",
+                        i == 0 ? "" : ",", 3 * i, 3 * i + 2, i == 0 ? height : 2);
+  }
+  return text + "]}";
+}
+
+TEST_F(LoadedAgain, TakesOverWhatHasNotChangedOfALayer) {
+  folder_.write("one.geojson", row_of_squares(20, 2));
+  load_again();
+  EXPECT_EQ(after_->layers()[0].report.taken_over, 0u);
+  before_ = after_;
+  folder_.write("one.geojson", row_of_squares(21, 30));
+  load_again();
+  EXPECT_THAT(kept(), ElementsAre("other"));
+  EXPECT_EQ(after_->layers()[0].report.taken_over, 19u) << "one is new, and one has changed";
+  EXPECT_EQ(after_->layers()[0].revision, Dataset::load(layers_)->layers()[0].revision);
+  layers_[0].coverage = CoverageMode::off;
+  before_ = after_;
+  load_again();
+  EXPECT_EQ(after_->layers()[0].report.taken_over, 0u) << "what was built otherwise";
+}
+
 TEST_F(LoadedAgain, AKeptLayerOutlivesTheDatasetItCameFrom) {
   load_again();
   before_.reset();

@@ -47,6 +47,10 @@ TEST(PreparedFormatTest, SectionsHaveTheNamesAndSizesOfTheDocument) {
                                    Item{Kind::milestone_ends, 4},
                                    Item{Kind::milestones, sizeof(Milestone)},
                                    Item{Kind::milestone_levels, sizeof(Level)},
+                                   Item{Kind::feature_units, sizeof(FeatureUnit)},
+                                   Item{Kind::group_units, sizeof(GroupUnit)},
+                                   Item{Kind::group_members, sizeof(GroupMember)},
+                                   Item{Kind::group_overlaps, sizeof(GroupOverlap)},
                                    Item{Kind::ids, 8},
                                    Item{Kind::string_bytes, 1},
                                    Item{Kind::string_ends, 8},
@@ -88,10 +92,36 @@ TEST(PreparedFormatTest, ItemsLieAsInTheDocument) {
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", doubled_area);
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", row);
   EXPECT_FIELD(FeatureGrain, "FeatureGrain", born);
+  EXPECT_FIELD(FeatureGrain, "FeatureGrain", is_covered);
+  EXPECT_FIELD(FeatureGrain, "FeatureGrain", unused);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", row);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", other);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", width);
   EXPECT_FIELD(FeatureOverlap, "FeatureOverlap", along);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", digest);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", most_tolerance);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", row);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", vertices);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", collapsed_rings);
+  EXPECT_FIELD(FeatureUnit, "FeatureUnit", is_noded);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", digest);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", most_tolerance);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", members_end);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", overlaps_end);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", vertices);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", shared_edges);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", junctions);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", gaps);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", filled);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", is_noded);
+  EXPECT_FIELD(GroupUnit, "GroupUnit", is_crowded);
+  EXPECT_FIELD(GroupMember, "GroupMember", digest);
+  EXPECT_FIELD(GroupMember, "GroupMember", row);
+  EXPECT_FIELD(GroupMember, "GroupMember", is_apart);
+  EXPECT_FIELD(GroupOverlap, "GroupOverlap", lower);
+  EXPECT_FIELD(GroupOverlap, "GroupOverlap", upper);
+  EXPECT_FIELD(GroupOverlap, "GroupOverlap", area);
+  EXPECT_FIELD(GroupOverlap, "GroupOverlap", lower_area);
 }
 
 TEST(PreparedFormatTest, TheDocumentIsOfThisVersion) {

@@ -22,6 +22,7 @@
 #include "core/io/prepared/open_layer.h"
 #include "core/io/source/open_source.h"
 #include "core/layer/layer_arrays.h"
+#include "core/layer/layer_builder.h"
 #include "core/layer/untested_layer.h"
 #include "tests/core/io/source/written_source.h"
 #include "tests/core/io/temporary_folder.h"
@@ -334,7 +335,7 @@ TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
   prepare(kMixed, prepared_);
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(failure_of(prepared_),
-              AllOf(StartsWith(prepared_), HasSubstr("format 6"), HasSubstr("reads 5")));
+              AllOf(StartsWith(prepared_), HasSubstr("format 7"), HasSubstr("reads 6")));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));
@@ -523,6 +524,104 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsMappedReadsAsZerosAndIsNotWhole) {
         layer.features().value(row, static_cast<int>(field));
       }
     }
+  }
+}
+
+/// Loads a source, taking over from a prepared file.
+LoadedLayer load_with(const std::string& source, const EarlierPrepared& earlier,
+                      LoadOptions options = {}) {
+  options.earlier = earlier.layer;
+  return load_layer(source, options);
+}
+
+TEST_F(PreparedLayerTest, ThatTakesOverFromAnotherIsTheSameFile) {
+  for (const CoverageMode coverage :
+       {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
+    LoadOptions options;
+    options.generalization.coverage = coverage;
+    const LoadedLayer loaded = prepare(kMixed, prepared_, options);
+    const EarlierPrepared earlier = open_earlier_layer(prepared_, options.generalization);
+    const LoadedLayer again = load_with(kMixed, earlier, options);
+    EXPECT_EQ(again.report.taken_over, loaded.report.loaded);
+    save_prepared_layer(path("again.trapeze"), again, kRevision, stamp_source(kMixed));
+    EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
+    // In place of the file that is looked at.
+    save_prepared_layer(prepared_, again, kRevision, stamp_source(kMixed));
+    EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
+    EXPECT_TRUE(earlier.file->is_whole());
+  }
+}
+
+TEST_F(PreparedLayerTest, NothingIsTakenOverFromWhatWasBuiltOtherwise) {
+  LoadOptions options;
+  options.generalization.weights = WeightRule::raised_parents;
+  options.generalization.close_gaps = 2;
+  prepare(kMixed, prepared_, options);
+  const auto unfit = [&](const auto& change) {
+    LayerOptions wanted = options.generalization;
+    change(wanted);
+    const EarlierPrepared earlier = open_earlier_layer(prepared_, wanted);
+    EXPECT_EQ(earlier.layer == nullptr, !earlier.unfit.empty());
+    return earlier.unfit;
+  };
+  EXPECT_THAT(unfit([](LayerOptions&) {}), IsEmpty());
+  EXPECT_THAT(unfit([](LayerOptions& o) { o.weights = WeightRule::effective_area; }),
+              HasSubstr("weights raised-parents"));
+  EXPECT_THAT(unfit([](LayerOptions& o) { o.coverage = CoverageMode::on; }),
+              HasSubstr("coverage auto"));
+  EXPECT_THAT(unfit([](LayerOptions& o) { o.close_gaps = 3; }), HasSubstr("gaps closed up to 2 m"));
+  change_header(prepared_, [](PreparedHeader& header) { ++header.fingerprint; });
+  EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("builds layers otherwise"));
+  change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
+  EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("has format"));
+  // A layer in memory that was built otherwise is passed over, too.
+  LoadOptions otherwise;
+  otherwise.earlier = load_layer(kMixed, options).layer;
+  EXPECT_EQ(load_layer(kMixed, otherwise).report.taken_over, 0u);
+}
+
+TEST_F(PreparedLayerTest, TakingOverFromWhatIsNoPreparedFileIsRefused) {
+  const auto failure = [](const std::string& file) -> std::string {
+    try {
+      open_earlier_layer(file, {});
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "was opened";
+  };
+  EXPECT_THAT(failure(path("nosuch.trapeze")), HasSubstr("nosuch.trapeze"));
+  EXPECT_THAT(failure(kMixed), AllOf(StartsWith(kMixed), HasSubstr("is no prepared file")));
+  prepare(kMixed, prepared_);
+  std::string bytes = read_file(prepared_);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  const std::string damaged = folder_.write("damaged.trapeze", bytes);
+  EXPECT_THAT(failure(damaged), AllOf(StartsWith(damaged), HasSubstr("is damaged")));
+}
+
+TEST_F(PreparedLayerTest, CutOffWhileItIsTakenOverFromNothingIsReadBeyond) {
+  prepare(kMixed, prepared_);
+  const std::uintmax_t size = std::filesystem::file_size(prepared_);
+  for (const std::uintmax_t left : {std::uintmax_t{0}, size / 3, size / 2, size - 1}) {
+    std::filesystem::remove(prepared_);
+    prepare(kMixed, prepared_);
+    const EarlierPrepared earlier = open_earlier_layer(prepared_, {});
+    EarlierLayer noted(earlier.layer);
+    std::filesystem::permissions(prepared_, std::filesystem::perms::owner_all);
+    std::filesystem::resize_file(prepared_, left);
+    EXPECT_FALSE(earlier.file->is_whole());
+    // Noted before and after.
+    load_with(kMixed, earlier);
+    std::vector<LayerBuilder> builders;
+    builders.emplace_back(LayerOptions(), nullptr, &noted);
+    FeatureTable table(std::vector<Field>{});
+    Rings rings;
+    const LoadedLayer source = load_layer(kMixed);
+    for (std::uint32_t row = 0; row < source.layer->features().size(); ++row) {
+      rings.clear();
+      source.layer->append_outline(row, rings);
+      builders.front().add(table.append(row, {}), rings);
+    }
+    LayerBuilder::join(builders, std::move(table));
   }
 }
 
