@@ -108,6 +108,7 @@ class ScarceResourcesTest : public ::testing::Test {
                      data_,
                      tiles_,
                      metrics_,
+                     nullptr,
                      [] { FAIL(); },
                      [] {}};
 };
