@@ -98,8 +98,10 @@ std::string built_trapeze() {
 TrapezeServer::TrapezeServer(std::span<const TripLayer> layers, const TrapezeOptions& options)
     : port_(free_port()) {
   std::vector<std::string> arguments{
-      options.program, "serve",         "--config", write_config(layers, options.keeps_tiles, folder_.path()),
-      "--address",     "127.0.0.1",     "--port",   std::to_string(port_),
+      options.program, "serve",
+      "--config",      write_config(layers, options.keeps_tiles, folder_.path()),
+      "--address",     "127.0.0.1",
+      "--port",        std::to_string(port_),
       "--renderer",    options.renderer};
   arguments.insert(arguments.end(), options.more.begin(), options.more.end());
   process_ = std::make_unique<ChildProcess>(arguments, folder_.path() + "/log");

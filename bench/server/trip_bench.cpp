@@ -13,9 +13,10 @@
 //   304     the same, asked for with the entity tags that were sent with them
 //   first   all tiles once, with these entity tags, of a server that was just started and has drawn
 //           nothing: how long it takes to find out that they are as they were
-// Servers of cold and alone keep no tiles, as many are equal. What is asked for again, as views overlap or as a trip of few tiles is gone through several
-// times, is asked for in a slightly different colour, so that nothing that was drawn before can be
-// used. Servers are started anew for every round.
+// Servers of cold and alone keep no tiles, as many are equal. What is asked for again, as views
+// overlap or as a trip of few tiles is gone through several times, is asked for in a slightly
+// different colour, so that nothing that was drawn before can be used. Servers are started anew for
+// every round.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>

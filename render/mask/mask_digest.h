@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "render/mask/mask.h"
 #include "core/grid/set_hash.h"
+#include "render/mask/mask.h"
 #include "render/mask/stroke.h"
 
 namespace trapeze {

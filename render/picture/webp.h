@@ -10,7 +10,8 @@ namespace trapeze {
 /// Whether this was built with libwebp; only then may encode_webp() be called.
 bool has_webp();
 
-/// The version of libwebp, as a number; 0 without it. Pictures may have other bytes with another one.
+/// The version of libwebp, as a number; 0 without it. Pictures may have other bytes with another
+/// one.
 int webp_version();
 
 /// No pixel changes, hidden colours included. Throws std::runtime_error if the picture has no

@@ -1,6 +1,7 @@
 #include "server/changes/run_command.h"
 
 #include <spawn.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
@@ -82,7 +83,7 @@ std::vector<std::string> environment_with(
     const std::vector<std::pair<std::string, std::string>>& variables) {
   std::vector<std::string> all;
   for (char** each = environ; *each != nullptr; ++each) all.emplace_back(*each);
-  for (const auto& [name, value] : variables) all.push_back(name + "=" + value);
+  for (const auto& [name, value] : variables) all.push_back(fmt::format("{}={}", name, value));
   return all;
 }
 
@@ -94,6 +95,7 @@ int run_command(const std::string& command,
   const File file = file_of(input);
   std::vector<std::string> variables_of_it = environment_with(variables);
   std::vector<char*> environment;
+  environment.reserve(variables_of_it.size() + 1);
   for (std::string& variable : variables_of_it) environment.push_back(variable.data());
   environment.push_back(nullptr);
   const pid_t process = Spawning().start(command, fileno(file.get()), environment.data());

@@ -99,6 +99,7 @@ class SharedProgress {
         stalls_(sources_of(layers)) {
     if (told_ == nullptr) return;
     std::vector<LayerProgress> nothing_read;
+    nothing_read.reserve(layers.size());
     for (const LayerConfig& layer : layers) nothing_read.push_back({layer.name, layer.title, 0});
     told_->begin(std::move(nothing_read));
   }
