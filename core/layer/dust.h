@@ -64,8 +64,10 @@ inline Strip strip_of(Axis axis, double area) {
 inline int count_of_motes(Axis axis, double pixel, int most) {
   const double dx = static_cast<double>(axis.to.x) - axis.from.x;
   const double dy = static_cast<double>(axis.to.y) - axis.from.y;
-  return static_cast<int>(
-      std::clamp(std::ceil(std::sqrt(dx * dx + dy * dy) / pixel), 1.0, static_cast<double>(most)));
+  const double pixels = std::ceil(std::sqrt(dx * dx + dy * dy) / pixel);
+  // In this order, 1 if that is no number: of a file that is cut off while it is mapped, all may
+  // read as zero.
+  return static_cast<int>(std::max(1.0, std::min(pixels, static_cast<double>(most))));
 }
 
 /// Calls visit(x, y, area) for `count` motes of a grain of that area, distributed evenly along its
