@@ -189,6 +189,7 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
   Ties ties(features.size());
   const std::vector<std::uint32_t> open = to_be_looked_at(features, known);
   std::vector<const Rings*> rings;
+  rings.reserve(open.size());
   for (const std::uint32_t i : open) rings.push_back(features[i]);
   Ties found(open.size());
   if (coverage == CoverageMode::on) {
