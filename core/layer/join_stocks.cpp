@@ -464,6 +464,7 @@ void order_grains(const TakenOver& taken, const std::vector<std::uint32_t>& grap
     for (const KeyedIndex& item : order) ordered.push_back(grains[item.index]);
     return grains.swap(ordered);
   }
+  places.reserve(order.size());
   for (const KeyedIndex& item : order) {
     places.push_back({item.key, graph_of[grains[item.index].row]});
   }

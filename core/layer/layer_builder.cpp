@@ -208,6 +208,7 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
                                     std::span<const Rings* const> features, unsigned threads) {
   State& state = *state_;
   std::vector<Digest> digests;
+  digests.reserve(features.size());
   for (const Rings* rings : features) digests.push_back(digest_of(*rings));
   if (state.earlier != nullptr) {
     if (const auto unit = state.earlier->claim_group(digest_of(digests), rows.size())) {

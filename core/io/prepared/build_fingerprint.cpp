@@ -19,7 +19,7 @@ namespace {
 // To be raised when another polygon or attribute is read from the same source, when what was read
 // is given another revision, or when layers change that are unlike the probe, as those with much
 // dust.
-constexpr std::uint64_t kReadingVersion = 5;
+constexpr std::uint64_t kReadingVersion = 6;
 
 constexpr int kShapes = 12;
 constexpr int kVertices = 9;
