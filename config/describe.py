@@ -242,7 +242,7 @@ def kind_of(command, entry):
         return "toml"
     if choices := choices_of(entry):
         return " ".join(choices)
-    return {"FILE": "file", "OUT": "file", "F": "file", "OLD": "file", "DIR": "folder"}.get(operand, "nothing")
+    return {"FILE": "file", "OUT": "file", "F": "file", "OLD": "file", "NEW": "file", "DIR": "folder"}.get(operand, "nothing")
 
 
 def cases_of(program):
