@@ -7,9 +7,12 @@
 #include <array>
 #include <cstdint>
 
+#include "core/grid/digest.h"
+
 namespace trapeze {
 
-/// Equal for equal sums of items; 0 for none. Values are the same on every machine.
+/// The digest is equal for equal sums of items, and Digest() for none; it is the same on every
+/// machine.
 class SetHash {
  public:
   using Item = std::array<std::uint64_t, 3>;
@@ -17,11 +20,7 @@ class SetHash {
   void add(const Item& item) { change(item, false); }
   void take_away(const Item& item) { change(item, true); }
 
-  bool is_zero() const { return (low_ | high_) == 0; }
-  std::uint64_t low() const { return low_; }
-  std::uint64_t high() const { return high_; }
-
-  friend bool operator==(const SetHash&, const SetHash&) = default;
+  const Digest& digest() const { return sum_; }
 
  private:
   __extension__ using Product = unsigned __int128;
@@ -37,12 +36,11 @@ class SetHash {
     const Product second = Product{low_of(first) ^ rest} * (high_of(first) ^ 0x27d4eb2f165667c5);
     const std::uint64_t low = low_of(second) ^ (rest * 0xff51afd7ed558ccd);
     const std::uint64_t high = (high_of(second) ^ low_of(first)) * 0xc4ceb9fe1a85ec53;
-    low_ += is_less ? -low : low;
-    high_ += is_less ? -high : high;
+    sum_.low += is_less ? -low : low;
+    sum_.high += is_less ? -high : high;
   }
 
-  std::uint64_t low_ = 0;
-  std::uint64_t high_ = 0;
+  Digest sum_;
 };
 
 }  // namespace trapeze

@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/grid/digest.h"
 #include "core/grid/set_hash.h"
 #include "core/layer/layer_contents.h"
 
@@ -24,15 +25,15 @@ std::uint64_t word_of(Point p) {
 }
 
 std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-  SetHash hash;
-  hash.add({a, b, c});
-  return hash.low();
+  Digester digester;
+  for (const std::uint64_t word : {a, b, c}) digester.add(word);
+  return digester.digest().low;
 }
 
 std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = text.size();
-  for (const char c : text) hash = hash_of(hash, static_cast<unsigned char>(c), 0);
-  return hash;
+  Digester digester;
+  for (const char c : text) digester.add(static_cast<unsigned char>(c));
+  return digester.digest().low;
 }
 
 std::uint64_t hash_of(const Value& value) {
@@ -68,12 +69,10 @@ class Summary {
 
  private:
   struct HashedRow {
-    std::uint64_t low;
-    std::uint64_t high;
+    Digest digest;
     std::uint32_t row;
 
     auto operator<=>(const HashedRow&) const = default;
-    bool is_equal(const HashedRow& other) const { return low == other.low && high == other.high; }
   };
 
   void hash_edges();
@@ -127,7 +126,7 @@ void Summary::hash_identities(Ids ids) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       hash.add({names[i], hash_of(features.value(row, static_cast<int>(i))), 1});
     }
-    identities_.push_back(hash.low() | 1);  // no multiple of it is 0 but that by 2^64
+    identities_.push_back(hash.digest().low | 1);  // no multiple of it is 0 but that by 2^64
   }
 }
 
@@ -169,7 +168,7 @@ std::vector<Summary::HashedRow> Summary::sorted_rows() const {
   std::vector<HashedRow> sorted;
   sorted.reserve(rows());
   for (std::uint32_t row = 0; row < rows(); ++row) {
-    sorted.push_back({hashes_[row].low(), hashes_[row].high(), row});
+    sorted.push_back({hashes_[row].digest(), row});
   }
   std::ranges::sort(sorted);
   return sorted;
@@ -181,11 +180,8 @@ std::vector<std::uint32_t> Summary::rows_without_equal(const Summary& other) con
   std::vector<std::uint32_t> without;
   auto equal = there.begin();
   for (const HashedRow& one : here) {
-    const auto is_less = [](const HashedRow& a, const HashedRow& b) {
-      return std::pair(a.low, a.high) < std::pair(b.low, b.high);
-    };
-    while (equal != there.end() && is_less(*equal, one)) ++equal;
-    if (equal != there.end() && equal->is_equal(one)) {
+    while (equal != there.end() && equal->digest < one.digest) ++equal;
+    if (equal != there.end() && equal->digest == one.digest) {
       ++equal;
     } else {
       without.push_back(one.row);
@@ -253,7 +249,7 @@ void Summary::append_motes(HashedPlaces& places) const {
 void Summary::append_pairs(HashedPlaces& places) const {
   for (const FeatureOverlap& pair : layer_.overlaps().pairs()) {
     if (pair.row > pair.other) continue;  // the one that is above the other
-    places.emplace_back(hash_of(hashes_[pair.row].low(), hashes_[pair.other].low(),
+    places.emplace_back(hash_of(hashes_[pair.row].digest().low, hashes_[pair.other].digest().low,
                                 std::uint64_t{pair.width} << 32 | pair.along),
                         LayerChanges::Place{boxes_[pair.row], kAlways, false, boxes_[pair.other]});
   }

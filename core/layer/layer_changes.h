@@ -62,6 +62,8 @@ struct TileDrawing {
   Level level = 0;        // of the tolerance
   Level pixel_level = 0;  // see Layer::Selection
   double reach = 0;       // cells, of outlines and dust, beyond their places
+
+  friend bool operator==(const TileDrawing&, const TileDrawing&) = default;
 };
 
 /// The tiles that may look different, each once, by row and column. Throws std::length_error if

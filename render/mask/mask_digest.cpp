@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/grid/set_hash.h"
+
 namespace trapeze {
 namespace {
 
@@ -94,18 +96,17 @@ class SidesInView {
 
 /// Ink and dashes of a line.
 std::uint64_t word_of_line(const OutlineEdge& edge) {
-  std::uint64_t word = 0;
+  Digester digester;
   for (const double number : {edge.ink, edge.along, edge.rate}) {
-    word = (word ^ std::bit_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15;
-    word ^= word >> 32;
+    digester.add(std::bit_cast<std::uint64_t>(number));
   }
-  return word;
+  return digester.digest().low;
 }
 
 /// Where lines are joined by which vertices they share, that counts too: vertices are numbered as
 /// they come up along lines in an order that is that of places.
-SetHash digest_of_joined(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                         const View& view) {
+Digest digest_of_joined(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
+                        const View& view) {
   std::vector<const OutlineEdge*> order;
   for (const OutlineEdge& edge : edges) order.push_back(&edge);
   std::ranges::sort(order, {}, [&](const OutlineEdge* edge) {
@@ -121,12 +122,12 @@ SetHash digest_of_joined(std::span<const Point> vertices, std::span<const Outlin
               word_of_line(*edge)});
     hash.add({from, to, 1});
   }
-  return hash;
+  return hash.digest();
 }
 
 }  // namespace
 
-SetHash mask_digest(std::span<const MeshPart> parts, const View& view) {
+Digest mask_digest(std::span<const MeshPart> parts, const View& view) {
   const SidesInView sides(view);
   SetHash hash;
   for (const MeshPart& part : parts) {
@@ -138,24 +139,24 @@ SetHash mask_digest(std::span<const MeshPart> parts, const View& view) {
       sides.add(part.mesh, trapezoid.right, span, true, hash);
     });
   }
-  return hash;
+  return hash.digest();
 }
 
-SetHash whole_mask_digest(const View& view) {
+Digest whole_mask_digest(const View& view) {
   SetHash hash;
   SidesInView::add_west({0, SidesInView(view).height()}, false, hash);
-  return hash;
+  return hash.digest();
 }
 
-SetHash outline_digest(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                       const Stroke& stroke, const View& view) {
+Digest outline_digest(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
+                      const Stroke& stroke, const View& view) {
   if (stroke.join != LineJoin::round) return digest_of_joined(vertices, edges, view);
   SetHash hash;
   for (const OutlineEdge& edge : edges) {
     hash.add(
         {word_of(vertices[edge.from], view), word_of(vertices[edge.to], view), word_of_line(edge)});
   }
-  return hash;
+  return hash.digest();
 }
 
 }  // namespace trapeze

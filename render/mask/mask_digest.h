@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/grid/set_hash.h"
+#include "core/grid/digest.h"
 #include "render/mask/mask.h"
 #include "render/mask/stroke.h"
 
@@ -18,16 +18,16 @@ namespace trapeze {
 /// the order of the trapezoids, nor on how they are numbered, nor on what lies off the picture, nor
 /// on where in the world the picture is: what counts is sides as they are cut to the view, in cells
 /// from its corner. Sides that two trapezoids have in common cancel out.
-SetHash mask_digest(std::span<const MeshPart> parts, const View& view);
+Digest mask_digest(std::span<const MeshPart> parts, const View& view);
 
 /// The digest of a mask that covers the view wholly, as mask_digest() finds it whenever there is
 /// nothing but sides to the west and to the east of the view.
-SetHash whole_mask_digest(const View& view);
+Digest whole_mask_digest(const View& view);
 
 /// Of lines along edges, see Stroker::draw(). Masks of equal digests, strokes, and views of the
 /// same size and cells_per_pixel are equal, however the edges are numbered and wherever the picture
 /// is.
-SetHash outline_digest(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
-                       const Stroke& stroke, const View& view);
+Digest outline_digest(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
+                      const Stroke& stroke, const View& view);
 
 }  // namespace trapeze

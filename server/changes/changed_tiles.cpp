@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -24,7 +23,7 @@ constexpr double kReachOfDust = 3;
 struct ComparedLayer {
   std::string name;
   LayerChanges changes;
-  std::optional<LayerChanges> untested;  // of the layers without the test of topology
+  LayerChanges untested;  // without the test of topology, in the states that have that
 };
 
 class Comparison {
@@ -73,10 +72,14 @@ class Comparison {
     const bool names_ids = style.value_for(name, ParameterId::ids).has_value() ||
                            style.value_for(name, ParameterId::highlight).has_value();
     const Ids ids = names_ids ? Ids::matter : Ids::do_not_matter;
-    ComparedLayer compared{name, {}, {}};
+    ComparedLayer compared;
+    compared.name = name;
     if (old.layer != now.layer) compared.changes = changes_between(*old.layer, *now.layer, ids);
-    if (old.untested != nullptr && now.untested != nullptr) {
-      compared.untested = changes_between(*old.untested, *now.untested, ids);
+    if (old.untested != nullptr || now.untested != nullptr) {
+      const auto untested_of = [](const ServedLayer& served) -> const Layer& {
+        return served.untested != nullptr ? *served.untested : *served.layer;
+      };
+      compared.untested = changes_between(untested_of(old), untested_of(now), ids);
     }
     layers_.push_back(std::move(compared));
   }
@@ -85,13 +88,13 @@ class Comparison {
     const std::string& name = plan.dataset->layers()[paint.layer].config.name;
     const auto found = std::ranges::find(layers_, name, &ComparedLayer::name);
     if (found == layers_.end()) return nullptr;
-    return paint.topology == Topology::strict ? &found->changes : &*found->untested;
+    return paint.topology == Topology::strict ? &found->changes : &found->untested;
   }
 
   /// Layers that are seen in one state and not in the other are of other zooms or opacities, which
   /// is no change of the data.
   std::vector<TileId> candidates(const TilePlan& before, const TilePlan& after) const {
-    std::vector<TileId> tiles;
+    std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // mostly alike in both
     for (const TilePlan* plan : {&before, &after}) {
       const View view = View::of_tile(plan->tile, plan->scale);
       for (const LayerPaint& paint : plan->layers) {
@@ -101,9 +104,14 @@ class Comparison {
         const double reach = (stroke.width > 0 ? stroke.reach(plan->scale) : 0) + kReachOfDust;
         const TileDrawing drawing{plan->tile.z, paint.level, plan->pixel_level(),
                                   reach * view.cells_per_pixel};
-        const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
-        tiles.insert(tiles.end(), more.begin(), more.end());
+        const std::pair each(changes, drawing);
+        if (std::ranges::find(drawings, each) == drawings.end()) drawings.push_back(each);
       }
+    }
+    std::vector<TileId> tiles;
+    for (const auto& [changes, drawing] : drawings) {
+      const auto more = tiles_with_changes(*changes, drawing, request_.most_tiles);
+      tiles.insert(tiles.end(), more.begin(), more.end());
     }
     const auto place = [](const TileId& tile) { return std::pair(tile.y, tile.x); };
     std::ranges::sort(tiles, {}, place);

@@ -47,7 +47,7 @@ void log_notes(const LoadReport& report) {
 void log_missing_title(const ServedLayer& served) {
   const std::string& wanted = served.config.title_attribute;
   if (wanted.empty() || title_field(served.layer->features(), wanted)) return;
-  spdlog::warn("layer \"{}\" has no attribute \"{}\": its features have no title",
+  spdlog::warn(R"(layer "{}" has no attribute "{}": its features have no title)",
                served.config.name, wanted);
 }
 
@@ -173,19 +173,18 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   return std::nullopt;
 }
 
-/// The layer as it is served now, if what is taken of a source is still the same.
+/// The layer as it is served now; null if it is not.
 const ServedLayer* find_served(const LayerConfig& layer, const Dataset* previous) {
   if (previous == nullptr) return nullptr;
   const auto position = previous->find(layer.name);
-  if (!position) return nullptr;
-  const ServedLayer& served = previous->layers()[*position];
-  return served.config.selection == layer.selection ? &served : nullptr;
+  return position ? &previous->layers()[*position] : nullptr;
 }
 
 /// In words, that a layer has lost most of what is served of it; empty if not.
 std::string find_loss(const ServedLayer& now, const Dataset* previous) {
   const ServedLayer* before = find_served(now.config, previous);
   if (now.config.may_shrink || before == nullptr) return {};
+  if (before->config.selection != now.config.selection) return {};
   if (2 * now.report.loaded >= before->report.loaded) return {};
   return fmt::format(
       "{}: {} features can be drawn, fewer than half of the {} that are served; if that is right, "
@@ -207,19 +206,11 @@ void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previou
   if (!problems.empty()) throw std::runtime_error(problems);
 }
 
-/// The layer of `previous`, if any, of which the same polygons may be a part.
-const ServedLayer* find_earlier(const LayerConfig& layer, const Dataset* previous) {
-  if (previous == nullptr) return nullptr;
-  const auto position = previous->find(layer.name);
-  if (!position || !previous->layers()[*position].is_whole()) return nullptr;
-  return &previous->layers()[*position];
-}
-
 /// What has not changed since `earlier` is taken over from there, unless that is null.
 LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const ServedLayer* earlier) {
-  if (earlier != nullptr) options.earlier = earlier->layer;
+  if (earlier != nullptr && earlier->is_whole()) options.earlier = earlier->layer;
   LoadedLayer loaded = open_layer(layer.file_to_open(), options);
-  if (earlier == nullptr || earlier->is_whole()) return loaded;
+  if (options.earlier == nullptr || earlier->is_whole()) return loaded;
   // Its file was written into meanwhile.
   options.earlier = nullptr;
   return open_layer(layer.file_to_open(), options);
@@ -305,7 +296,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
       show(1);
       progress.finish(i);
     } else {
-      const ServedLayer* earlier = find_earlier(layers[i], previous);
+      const ServedLayer* earlier = find_served(layers[i], previous);
       reading.emplace_back(i,
                            std::async(std::launch::async, [&layers, &progress, i, show, earlier] {
                              ServedLayer layer = read_layer(layers[i], earlier, show);

@@ -94,6 +94,11 @@ void sort_and_part(std::vector<std::uint32_t>& items) {
   }
 }
 
+void add(const Digest& digest, ContentHash& hash) {
+  hash.add(digest.low);
+  hash.add(digest.high);
+}
+
 /// The number of a feature's class; 0 if all are drawn alike.
 std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
   return classes == nullptr ? std::uint8_t{0} : (*classes)[row];
@@ -411,7 +416,7 @@ void LayerDrawing::finish_class(const Layer::Selection& selection, const View& v
   }
   drawing.digest = mask_digest(drawing.parts, view);
   drawing.is_full = drawing.digest == whole_mask_digest(view);
-  drawing.is_drawn = !drawing.is_full && !drawing.digest.is_zero();
+  drawing.is_drawn = !drawing.is_full && drawing.digest != Digest();
   if (!drawing.is_drawn) drawing.digest = {};
 }
 
@@ -614,8 +619,7 @@ void LayerDrawing::add_to(ContentHash& hash, const View& view) const {
   for_each_painted([&](const ClassDrawing& drawing) {
     hash.add(to_hex(colour_of(drawing)));
     hash.add(drawing.is_full ? "full" : drawing.is_beneath ? "beneath" : "beside");
-    hash.add(drawing.digest.low());
-    hash.add(drawing.digest.high());
+    add(drawing.digest, hash);
   });
   if (has_pattern()) add_pattern_to(hash, view);
   if (line_count_ > 0) add_lines_to(hash, view);
@@ -642,12 +646,8 @@ void LayerDrawing::add_lines_to(ContentHash& hash, const View& view) const {
   for (std::size_t i = 0; i < line_count_; ++i) {
     const Lines& lines = lines_[i];
     hash.add(to_hex(lines.colour));
-    for (const SetHash& digest :
-         {outline_digest(layer_->mesh().vertices, lines.edges, stroke, view),
-          outline_digest(lines.seen_points, lines.seen_edges, stroke, view)}) {
-      hash.add(digest.low());
-      hash.add(digest.high());
-    }
+    add(outline_digest(layer_->mesh().vertices, lines.edges, stroke, view), hash);
+    add(outline_digest(lines.seen_points, lines.seen_edges, stroke, view), hash);
   }
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/grid/cancellation.h"
-#include "core/grid/set_hash.h"
+#include "core/grid/digest.h"
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
@@ -106,7 +106,7 @@ class LayerDrawing {
     std::vector<MeshTrapezoid> made_trapezoids;
     TrapezoidRange all_made;
     std::vector<MeshPart> parts;
-    SetHash digest;  // of the mask, if it is drawn
+    Digest digest;  // of the mask, if it is drawn
     Mask mask;
 
     void clear(std::uint8_t class_number);
