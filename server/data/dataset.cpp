@@ -208,9 +208,10 @@ void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previou
 
 /// What has not changed since `earlier` is taken over from there, unless that is null.
 LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const ServedLayer* earlier) {
-  if (earlier != nullptr && earlier->is_whole()) options.earlier = earlier->layer;
+  if (earlier == nullptr || !earlier->is_whole()) return open_layer(layer.file_to_open(), options);
+  options.earlier = earlier->layer;
   LoadedLayer loaded = open_layer(layer.file_to_open(), options);
-  if (options.earlier == nullptr || earlier->is_whole()) return loaded;
+  if (earlier->is_whole()) return loaded;
   // Its file was written into meanwhile.
   options.earlier = nullptr;
   return open_layer(layer.file_to_open(), options);
