@@ -57,6 +57,13 @@ class StoredArray {
     own_.resize(size);
     items_ = own_;
   }
+  /// `i` < size().
+  void set(std::size_t i, const T& item) {
+    own_items();
+    own_[i] = item;
+  }
+  /// With items of its own.
+  StoredArray copy() const { return std::vector<T>(items_.begin(), items_.end()); }
   /// For changing the last item; there is one.
   T& back() {
     own_items();

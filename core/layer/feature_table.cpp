@@ -79,12 +79,33 @@ std::uint32_t FeatureTable::append(std::int64_t id, std::span<const Value> value
     if (fields_[i].type != FieldType::text) {
       append_number(column, values[i]);
     } else {
-      column.texts.push_back(is_null(values[i]) ? kNullText
-                                                : intern(std::get<std::string_view>(values[i])));
+      column.texts.push_back(number_of(values[i]));
     }
   }
   ids_.push_back(id);
   return static_cast<std::uint32_t>(ids_.size() - 1);
+}
+
+void FeatureTable::replace(std::uint32_t row, std::span<const Value> values) {
+  check_types(values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (fields_[i].type != FieldType::text) {
+      replace_number(columns_[i], row, values[i]);
+    } else {
+      columns_[i].texts.set(row, number_of(values[i]));
+    }
+  }
+}
+
+FeatureTable FeatureTable::copy() const {
+  FeatureTable other;
+  other.fields_ = fields_;
+  other.ids_ = ids_.copy();
+  for (const Column& column : columns_) other.columns_.push_back(column.copy());
+  other.string_bytes_ = string_bytes_.copy();
+  other.string_ends_ = string_ends_.copy();
+  other.string_slots_ = string_slots_;
+  return other;
 }
 
 void FeatureTable::shrink_to_fit() {
@@ -177,6 +198,23 @@ void FeatureTable::append_number(Column& column, const Value& value) {
     column.nulls.back() |= std::uint64_t{1} << row % kBits;
   }
   column.numbers.push_back(bits_of(value));
+}
+
+void FeatureTable::replace_number(Column& column, std::uint32_t row, const Value& value) {
+  column.numbers.set(row, bits_of(value));
+  const std::size_t word = row / kBits;
+  const std::uint64_t bit = std::uint64_t{1} << row % kBits;
+  if (is_null(value)) {
+    if (word >= column.nulls.size()) column.nulls.resize(word + 1);
+    column.nulls.set(word, column.nulls[word] | bit);
+  } else if (word < column.nulls.size()) {
+    column.nulls.set(word, column.nulls[word] & ~bit);
+  }
+}
+
+/// Of a value that is a text or null.
+std::uint32_t FeatureTable::number_of(const Value& text) {
+  return is_null(text) ? kNullText : intern(std::get<std::string_view>(text));
 }
 
 std::uint32_t FeatureTable::intern(std::string_view text_to_find) {

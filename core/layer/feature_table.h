@@ -51,6 +51,12 @@ class FeatureTable {
   /// field's type (std::invalid_argument if not). `id` is the source's own feature id.
   std::uint32_t append(std::int64_t id, std::span<const Value> values);
 
+  /// Puts other values in place of those of a row; otherwise as append().
+  void replace(std::uint32_t row, std::span<const Value> values);
+
+  /// A table of its own that equals this one, and can be changed.
+  FeatureTable copy() const;
+
   /// Gives back memory that only appending needs.
   void shrink_to_fit();
 
@@ -72,12 +78,16 @@ class FeatureTable {
     StoredArray<std::uint64_t> numbers;  // integer and real: the integer, or the bits of the double
     StoredArray<std::uint64_t> nulls;    // integer and real: a bit a row, up to the last null
     StoredArray<std::uint32_t> texts;    // text: number of the string, or kNullText
+
+    Column copy() const { return {numbers.copy(), nulls.copy(), texts.copy()}; }
   };
   static constexpr std::uint32_t kNullText = 0xffffffff;
 
   void check_types(std::span<const Value> values) const;
   void check_cells() const;
   static void append_number(Column& column, const Value& value);
+  static void replace_number(Column& column, std::uint32_t row, const Value& value);
+  std::uint32_t number_of(const Value& text);
   std::uint32_t intern(std::string_view text);
   std::string_view text(std::uint32_t number) const;
   void grow_slots();

@@ -735,10 +735,9 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
     return MeshIndex(layer->view, {from, to - from}, layer->lifespans, threads);
   };
   tell(0.8);
-  layer->polygon_index = index(0, polygons);
-  layer->horizontal_edge_index = index(polygons, horizontal_edges);
-  layer->mote_index = index(horizontal_edges, horizontal_edges + motes);
-  layer->merged_mote_index = index(horizontal_edges + motes, all);
+  layer->segments.push_back(std::make_shared<const MeshSegment>(MeshSegment{
+      index(0, polygons), index(polygons, horizontal_edges),
+      index(horizontal_edges, horizontal_edges + motes), index(horizontal_edges + motes, all)}));
   layer->grains = GrainIndex(std::move(dust.grains));
   return std::make_unique<Layer>(std::move(layer));
 }

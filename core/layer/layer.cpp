@@ -7,6 +7,21 @@
 #include "core/layer/layer_contents.h"
 
 namespace trapeze {
+namespace {
+
+// What the tolerance has made that is larger than pixels are the later_births().
+Level resolution_of(const Layer::Selection& selection) {
+  return std::min(selection.level, selection.pixel_level);
+}
+
+void select_dust(const MeshSegment& segment, const Layer::Selection& selection,
+                 std::span<const Lifespan> lifespans, std::vector<TrapezoidRange>& ranges) {
+  const Level resolution = resolution_of(selection);
+  segment.motes.select(selection.box, resolution, resolution, lifespans, ranges);
+  segment.merged_motes.select(selection.box, resolution, resolution, lifespans, ranges);
+}
+
+}  // namespace
 
 Layer::Layer(std::unique_ptr<const LayerContents> contents) : contents_(std::move(contents)) {}
 Layer::~Layer() = default;
@@ -26,17 +41,13 @@ const OutlineView& Layer::outline() const {
 
 void Layer::select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
   ranges.clear();
-  contents_->polygon_index.select(selection.box, selection.level, selection.level,
-                                  contents_->lifespans, ranges);
-  if (selection.small == SmallPolygons::dust) select_dust(selection, ranges);
-}
-
-// What the tolerance has made that is larger than pixels are the later_births().
-void Layer::select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const {
-  const Level resolution = std::min(selection.level, selection.pixel_level);
-  const LayerContents& c = *contents_;
-  c.mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
-  c.merged_mote_index.select(selection.box, resolution, resolution, c.lifespans, ranges);
+  const std::span<const Lifespan> lifespans = contents_->lifespans;
+  for (const auto& segment : contents_->segments) {
+    segment->polygons.select(selection.box, selection.level, selection.level, lifespans, ranges);
+    if (selection.small == SmallPolygons::dust) {
+      select_dust(*segment, selection, lifespans, ranges);
+    }
+  }
 }
 
 void Layer::keep_uppermost(std::vector<TrapezoidRange>& ranges) const {
@@ -61,22 +72,30 @@ bool Layer::have_in_common(std::uint32_t one, std::uint32_t other) const {
 void Layer::select_horizontal_edges(const Box& box, Level level,
                                     std::vector<TrapezoidRange>& ranges) const {
   ranges.clear();
-  contents_->horizontal_edge_index.select(box, level, level, contents_->lifespans, ranges);
+  for (const auto& segment : contents_->segments) {
+    segment->horizontal_edges.select(box, level, level, contents_->lifespans, ranges);
+  }
 }
 
 std::uint64_t Layer::estimate_trapezoids(const Selection& selection) const {
-  const LayerContents& c = *contents_;
   const auto& [box, level, pixel_level, small] = selection;
-  const std::uint64_t polygons = c.polygon_index.estimate(box, level, level);
-  if (small != SmallPolygons::dust) return polygons;
-  const Level resolution = std::min(level, pixel_level);
-  return polygons + c.mote_index.estimate(box, resolution, resolution) +
-         c.merged_mote_index.estimate(box, resolution, resolution);
+  const Level resolution = resolution_of(selection);
+  std::uint64_t sum = 0;
+  for (const auto& segment : contents_->segments) {
+    sum += segment->polygons.estimate(box, level, level);
+    if (small != SmallPolygons::dust) continue;
+    sum += segment->motes.estimate(box, resolution, resolution) +
+           segment->merged_motes.estimate(box, resolution, resolution);
+  }
+  return sum;
 }
 
 std::uint64_t Layer::estimate_horizontal_edges(const Selection& selection) const {
-  const LayerContents& c = *contents_;
-  return c.horizontal_edge_index.estimate(selection.box, selection.level, selection.level);
+  std::uint64_t sum = 0;
+  for (const auto& segment : contents_->segments) {
+    sum += segment->horizontal_edges.estimate(selection.box, selection.level, selection.level);
+  }
+  return sum;
 }
 
 GrainIndex::Births Layer::Selection::later_births() const {
@@ -96,16 +115,29 @@ bool Layer::has_all_overlaps() const {
 }
 
 bool Layer::fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const {
-  // Dust comes last, and may take area away.
-  const bool has_dust =
-      !ranges.empty() && ranges.back().first + ranges.back().count > contents_->feature_of.size();
-  return !has_dust && cover_box(contents_->view, ranges, selection.box);
+  // Dust may take area away.
+  return !have_dust(ranges) && cover_box(contents_->view, ranges, selection.box);
+}
+
+// Of what was built whole, dust comes last.
+bool Layer::have_dust(std::span<const TrapezoidRange> ranges) const {
+  if (ranges.empty()) return false;
+  if (contents_->is_whole())
+    return feature_of(ranges.back().first + ranges.back().count - 1) == kNoFeature;
+  return std::ranges::any_of(ranges, [this](const TrapezoidRange& range) {
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+      if (feature_of(range.first + i) == kNoFeature) return true;
+    }
+    return false;
+  });
 }
 
 void Layer::small_polygons(const Selection& selection, std::vector<Box>& places) const {
   places.clear();
   std::vector<TrapezoidRange> ranges;
-  select_dust(selection, ranges);
+  for (const auto& segment : contents_->segments) {
+    select_dust(*segment, selection, contents_->lifespans, ranges);
+  }
   const MeshView& mesh = contents_->view;
   for_each_trapezoid(ranges, [&](std::uint32_t i) {
     const MeshTrapezoid& t = mesh.trapezoids[i];
@@ -117,8 +149,13 @@ void Layer::small_polygons(const Selection& selection, std::vector<Box>& places)
 
 void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   const LayerContents& c = *contents_;
-  if (row >= c.outline_ends.size()) return;
-  for (std::uint32_t i = row == 0 ? 0 : c.outline_ends[row - 1]; i < c.outline_ends[row]; ++i) {
+  RingRange range;
+  if (const auto moved = c.moved_outlines.find(row); moved != c.moved_outlines.end()) {
+    range = moved->second;
+  } else if (row < c.outline_ends.size()) {
+    range = {row == 0 ? 0 : c.outline_ends[row - 1], c.outline_ends[row]};
+  }
+  for (std::uint32_t i = range.begin; i < range.end; ++i) {
     const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
     // Of a file that is cut off while it is mapped, ends may read as zero.
     const std::uint32_t end = std::max(begin, c.ring_ends[i]);
@@ -130,20 +167,27 @@ std::uint32_t Layer::feature_of(std::uint32_t trapezoid) const {
   return trapezoid < contents_->feature_of.size() ? contents_->feature_of[trapezoid] : kNoFeature;
 }
 
+bool Layer::is_removed(std::uint32_t row) const {
+  return row < contents_->is_removed.size() && contents_->is_removed[row];
+}
+
 LayerSize Layer::size() const {
   return contents_->size;
 }
 
 std::size_t Layer::memory() const {
   const LayerContents& c = *contents_;
-  return c.vertices.memory() + c.edges.memory() + c.loop_sizes.memory() +
+  std::size_t indexes = 0;
+  for (const auto& segment : c.segments) {
+    indexes += segment->polygons.memory() + segment->horizontal_edges.memory() +
+               segment->motes.memory() + segment->merged_motes.memory();
+  }
+  return indexes + c.vertices.memory() + c.edges.memory() + c.loop_sizes.memory() +
          c.milestone_ends.memory() + c.milestones.memory() + c.milestone_levels.memory() +
          c.trapezoids.memory() + c.lifespans.memory() + c.feature_of.memory() +
          c.outline_points.memory() + c.ring_ends.memory() + c.outline_ends.memory() +
          c.feature_units.memory() + c.group_units.memory() + c.group_members.memory() +
-         c.group_overlaps.memory() + c.polygon_index.memory() + c.horizontal_edge_index.memory() +
-         c.mote_index.memory() + c.merged_mote_index.memory() + c.grains.memory() +
-         c.overlaps.memory();
+         c.group_overlaps.memory() + c.grains.memory() + c.overlaps.memory();
 }
 
 }  // namespace trapeze

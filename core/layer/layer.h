@@ -114,12 +114,16 @@ class Layer {
   /// in one pixel being merged.
   void small_polygons(const Selection& selection, std::vector<Box>& places) const;
 
-  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`.
+  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`. Of one that
+  /// is removed, as it was.
   void append_outline(std::uint32_t row, Rings& rings) const;
 
   /// The row, in features(), of the polygon that a trapezoid, or a horizontal edge, is a part of;
   /// kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
+
+  /// Whether the feature of that row is no longer there: see LayerPatcher.
+  bool is_removed(std::uint32_t row) const;
 
   LayerSize size() const;
 
@@ -130,7 +134,7 @@ class Layer {
   const LayerContents& contents() const { return *contents_; }  // used by arrays_of
 
  private:
-  void select_dust(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
+  bool have_dust(std::span<const TrapezoidRange> ranges) const;
 
   std::unique_ptr<const LayerContents> contents_;
 };

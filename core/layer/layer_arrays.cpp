@@ -138,6 +138,7 @@ void look_at(std::span<const T> items, StoredArray<T>& array) {
 
 LayerArrays arrays_of(const Layer& layer) {
   const LayerContents& c = layer.contents();
+  const MeshSegment& segment = c.first_segment();
   LayerArrays arrays;
   arrays.vertices = c.vertices;
   arrays.edges = c.edges;
@@ -145,10 +146,10 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.lifespans = c.lifespans;
   arrays.feature_of = c.feature_of;
   arrays.outline = c.outline;
-  arrays.polygon_index = c.polygon_index.entries();
-  arrays.mote_index = c.mote_index.entries();
-  arrays.merged_mote_index = c.merged_mote_index.entries();
-  arrays.horizontal_edge_index = c.horizontal_edge_index.entries();
+  arrays.polygon_index = segment.polygons.entries();
+  arrays.mote_index = segment.motes.entries();
+  arrays.merged_mote_index = segment.merged_motes.entries();
+  arrays.horizontal_edge_index = segment.horizontal_edges.entries();
   arrays.grains = c.grains.grains();
   arrays.overlaps = c.overlaps.pairs();
   arrays.outline_points = c.outline_points;
@@ -160,8 +161,8 @@ LayerArrays arrays_of(const Layer& layer) {
                   {c.group_overlaps.data(), c.group_overlaps.size()}};
   arrays.cells = c.features.cells();
   arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
-  arrays.horizontal_edges = c.horizontal_edge_index.range().count;
-  arrays.single_motes = c.mote_index.range().count;
+  arrays.horizontal_edges = segment.horizontal_edges.range().count;
+  arrays.single_motes = segment.motes.range().count;
   arrays.size = c.size;
   arrays.bounds = c.bounds;
   arrays.options = c.options;
@@ -196,12 +197,11 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   const std::size_t horizontal_edges = arrays.feature_of.size();
   const std::size_t polygons = horizontal_edges - arrays.horizontal_edges;
   const std::size_t singles = horizontal_edges + arrays.single_motes;
-  layer->polygon_index = MeshIndex(between(0, polygons), arrays.polygon_index);
-  layer->horizontal_edge_index =
-      MeshIndex(between(polygons, horizontal_edges), arrays.horizontal_edge_index);
-  layer->mote_index = MeshIndex(between(horizontal_edges, singles), arrays.mote_index);
-  layer->merged_mote_index =
-      MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index);
+  layer->segments.push_back(std::make_shared<const MeshSegment>(MeshSegment{
+      MeshIndex(between(0, polygons), arrays.polygon_index),
+      MeshIndex(between(polygons, horizontal_edges), arrays.horizontal_edge_index),
+      MeshIndex(between(horizontal_edges, singles), arrays.mote_index),
+      MeshIndex(between(singles, arrays.trapezoids.size()), arrays.merged_mote_index)}));
   layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));
   layer->overlaps = OverlapTable(StoredArray<FeatureOverlap>::looking_at(arrays.overlaps),
                                  arrays.cells.ids.size());

@@ -45,7 +45,7 @@ struct LayerArrays {
   LayerOptions options;
 };
 
-/// The arrays of a layer, which must outlive their use.
+/// The arrays of a layer, which must outlive their use. It was built whole (see LayerPatcher).
 LayerArrays arrays_of(const Layer& layer);
 
 /// A layer that looks at the arrays and keeps `mapping` while it lives. Equal to the one that the

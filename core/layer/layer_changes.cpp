@@ -83,8 +83,9 @@ class Summary {
   std::size_t rows() const { return layer_.features().size(); }
   const MeshView& mesh() const { return layer_.mesh(); }
   const LayerContents& contents() const { return layer_.contents(); }
-  std::size_t level_edges_begin() const { return contents().polygon_index.range().count; }
-  std::size_t motes_begin() const { return contents().feature_of.size(); }
+  /// Calls visit(trapezoid) for all trapezoids of one of the kinds that are there at some level.
+  template <typename Visit>
+  void for_each(MeshIndex MeshSegment::*kind, const Visit& visit) const;
   std::uint64_t spans_of(std::size_t trapezoid) const;
 
   const Layer& layer_;
@@ -130,6 +131,17 @@ void Summary::hash_identities(Ids ids) {
   }
 }
 
+template <typename Visit>
+void Summary::for_each(MeshIndex MeshSegment::*kind, const Visit& visit) const {
+  for (const auto& segment : contents().segments) {
+    const TrapezoidRange range = ((*segment).*kind).range();
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+      const Lifespan lifespan = contents().lifespans[i];
+      if (lifespan.born < lifespan.dies) visit(i);
+    }
+  }
+}
+
 /// The heights of a trapezoid, and when it is there.
 std::uint64_t Summary::spans_of(std::size_t trapezoid) const {
   const MeshTrapezoid& t = mesh().trapezoids[trapezoid];
@@ -145,16 +157,18 @@ void Summary::hash_features() {
   hashes_.resize(rows());
   boxes_.resize(rows());
   for (std::uint32_t row = 0; row < rows(); ++row) hashes_[row].add({identities_[row], 0, 0});
-  for (std::size_t i = 0; i < motes_begin(); ++i) {
+  const auto add = [this](std::uint32_t i) {
     const std::uint32_t row = contents().feature_of[i];
-    if (row >= rows()) continue;
+    if (row >= rows()) return;
     const MeshTrapezoid& t = mesh().trapezoids[i];
     hashes_[row].add({edge_hashes_[t.left], edge_hashes_[t.right], spans_of(i)});
     for (const std::uint32_t edge : {t.left, t.right}) {
       boxes_[row].include(mesh().vertices[mesh().edges[edge].upper]);
       boxes_[row].include(mesh().vertices[mesh().edges[edge].lower]);
     }
-  }
+  };
+  for_each(&MeshSegment::polygons, add);
+  for_each(&MeshSegment::horizontal_edges, add);
   for (const FeatureGrain& grain : layer_.grains().grains()) {
     if (grain.row >= rows()) continue;
     hashes_[grain.row].add(
@@ -199,13 +213,13 @@ std::vector<char> Summary::marked(std::span<const std::uint32_t> rows) const {
 void Summary::append_sides(std::span<const std::uint32_t> rows, bool is_after,
                            std::vector<LayerChanges::Side>& sides) const {
   const std::vector<char> is_wanted = marked(rows);
-  for (std::size_t i = 0; i < level_edges_begin(); ++i) {
+  for_each(&MeshSegment::polygons, [&](std::uint32_t i) {
     const std::uint32_t row = contents().feature_of[i];
-    if (row >= is_wanted.size() || is_wanted[row] == 0) continue;
+    if (row >= is_wanted.size() || is_wanted[row] == 0) return;
     const MeshTrapezoid& t = mesh().trapezoids[i];
     const std::int32_t top = mesh().vertices[t.top].y;
     const std::int32_t bottom = mesh().vertices[t.bottom].y;
-    if (top == bottom) continue;
+    if (top == bottom) return;
     const std::uint64_t weight = is_after ? identities_[row] : -identities_[row];
     for (const bool is_right : {false, true}) {
       const std::uint32_t edge = is_right ? t.right : t.left;
@@ -213,14 +227,14 @@ void Summary::append_sides(std::span<const std::uint32_t> rows, bool is_after,
       sides.push_back({mesh().vertices[ends.upper], mesh().vertices[ends.lower], top, bottom,
                        contents().lifespans[i], outlines_[edge], is_right ? -weight : weight});
     }
-  }
+  });
 }
 
 void Summary::append_places(std::span<const std::uint32_t> rows, HashedPlaces& places) const {
   const std::vector<char> is_wanted = marked(rows);
-  for (std::size_t i = level_edges_begin(); i < motes_begin(); ++i) {
+  for_each(&MeshSegment::horizontal_edges, [&](std::uint32_t i) {
     const std::uint32_t row = contents().feature_of[i];
-    if (row >= is_wanted.size() || is_wanted[row] == 0) continue;
+    if (row >= is_wanted.size() || is_wanted[row] == 0) return;
     const MeshEdge& ends = mesh().edges[mesh().trapezoids[i].left];
     Box box;
     box.include(mesh().vertices[ends.upper]);
@@ -228,7 +242,7 @@ void Summary::append_places(std::span<const std::uint32_t> rows, HashedPlaces& p
     places.emplace_back(
         hash_of(edge_hashes_[mesh().trapezoids[i].left], spans_of(i), identities_[row]),
         LayerChanges::Place{box, contents().lifespans[i]});
-  }
+  });
   for (const FeatureGrain& grain : layer_.grains().grains()) {
     if (grain.row >= is_wanted.size() || is_wanted[grain.row] == 0) continue;
     const std::uint64_t axis = hash_of(word_of(grain.from), word_of(grain.to), grain.born);
@@ -239,11 +253,13 @@ void Summary::append_places(std::span<const std::uint32_t> rows, HashedPlaces& p
 }
 
 void Summary::append_motes(HashedPlaces& places) const {
-  for (std::size_t i = motes_begin(); i < mesh().trapezoids.size(); ++i) {
+  const auto add = [&](std::uint32_t i) {
     const MeshTrapezoid& t = mesh().trapezoids[i];
     places.emplace_back(hash_of(edge_hashes_[t.left], edge_hashes_[t.right], spans_of(i)),
                         LayerChanges::Place{box_of(mesh(), t), contents().lifespans[i], true});
-  }
+  };
+  for_each(&MeshSegment::motes, add);
+  for_each(&MeshSegment::merged_motes, add);
 }
 
 void Summary::append_pairs(HashedPlaces& places) const {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <unordered_map>
+#include <vector>
 
 #include "core/grid/stored_array.h"
 #include "core/layer/built_units.h"
@@ -16,25 +18,40 @@
 
 namespace trapeze {
 
+/// The trapezoids that follow each other in the mesh, by what they stand for, in this order.
+struct MeshSegment {
+  MeshIndex polygons;
+  MeshIndex horizontal_edges;
+  MeshIndex motes;  // single ones
+  MeshIndex merged_motes;
+};
+
+/// Rings that follow each other: their numbers from the first up to the last.
+struct RingRange {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
 struct LayerContents {
+  const MeshSegment& first_segment() const { return *segments.front(); }
+  /// Whether there is no more than what was built whole.
+  bool is_whole() const { return segments.size() == 1; }
+
   std::shared_ptr<const void> mapping;  // owns the memory of the arrays that are views
   StoredArray<Point> vertices;
   StoredArray<MeshEdge> edges;
   StoredArray<MeshTrapezoid> trapezoids;
-  StoredArray<Lifespan> lifespans;        // by trapezoid
-  StoredArray<std::uint32_t> feature_of;  // by trapezoid, those of dust left out
-  MeshView view;                          // of the arrays above
+  StoredArray<Lifespan> lifespans;  // by trapezoid
+  // By trapezoid; those of dust at the end are left out, any others have none.
+  StoredArray<std::uint32_t> feature_of;
+  MeshView view;  // of the arrays above
   StoredArray<LoopSize> loop_sizes;
   StoredArray<std::uint32_t> milestone_ends;
   StoredArray<Milestone> milestones;
   StoredArray<Level> milestone_levels;
   OutlineView outline;  // of these
-  // Trapezoids of polygons come first, then those that stand for horizontal edges, then those of
-  // single motes, then those of merged motes.
-  MeshIndex polygon_index;
-  MeshIndex horizontal_edge_index;
-  MeshIndex mote_index;
-  MeshIndex merged_mote_index;
+  // At least one, in order; a layer that was built whole has one. Layers may share them.
+  std::vector<std::shared_ptr<const MeshSegment>> segments;
   GrainIndex grains;
   OverlapTable overlaps;
   bool has_all_overlaps = true;
@@ -44,6 +61,9 @@ struct LayerContents {
   StoredArray<Point> outline_points;
   StoredArray<std::uint32_t> ring_ends;
   StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
+  // Of a layer in which features were replaced: by row, of those that were, and of new ones.
+  std::unordered_map<std::uint32_t, RingRange> moved_outlines;
+  std::vector<bool> is_removed;  // by row; empty if none is
   // As in BuiltUnitsView.
   StoredArray<FeatureUnit> feature_units;
   StoredArray<GroupUnit> group_units;

@@ -1,0 +1,286 @@
+#include "core/layer/layer_patcher.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/borders/coverage_groups.h"
+#include "core/layer/layer_builder.h"
+#include "core/mesh/mesh_index.h"
+#include "core/sweep/clean_rings.h"
+#include "tests/core/shapes/drawn_trapezoids.h"
+#include "tests/core/shapes/maps.h"
+
+namespace trapeze {
+namespace {
+
+struct Feature {
+  std::int64_t id = 0;
+  Rings rings;
+  std::string name;
+};
+using Features = std::vector<Feature>;
+
+/// As a file of it would be loaded.
+std::unique_ptr<Layer> build(const Features& features, const LayerOptions& options) {
+  FeatureTable table(std::vector<Field>{{"name", FieldType::text}, {"points", FieldType::integer}});
+  std::vector<Rings> rings;
+  for (const Feature& feature : features) {
+    const auto points = static_cast<std::int64_t>(feature.rings.points.size());
+    const Value number = points % 3 == 0 ? Value() : Value(points);
+    table.append(feature.id, std::vector<Value>{std::string_view(feature.name), number});
+    rings.push_back(feature.rings);
+    if (options.coverage != CoverageMode::off) clean_rings(rings.back());
+  }
+  std::vector<LayerBuilder> builders;
+  builders.emplace_back(options);
+  std::vector<bool> is_grouped(features.size(), false);
+  if (options.coverage != CoverageMode::off) {
+    std::vector<const Rings*> pointers;
+    for (const Rings& one : rings) pointers.push_back(&one);
+    for (const auto& group : group_features(pointers, options.coverage)) {
+      std::vector<const Rings*> members;
+      for (const std::uint32_t row : group) {
+        members.push_back(pointers[row]);
+        is_grouped[row] = true;
+      }
+      for (const std::uint32_t i : builders.front().add_coverage(group, members).apart) {
+        is_grouped[group[i]] = false;
+      }
+    }
+  }
+  for (std::uint32_t row = 0; row < features.size(); ++row) {
+    if (!is_grouped[row] && !rings[row].empty()) builders.front().add(row, rings[row]);
+  }
+  return LayerBuilder::join(builders, std::move(table));
+}
+
+/// What is there, by the ids of features.
+std::multiset<std::pair<std::int64_t, Drawn>> drawn_of(const Layer& layer, Level level,
+                                                       const std::vector<TrapezoidRange>& ranges) {
+  std::multiset<std::pair<std::int64_t, Drawn>> all;
+  const MeshView& mesh = layer.mesh();
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    const MeshTrapezoid& t = mesh.trapezoids[i];
+    const auto at = [&](std::uint32_t v) { return mesh.vertices[v]; };
+    const MeshEdge left = mesh.edges[t.left];
+    const MeshEdge right = mesh.edges[t.right];
+    const OutlineView& outline = layer.outline();
+    EXPECT_LT(layer.feature_of(i), layer.features().size());
+    Drawn one = drawn(outline.loop_size(t.left), at(t.top).y, at(t.bottom).y, at(left.upper),
+                      at(left.lower), at(right.upper), at(right.lower));
+    all.emplace(layer.features().id(layer.feature_of(i)), one);
+    const AlongEdge along = along_edge(mesh, outline, t.left, level);
+    EXPECT_GE(std::abs(along.upper) + std::abs(along.lower), 0);
+  });
+  return all;
+}
+
+constexpr Box kEverywhere{kGridMin, kGridMin, kGridMax, kGridMax};
+
+struct DustSum {
+  double area = 0;
+  double roundings = 0;
+};
+
+DustSum dust_of(const Layer& layer, Level level) {
+  std::vector<TrapezoidRange> ranges;
+  layer.select({kEverywhere, level, level, SmallPolygons::dust}, ranges);
+  DustSum sum;
+  const MeshView& mesh = layer.mesh();
+  for_each_trapezoid(ranges, [&](std::uint32_t i) {
+    if (layer.feature_of(i) != Layer::kNoFeature) return;
+    const MeshTrapezoid& t = mesh.trapezoids[i];
+    const double height = mesh.vertices[t.bottom].y - mesh.vertices[t.top].y;
+    const double width =
+        mesh.vertices[mesh.edges[t.right].upper].x - mesh.vertices[mesh.edges[t.left].upper].x;
+    sum.area += width * height;
+    sum.roundings += 1.5 + height;
+  });
+  return sum;
+}
+
+std::set<std::tuple<std::int64_t, int, int, int, int, std::int64_t, int, int>> grains_of(
+    const Layer& layer) {
+  std::set<std::tuple<std::int64_t, int, int, int, int, std::int64_t, int, int>> all;
+  for (const FeatureGrain& grain : layer.grains().grains()) {
+    all.emplace(layer.features().id(grain.row), grain.from.x, grain.from.y, grain.to.x, grain.to.y,
+                grain.doubled_area, grain.born, grain.is_covered);
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(layer.grains().grains(), {},
+                                     [](const FeatureGrain& g) { return order_key(g); }));
+  return all;
+}
+
+std::set<std::tuple<std::int64_t, std::int64_t, std::uint32_t, std::uint32_t>> overlaps_of(
+    const Layer& layer) {
+  std::set<std::tuple<std::int64_t, std::int64_t, std::uint32_t, std::uint32_t>> all;
+  for (const FeatureOverlap& pair : layer.overlaps().pairs()) {
+    all.emplace(layer.features().id(pair.row), layer.features().id(pair.other), pair.width,
+                pair.along);
+  }
+  return all;
+}
+
+std::string attributes_of(const Layer& layer, std::uint32_t row) {
+  const Value name = layer.features().value(row, 0);
+  const Value points = layer.features().value(row, 1);
+  const auto* number = std::get_if<std::int64_t>(&points);
+  return std::string(std::get<std::string_view>(name)) +
+         (number == nullptr ? "" : std::to_string(*number));
+}
+
+/// By id; of those that are there.
+std::map<std::int64_t, std::pair<Rings, std::string>> features_of(const Layer& layer) {
+  std::map<std::int64_t, std::pair<Rings, std::string>> all;
+  for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
+    if (layer.is_removed(row)) continue;
+    Rings rings;
+    layer.append_outline(row, rings);
+    all[layer.features().id(row)] = {rings, attributes_of(layer, row)};
+  }
+  return all;
+}
+
+/// That those of `all` that meet the box are found by it, in ascending order.
+void expect_found(const Layer& layer, Level level, const std::vector<TrapezoidRange>& all,
+                  const Box& box) {
+  std::vector<TrapezoidRange> ranges;
+  layer.select({box, level, level, SmallPolygons::dust}, ranges);
+  std::vector<std::uint32_t> found;
+  for_each_trapezoid(ranges, [&](std::uint32_t i) { found.push_back(i); });
+  EXPECT_TRUE(std::ranges::is_sorted(found));
+  for_each_trapezoid(all, [&](std::uint32_t i) {
+    if (!meets(layer.mesh(), layer.mesh().trapezoids[i], box)) return;
+    EXPECT_TRUE(std::ranges::binary_search(found, i));
+  });
+}
+
+void expect_same(const Layer& patched, const Layer& whole) {
+  EXPECT_EQ(features_of(patched), features_of(whole));
+  EXPECT_EQ(grains_of(patched), grains_of(whole));
+  EXPECT_EQ(overlaps_of(patched), overlaps_of(whole));
+  for (int level = 0; level <= kLastLevel; level += 9) {
+    SCOPED_TRACE("level " + std::to_string(level));
+    const auto at = static_cast<Level>(level);
+    std::vector<TrapezoidRange> one;
+    std::vector<TrapezoidRange> other;
+    patched.select({kEverywhere, at, at, SmallPolygons::drop}, one);
+    whole.select({kEverywhere, at, at, SmallPolygons::drop}, other);
+    EXPECT_EQ(drawn_of(patched, at, one), drawn_of(whole, at, other));
+    expect_found(patched, at, one, {-3000, -3000, 5000, 4000});
+    patched.select_horizontal_edges(kEverywhere, at, one);
+    whole.select_horizontal_edges(kEverywhere, at, other);
+    EXPECT_EQ(drawn_of(patched, at, one), drawn_of(whole, at, other));
+    const DustSum dust = dust_of(patched, at);
+    const DustSum expected = dust_of(whole, at);
+    EXPECT_NEAR(dust.area, expected.area, 2 * (dust.roundings + expected.roundings));
+  }
+}
+
+/// A map whose features are edited, and its layer.
+class Edited {
+ public:
+  Edited(unsigned seed, const LayerOptions& options) : random_(seed), options_(options) {
+    for (Rings& rings : sample_map(seed)) features_.push_back({next_id_++, rings, name()});
+    patcher_ = std::make_unique<LayerPatcher>(*build(features_, options));
+  }
+
+  /// Changes a few features at once.
+  LayerChanges edit(int count) {
+    std::set<std::int64_t> changed;
+    for (int i = 0; i < count; ++i) changed.insert(edit_one());
+    const std::vector<std::int64_t> ids(changed.begin(), changed.end());
+    Features now;
+    for (const Feature& feature : features_) {
+      if (changed.contains(feature.id)) now.push_back(feature);
+    }
+    std::vector<Box> places;
+    for (const Feature& feature : now) {
+      places.emplace_back();
+      for (const Point p : feature.rings.points) places.back().include(p);
+    }
+    const std::vector<std::int64_t> to_build = patcher_->ids_to_build(ids, places, 4);
+    Features features;
+    for (const std::int64_t id : to_build) {
+      const auto feature = std::ranges::find(features_, id, &Feature::id);
+      if (feature != features_.end()) features.push_back(*feature);
+    }
+    return patcher_->apply({to_build, ids, *build(features, options_)});
+  }
+
+  const Layer& patched() const { return *patcher_->now(); }
+  const LayerPatcher& patcher() const { return *patcher_; }
+  std::unique_ptr<Layer> whole() const { return build(features_, options_); }
+  std::size_t size() const { return features_.size(); }
+
+ private:
+  std::size_t below(std::size_t end) {
+    return std::uniform_int_distribution<std::size_t>(0, end - 1)(random_);
+  }
+  std::string name() { return "name " + std::to_string(below(7)); }
+
+  std::int64_t edit_one() {
+    Feature& feature = features_[below(features_.size())];
+    const std::int64_t id = feature.id;
+    switch (below(6)) {
+      case 0:
+        features_.push_back({next_id_, moved_by(feature.rings, {300, 200}), name()});
+        return next_id_++;
+      case 1:
+        features_.erase(features_.begin() + (&feature - features_.data()));
+        break;
+      case 2:
+        feature.name = "renamed";
+        break;
+      case 3:
+        if (!feature.rings.points.empty()) {
+          feature.rings.points[below(feature.rings.points.size())].x += 7;
+        }
+        break;
+      case 4:
+        feature.rings = random_shape(static_cast<unsigned>(below(1000)));
+        break;
+      default:
+        feature.rings = moved_by(feature.rings, {1300, -500});
+    }
+    return id;
+  }
+
+  std::mt19937 random_;
+  const LayerOptions options_;
+  std::int64_t next_id_ = 100;
+  Features features_;  // new ones come last, as in the layer
+  std::unique_ptr<LayerPatcher> patcher_;
+};
+
+TEST(LayerPatcherTest, APatchedLayerIsTheOneBuiltAnew) {
+  for (const CoverageMode coverage :
+       {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      SCOPED_TRACE("coverage " + std::string(kCoverageNames.name_of(coverage)) + ", seed " +
+                   std::to_string(seed));
+      LayerOptions options;
+      options.coverage = coverage;
+      Edited map(seed, options);
+      expect_same(map.patched(), *map.whole());
+      for (int step = 0; step < 8; ++step) {
+        SCOPED_TRACE("step " + std::to_string(step));
+        map.edit(1 + step % 3);
+        expect_same(map.patched(), *map.whole());
+        if (::testing::Test::HasFailure()) return;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trapeze
