@@ -74,7 +74,11 @@ class Comparison {
     const Ids ids = names_ids ? Ids::matter : Ids::do_not_matter;
     ComparedLayer compared;
     compared.name = name;
-    if (old.layer != now.layer) compared.changes = changes_between(*old.layer, *now.layer, ids);
+    if (now.last_step != nullptr && now.last_step->since == old.revision) {
+      compared.changes = now.last_step->changes;
+    } else if (old.layer != now.layer) {
+      compared.changes = changes_between(*old.layer, *now.layer, ids);
+    }
     if (old.untested != nullptr || now.untested != nullptr) {
       const auto untested_of = [](const ServedLayer& served) -> const Layer& {
         return served.untested != nullptr ? *served.untested : *served.layer;

@@ -26,6 +26,7 @@ struct LayerConfig {
   std::string name;           // is_url_name() holds
   std::string file;           // empty only if `prepared` is set
   SourceSelection selection;  // of the file
+  std::string live_query;     // see ChangeFeed; empty: changes are not asked for
   std::string prepared;       // a prepared file of it, which is served in its place; may be empty
   std::string title;          // the name if not set
   std::string attribution;
@@ -71,6 +72,7 @@ struct ServerConfig {
   bool metrics = true;   // whether /metrics is there; it always is at the admin address
   std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed
   unsigned watch_ms = 2000;                   // between looks at the files, for changes; 0: none
+  unsigned live_ms = 250;                     // between questions to databases, for changes
   unsigned drain_delay_ms = 0;                // told to stop, it goes on so long, being not ready
   unsigned drain_timeout_ms =
       defaults::kDrainTimeout.count();  // and then waits so long for what is under way

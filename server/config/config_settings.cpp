@@ -422,6 +422,9 @@ void append_server(std::vector<Setting<Config>>& all) {
       "time between looks at the configuration and the files of layers, which are read again when "
       "they have changed; 0: only on SIGHUP"));
   all.push_back(milliseconds(
+      "server.live_ms", [](auto& c) -> auto& { return c.server.live_ms; }, 10,
+      "time between questions to the databases of layers with a live_query"));
+  all.push_back(milliseconds(
       "server.drain_delay_ms", [](auto& c) -> auto& { return c.server.drain_delay_ms; }, 0,
       "told to stop, the server is not ready but goes on so long, for balancers to notice"));
   all.push_back(milliseconds(
@@ -578,6 +581,10 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "where", [](auto& layer) -> auto& { return layer.selection.where; },
           "a condition on features in SQL; not set: all of them"),
       attributes_setting(),
+      text<LayerConfig>(
+          "live_query", [](auto& layer) -> auto& { return layer.live_query; },
+          "SQL that tells which features have changed, so that only those are read again: each row "
+          "a number that grows and the id of a feature, with a number greater than {since}"),
       path<LayerConfig>(
           "prepared", [](auto& layer) -> auto& { return layer.prepared; },
           "made of the file by `trapeze prepare`, and served in its place"),

@@ -246,11 +246,21 @@ class ConfigReader {
                        "`trapeze prepare`, and not by source_layer, where or attributes",
                        layer.name));
     }
+    if (!layer.live_query.empty()) check_live(table, layer);
     if (layer.min_zoom > layer.max_zoom) {
       fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
     }
     if (layer.title.empty()) layer.title = layer.name;
     keep(std::move(layer), table.source().begin);
+  }
+
+  void check_live(const toml::table& table, const LayerConfig& layer) {
+    const auto cannot = [&](const char* why) {
+      fail(table, fmt::format("layer \"{}\" cannot have a live_query: {}", layer.name, why));
+    };
+    if (!layer.prepared.empty()) cannot("it is prepared");
+    if (layer.selection.layer.empty()) cannot("it needs a source_layer, the table that is asked");
+    if (layer.has_fast_topology()) cannot("a layer without the topology test is built whole");
   }
 
   void keep(LayerConfig layer, const toml::source_position& position) {

@@ -164,7 +164,7 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   if (state.empty()) return std::nullopt;
   for (const ServedLayer& served : previous->layers()) {
     if (served.source_state == state && are_read_the_same(served.config, layer) &&
-        served.is_whole()) {
+        served.is_whole() && served.whole == nullptr) {
       ServedLayer kept = served;
       kept.config = layer;
       return kept;
@@ -209,7 +209,7 @@ void check_layers(const std::vector<ServedLayer>& layers, const Dataset* previou
 /// What has not changed since `earlier` is taken over from there, unless that is null.
 LoadedLayer open_with(const LayerConfig& layer, OpenOptions options, const ServedLayer* earlier) {
   if (earlier == nullptr || !earlier->is_whole()) return open_layer(layer.file_to_open(), options);
-  options.earlier = earlier->layer;
+  options.earlier = earlier->whole != nullptr ? earlier->whole : earlier->layer;
   LoadedLayer loaded = open_layer(layer.file_to_open(), options);
   if (earlier->is_whole()) return loaded;
   // Its file was written into meanwhile.

@@ -13,6 +13,7 @@
 #include "core/io/load/load_layer.h"
 #include "core/io/prepared/open_layer.h"
 #include "core/layer/layer.h"
+#include "core/layer/layer_changes.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
 #include "server/data/load_progress.h"
@@ -23,11 +24,21 @@ struct ServedLayer {
   LayerConfig config;
   std::shared_ptr<const Layer> layer;  // shared with the dataset before, if it did not change
   LoadReport report;
-  std::uint64_t revision = 0;                   // revision_of(*layer)
+  std::uint64_t revision = 0;  // revision_of(*layer); of a live layer, by what was replaced too
   std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
   std::string source_state = {};                // state_of_sources() before it was read
   /// Without the topological consistency test; null unless the configuration asks for it.
   std::shared_ptr<const Layer> untested = {};
+
+  /// Of a layer in which features are replaced while it is served (see LiveLayer), as it was read
+  /// whole; null of others.
+  std::shared_ptr<const Layer> whole = {};
+  /// Where it may look different from what it was under an earlier revision.
+  struct Step {
+    std::uint64_t since = 0;
+    LayerChanges changes;
+  };
+  std::shared_ptr<const Step> last_step = {};  // null: it was read whole
 
   /// The layer to draw; null if it is not there without the test.
   const Layer* layer_for(Topology topology) const {

@@ -5,13 +5,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
 namespace trapeze {
 namespace {
 
-constexpr auto kTick = std::chrono::seconds(1);  // without a watch, only to tidy up
+constexpr auto kTick = std::chrono::milliseconds(1000);  // without a watch, only to tidy up
+constexpr auto kRest = std::chrono::seconds(5);          // before a live layer is read whole again
 
 }  // namespace
 
@@ -22,11 +24,11 @@ struct Reloader::Retired {
   std::vector<std::shared_ptr<const Dataset>> datasets;
 };
 
-Reloader::Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-                   TileService& tiles, Metrics& metrics, ChangeLog* changes,
-                   std::function<void()> give_up, std::function<void()> is_loaded)
+Reloader::Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileService& tiles,
+                   Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
+                   std::function<void()> is_loaded)
     : source_(std::move(source)),
-      watch_(watch),
+      pace_(pace),
       data_(data),
       tiles_(tiles),
       metrics_(metrics),
@@ -96,6 +98,7 @@ bool Reloader::load_first() {
 
 void Reloader::load_again() {
   is_loading_ = true;
+  last_load_ = Clock::now();
   // Before reading, as in serve(): if it fails, it is tried again only when something has changed
   // since, be it while reading.
   state_read_ = state_of_files(files_);
@@ -120,8 +123,64 @@ void Reloader::note(const std::string& problem) {
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
   files_ = watched_files(layers);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
+  std::vector<LiveLayer> live;
+  for (const LayerConfig& layer : layers) {
+    if (!layer.live_query.empty()) live.emplace_back(layer);  // before it is read, likewise
+  }
   const auto before = data_.get();
   std::shared_ptr<const Dataset> loaded = Dataset::load(layers, before.get(), &to_read_);
+  begin_live(std::move(live), loaded);
+  publish(std::move(loaded));
+  metrics_.count_load(true);
+  spdlog::info("ready: {} layers, generation {}", layers.size(), data_.get()->generation());
+  if (changes_ != nullptr && before != nullptr) changes_->note(before, data_.get());
+}
+
+void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded) {
+  if (!live.empty()) {
+    std::vector<ServedLayer> layers = loaded->layers();
+    loaded = nullptr;
+    auto next = live.begin();
+    for (ServedLayer& layer : layers) {
+      if (!layer.config.live_query.empty()) layer = (next++)->begin(std::move(layer));
+    }
+    loaded = std::make_shared<const Dataset>(std::move(layers));
+  }
+  live_ = std::move(live);
+}
+
+bool Reloader::follow_live() {
+  if (live_.empty()) return true;
+  const auto before = data_.get();
+  std::vector<ServedLayer> layers = before->layers();
+  bool has_changed = false;
+  std::string problem;
+  auto live = live_.begin();
+  for (ServedLayer& layer : layers) {
+    if (layer.config.live_query.empty()) continue;
+    try {
+      if (auto next = live->next()) {
+        layer = *std::move(next);
+        has_changed = true;
+      }
+    } catch (const std::exception& error) {
+      problem = failure_words(error);
+    }
+    ++live;
+  }
+  if (problem != live_problem_) {
+    if (!problem.empty()) spdlog::error("what has changed is not known: {}", problem);
+    note(problem);
+    live_problem_ = problem;
+  }
+  if (has_changed) {
+    publish(std::make_shared<const Dataset>(std::move(layers)));
+    if (changes_ != nullptr) changes_->note(before, data_.get());
+  }
+  return std::ranges::none_of(live_, [](const LiveLayer& each) { return each.is_worn(); });
+}
+
+void Reloader::publish(std::shared_ptr<const Dataset> loaded) {
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);
@@ -131,16 +190,13 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
                  // Then it is destroyed here, which takes longer but frees memory.
                }
              }});
-  metrics_.count_load(true);
-  spdlog::info("ready: {} layers, generation {}", layers.size(), served->generation());
-  if (changes_ != nullptr && before != nullptr) changes_->note(before, data_.get());
 }
 
 std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
   std::vector<std::string> files;
   if (!source_.config.empty()) files.push_back(source_.config);
   for (const LayerConfig& layer : layers) {
-    append_files(layer.file, files);
+    if (layer.live_query.empty()) append_files(layer.file, files);
     append_files(layer.prepared, files);
   }
   return files;
@@ -152,7 +208,8 @@ bool Reloader::wait_for_a_reason() {
     forget_retired();  // here, so that it is done however often somebody asks
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, watch_.count() > 0 ? watch_ : kTick,
+      const auto tick = pace_.watch.count() > 0 ? pace_.watch : kTick;
+      wake_.wait_for(lock, live_.empty() ? tick : pace_.live,
                      [this] { return is_stopping_ || is_asked_; });
       if (is_stopping_) return false;
       if (std::exchange(is_asked_, false)) {
@@ -160,7 +217,13 @@ bool Reloader::wait_for_a_reason() {
         return true;
       }
     }
-    if (watch_.count() > 0 && has_settled_change()) {
+    if (!follow_live() && Clock::now() >= last_load_ + kRest) {
+      spdlog::info("reading the layers again, as much of them has changed");
+      return true;
+    }
+    if (pace_.watch.count() == 0 || Clock::now() < last_look_ + pace_.watch) continue;
+    last_look_ = Clock::now();
+    if (has_settled_change()) {
       spdlog::info("reading the layers again, as files have changed");
       return true;
     }

@@ -21,6 +21,7 @@
 #include "server/changes/change_log.h"
 #include "server/config/config.h"
 #include "server/data/dataset.h"
+#include "server/data/live_layer.h"
 #include "server/service/metrics.h"
 #include "server/tiles/tile_service.h"
 
@@ -35,11 +36,17 @@ struct LayerSource {
 
 class Reloader {
  public:
-  /// Does nothing until start(). `watch` is the time between looks at the files, 0 for none: a
-  /// change is taken up when two looks in a row see the same. All references outlive the reloader.
+  /// The time between looks at what may change.
+  struct Pace {
+    std::chrono::milliseconds watch{0};  // at the files; 0: none
+    std::chrono::milliseconds live{0};   // at the databases of layers that have a live_query
+  };
+
+  /// Does nothing until start(). A change of files is taken up when two looks in a row see the
+  /// same, one of a database at once. All references outlive the reloader.
   /// `changes`, if it is not null, is told of all states that follow each other.
-  Reloader(LayerSource source, std::chrono::milliseconds watch, CurrentDataset& data,
-           TileService& tiles, Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
+  Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileService& tiles,
+           Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
            std::function<void()> is_loaded);
   /// Waits for the end of what is being read.
   ~Reloader();
@@ -74,11 +81,15 @@ class Reloader {
   std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers) const;
   bool wait_for_a_reason();
   bool has_settled_change();
+  void publish(std::shared_ptr<const Dataset> dataset);
+  void begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded);
+  /// Takes up what has changed in databases. False if a layer has to be read whole again.
+  bool follow_live();
   void forget_retired();
   void note(const std::string& problem);
 
   const LayerSource source_;
-  const std::chrono::milliseconds watch_;
+  const Pace pace_;
   CurrentDataset& data_;
   TileService& tiles_;
   Metrics& metrics_;
@@ -93,6 +104,10 @@ class Reloader {
   std::vector<std::string> files_;
   std::string state_read_;  // of the files when they were last read
   std::string state_seen_;  // of the files at the last look
+  Clock::time_point last_look_;
+  Clock::time_point last_load_;
+  std::vector<LiveLayer> live_;
+  std::string live_problem_;
 
   std::atomic<bool> is_loading_ = true;
   mutable std::mutex mutex_;  // guards all below

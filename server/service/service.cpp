@@ -154,8 +154,9 @@ Service::Service(const Config& config, LayerSource source)
   }
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(
-      std::move(source), milliseconds(config.server.watch_ms), data_, *tiles_, metrics_,
-      changes_.get(), [this] { server_->stop(); },
+      std::move(source),
+      Reloader::Pace{milliseconds(config.server.watch_ms), milliseconds(config.server.live_ms)},
+      data_, *tiles_, metrics_, changes_.get(), [this] { server_->stop(); },
       [this] { spdlog::info("{}", address_to_open_); });
 }
 

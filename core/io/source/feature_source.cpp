@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <cpl_conv.h>
@@ -28,6 +29,13 @@ int polygon_field(OGRFeatureDefn& definition) {
     if (can_hold_polygons(definition.GetGeomFieldDefn(i)->GetType())) return i;
   }
   return -1;
+}
+
+/// As databases know it, whatever is in it.
+std::string quoted_name(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
 }
 
 /// Whether layers of this driver take any condition, and fail with it when they are read.
@@ -69,9 +77,20 @@ std::vector<SelectionProblem> FeatureSource::select(const SourceSelection& selec
   if (std::string problem = apply_condition(selection.where); !problem.empty()) {
     problems.insert(problems.begin(), {SelectionPart::where, 0, std::move(problem)});
   }
+  if (problems.empty() && selection.ids) select_ids(selection);
   for (const SourceLayer& layer : layers_) expect(*layer.layer);
   messages_.clear();
   return problems;
+}
+
+void FeatureSource::select_ids(const SourceSelection& selection) {
+  if (layers_.size() != 1) {
+    throw std::invalid_argument("features are read by id from one layer only");
+  }
+  has_condition_ = true;
+  ids_ = selection.ids;
+  condition_ = selection.where;
+  stored_.assign(1, -1);  // there may be any number of them
 }
 
 void FeatureSource::find_layers() {
@@ -200,7 +219,9 @@ void FeatureSource::check_reference_systems() const {
 
 bool FeatureSource::next(SourceFeature& next) {
   messages_.clear();
-  next.feature = is_interleaved_ ? next_interleaved(next) : next_of_layers(next);
+  next.feature = is_interleaved_ ? next_interleaved(next)
+                 : ids_          ? next_by_id(next)
+                                 : next_of_layers(next);
   if (next.feature != nullptr) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
@@ -211,6 +232,40 @@ bool FeatureSource::next(SourceFeature& next) {
                       " features: " + messages_.text());
   }
   return next.feature != nullptr;
+}
+
+OGRFeatureUniquePtr FeatureSource::next_by_id(SourceFeature& next) {
+  next.layer = &layers_.front();
+  next.layer_index = 0;
+  if (read_ == 0 && by_id_.empty()) read_by_id(*next.layer->layer);
+  if (messages_.has_failure() || read_ == by_id_.size()) return nullptr;
+  return std::move(by_id_[read_]);
+}
+
+/// In as many requests as their text is long: a database takes a condition of so many bytes.
+void FeatureSource::read_by_id(OGRLayer& layer) {
+  constexpr std::size_t kAtOnce = 1000;
+  const std::string column = layer.GetFIDColumn();
+  const std::string id = is_asked_when_read(driver()) ? quoted_name(column) : "FID";
+  std::unordered_map<GIntBig, OGRFeatureUniquePtr> found;
+  for (std::size_t begin = 0; begin < ids_->size(); begin += kAtOnce) {
+    std::string condition = condition_.empty() ? "" : "(" + condition_ + ") AND ";
+    condition += id + " IN (";
+    for (std::size_t i = begin; i < std::min(begin + kAtOnce, ids_->size()); ++i) {
+      condition += (i == begin ? "" : ",") + std::to_string((*ids_)[i]);
+    }
+    if (layer.SetAttributeFilter((condition + ")").c_str()) != OGRERR_NONE) return;
+    while (OGRFeatureUniquePtr feature{layer.GetNextFeature()}) {
+      const GIntBig found_id = feature->GetFID();
+      found[found_id] = std::move(feature);
+    }
+    if (messages_.has_failure()) return;
+  }
+  for (const std::int64_t wanted : *ids_) {
+    const auto feature = found.find(wanted);
+    if (feature == found.end() || feature->second == nullptr) continue;
+    by_id_.push_back(std::move(feature->second));
+  }
 }
 
 OGRFeatureUniquePtr FeatureSource::next_of_layers(SourceFeature& next) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +66,9 @@ class FeatureSource {
   void add_layer(OGRLayer& layer, int geometry_field);
   std::string apply_condition(const std::string& where);
   std::string apply_condition(const std::string& where, OGRLayer& layer);
+  void select_ids(const SourceSelection& selection);
+  OGRFeatureUniquePtr next_by_id(SourceFeature& next);
+  void read_by_id(OGRLayer& layer);
   std::vector<SelectionProblem> find_missing_attributes(
       const std::optional<std::vector<std::string>>& names) const;
   void count_stored();
@@ -84,6 +88,11 @@ class FeatureSource {
 
   bool has_condition_ = false;
   std::vector<GIntBig> stored_;  // by layer: the features it says it has, < 0 if it does not say
+
+  // If only features of certain ids are read: these, and what was found of them, in order.
+  std::optional<std::vector<std::int64_t>> ids_;
+  std::string condition_;  // on the others, in SQL; empty: none
+  std::vector<OGRFeatureUniquePtr> by_id_;
 
   std::size_t current_layer_ = 0;
   std::size_t read_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -15,10 +16,12 @@ struct SourceSelection {
   /// written by the operator and never comes from a request. Empty: all features.
   std::string where = {};
   std::optional<std::vector<std::string>> attributes = {};  // those that are kept; unset: all
+  /// Features of the only layer, each once: no others are read, and in this order. Unset: all.
+  std::optional<std::vector<std::int64_t>> ids = {};
 
   friend bool operator==(const SourceSelection&, const SourceSelection&) = default;
 
-  bool is_all() const { return layer.empty() && where.empty() && !attributes; }
+  bool is_all() const { return layer.empty() && where.empty() && !attributes && !ids; }
 };
 
 enum class SelectionPart { layer, where, attributes };

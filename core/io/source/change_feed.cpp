@@ -1,0 +1,90 @@
+#include "core/io/source/change_feed.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <ogrsf_frmts.h>
+
+#include "core/io/source/gdal_messages.h"
+#include "core/io/source/open_source.h"
+#include "core/io/source/source_name.h"
+
+namespace trapeze {
+namespace {
+
+std::string with_number(std::string query, std::int64_t number) {
+  const std::string_view mark = ChangeFeed::kSince;
+  for (std::size_t at = 0; (at = query.find(mark, at)) != std::string::npos;) {
+    query.replace(at, mark.size(), std::to_string(number));
+  }
+  return query;
+}
+
+}  // namespace
+
+struct ChangeFeed::Connection {
+  GDALDatasetUniquePtr source;
+};
+
+ChangeFeed::ChangeFeed(std::string path, std::string query)
+    : path_(std::move(path)), query_(std::move(query)) {
+  require(query_.find(kSince) != std::string::npos,
+          std::string("the query for what has changed has no ") + kSince);
+  take();
+}
+
+ChangeFeed::~ChangeFeed() = default;
+ChangeFeed::ChangeFeed(ChangeFeed&&) noexcept = default;
+
+std::vector<std::int64_t> ChangeFeed::take() {
+  try {
+    if (connection_ == nullptr) {
+      connection_ = std::make_unique<Connection>(Connection{open_source(path_)});
+    }
+    return ask();
+  } catch (...) {
+    connection_ = nullptr;
+    throw;
+  }
+}
+
+std::vector<std::int64_t> ChangeFeed::ask() {
+  GdalMessages messages;
+  GDALDataset& source = *connection_->source;
+  const auto release = [&source](OGRLayer* layer) { source.ReleaseResultSet(layer); };
+  const std::unique_ptr<OGRLayer, decltype(release)> rows(
+      source.ExecuteSQL(with_number(query_, since_).c_str(), nullptr, nullptr), release);
+  require(rows != nullptr, "cannot be asked what has changed: " + messages.text());
+  // A column that is known to be the one of ids may be told apart.
+  OGRFeatureDefn& columns = *rows->GetLayerDefn();
+  const bool has_id_apart = columns.GetFieldCount() == 1 && *rows->GetFIDColumn() != '\0';
+  const auto is_integer = [&columns](int field) {
+    const OGRFieldType type = columns.GetFieldDefn(field)->GetType();
+    return type == OFTInteger || type == OFTInteger64;
+  };
+  const bool fits =
+      has_id_apart ? is_integer(0) : columns.GetFieldCount() == 2 && is_integer(0) && is_integer(1);
+  require(fits,
+          "the query for what has changed must give two columns of integers: a number, and "
+          "the id of a feature");
+  std::vector<std::int64_t> ids;
+  std::int64_t last = since_;
+  while (const OGRFeatureUniquePtr row{rows->GetNextFeature()}) {
+    last = std::max<std::int64_t>(last, row->GetFieldAsInteger64(0));
+    ids.push_back(has_id_apart ? row->GetFID() : row->GetFieldAsInteger64(1));
+  }
+  require(!messages.has_failure(), "cannot be asked what has changed: " + messages.text());
+  since_ = last;
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+void ChangeFeed::require(bool condition, const std::string& words) const {
+  if (!condition) throw std::runtime_error(name_of_source(path_) + ": " + words);
+}
+
+}  // namespace trapeze
