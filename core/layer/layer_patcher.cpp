@@ -128,7 +128,19 @@ struct LayerPatcher::State {
 
   const LayerContents& contents() const { return now->contents(); }
 
+  /// Throws as the constructor of LayerPatcher does.
+  void number_first() {
+    const LayerContents& whole = first->contents();
+    patches = 0;
+    now = first;
+    note_ids(whole.features);
+    groups.clear();
+    group_of.assign(whole.features.size(), kNone);
+    note_groups(whole, [](std::uint32_t row) { return row; });
+  }
+
   void note_ids(const FeatureTable& features) {
+    row_of_id.clear();
     row_of_id.reserve(features.size());
     for (std::uint32_t row = 0; row < features.size(); ++row) {
       if (row_of_id.emplace(features.id(row), row).second) continue;
@@ -207,7 +219,7 @@ struct LayerPatcher::State {
     contents->group_overlaps = whole.group_overlaps.copy();
     contents->bounds = whole.bounds;
     contents->features = whole.features.copy();
-    first = now = std::make_shared<const Layer>(std::move(contents));
+    first = std::make_shared<const Layer>(std::move(contents));
   }
 };
 
@@ -429,9 +441,7 @@ LayerPatcher::LayerPatcher(const Layer& whole) : state_(std::make_unique<State>(
   const LayerContents& contents = whole.contents();
   state_->begin_with(contents);
   state_->most_motes = most_motes_of(uncovered(contents.grains.grains()), count_vertices(contents));
-  state_->note_ids(contents.features);
-  state_->group_of.assign(contents.features.size(), kNone);
-  state_->note_groups(contents, [](std::uint32_t row) { return row; });
+  state_->number_first();
 }
 LayerPatcher::~LayerPatcher() = default;
 LayerPatcher::LayerPatcher(LayerPatcher&&) noexcept = default;
@@ -472,8 +482,13 @@ std::vector<std::int64_t> LayerPatcher::ids_to_build(std::span<const std::int64_
   std::vector<TrapezoidRange> ranges;
   for (const Box& place : places) {
     if (place.is_empty()) continue;
-    now.select({with_margin(place, reach), 0, 0, SmallPolygons::drop}, ranges);
-    for_each_trapezoid(ranges, [&](std::uint32_t i) { near.push_back(now.feature_of(i)); });
+    const Box around = with_margin(place, reach);
+    now.select({around, 0, 0, SmallPolygons::drop}, ranges);
+    for_each_trapezoid(ranges, [&](std::uint32_t i) {
+      if (box_of(now.mesh(), now.mesh().trapezoids[i]).intersects(around)) {
+        near.push_back(now.feature_of(i));
+      }
+    });
   }
   const auto leave_one_of_each = [](std::vector<std::uint32_t>& items) {
     std::ranges::sort(items);
@@ -486,6 +501,10 @@ std::vector<std::int64_t> LayerPatcher::ids_to_build(std::span<const std::int64_
   for (const std::uint32_t row : rows) all.push_back(now.features().id(row));
   all.insert(all.end(), fresh.begin(), fresh.end());
   return all;
+}
+
+void LayerPatcher::start_over() {
+  state_->number_first();
 }
 
 LayerChanges LayerPatcher::apply(const Patch& patch) {

@@ -37,7 +37,8 @@ class LayerPatcher {
   const std::shared_ptr<const Layer>& first() const;
   /// The state of now.
   const std::shared_ptr<const Layer>& now() const;
-  /// How many times apply() has been called; each makes drawing a little slower.
+  /// How many times apply() has been called since the first state; each makes drawing a little
+  /// slower.
   std::size_t patches() const;
 
   /// Which features have to be built anew if those of `ids` change, appear or go, and what they
@@ -60,6 +61,10 @@ class LayerPatcher {
   /// if there are more of anything than 32 bits count; std::invalid_argument if the fields are
   /// others.
   LayerChanges apply(const Patch& patch);
+
+  /// Goes back to the first state, as if nothing had been applied. What has been appended stays
+  /// where it is, as states that are in use look at it.
+  void start_over();
 
  private:
   struct State;

@@ -13,7 +13,9 @@
 namespace trapeze {
 namespace {
 
-// Each makes drawing a little slower.
+// Each makes drawing a little slower. So many become one when there is nothing else to do, or else
+// when there are the most.
+constexpr std::size_t kManyPatches = 64;
 constexpr std::size_t kMostPatches = 256;
 // Beyond so many features at once, and this share of all, reading all takes less time.
 constexpr std::size_t kManyFeatures = 10'000;
@@ -27,6 +29,15 @@ double reach_of(const LayerConfig& config) {
   // What is a metre on the ground is up to 12 of the grid, at 85 degrees.
   constexpr double kCellsPerMetre = static_cast<double>(kGridSize) / 40'075'016.68;
   return kTouch + 12 * kCellsPerMetre * config.close_gaps.value_or(0);
+}
+
+/// How many there are.
+std::size_t features_of(const Layer& layer) {
+  std::size_t features = 0;
+  for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
+    if (!layer.is_removed(row)) ++features;
+  }
+  return features;
 }
 
 }  // namespace
@@ -47,15 +58,14 @@ ServedLayer LiveLayer::begin(ServedLayer read) {
   return served_;
 }
 
-bool LiveLayer::is_worn() const {
-  return is_worn_ || patcher_->patches() >= kMostPatches;
-}
-
 std::optional<ServedLayer> LiveLayer::next() {
+  if (is_worn_) return std::nullopt;
   const ChangeFeed::Mark mark = feed_.mark();
   const std::vector<std::int64_t> ids = feed_.take();
-  if (ids.empty()) return std::nullopt;
   try {
+    const std::size_t patches = patcher_->patches();
+    if (ids.empty()) return patches < kManyPatches ? std::nullopt : join_patches();
+    if (patches >= kMostPatches && !join_patches()) return std::nullopt;
     return patch(ids);
   } catch (...) {
     feed_.go_back(mark);
@@ -65,37 +75,63 @@ std::optional<ServedLayer> LiveLayer::next() {
 
 std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   const auto start = std::chrono::steady_clock::now();
+  const std::optional<Reading> reading = read_changes(ids);
+  is_worn_ = !reading;
+  if (is_worn_) return std::nullopt;
+  const Layer& features = *reading->features.layer;
+  LayerChanges changes = patcher_->apply({reading->ids, ids, features});
+  changed_.insert(ids.begin(), ids.end());
+  take_step(std::move(changes), revision_of(features));
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  spdlog::info("layer \"{}\": {} features have changed, {} were built anew, {:.0f} ms",
+               config_.name, ids.size(), features.features().size(), took.count());
+  if (const std::size_t skipped = reading->features.report.skipped; skipped > 0) {
+    spdlog::warn("layer \"{}\": {} of them were skipped", config_.name, skipped);
+  }
+  return served_;
+}
+
+/// Makes one patch of all. If that cannot be done, the layer is to be read whole, and is served as
+/// it is until then.
+std::optional<ServedLayer> LiveLayer::join_patches() {
+  const std::vector<std::int64_t> changed(changed_.begin(), changed_.end());
+  is_worn_ = true;
+  patcher_->start_over();
+  const std::optional<Reading> reading = read_changes(changed);
+  if (!reading) return std::nullopt;
+  patcher_->apply({reading->ids, changed, *reading->features.layer});
+  is_worn_ = false;
+  take_step({}, changed.size());
+  return served_;
+}
+
+void LiveLayer::take_step(LayerChanges changes, std::uint64_t what) {
+  auto step = std::make_shared<ServedLayer::Step>();
+  step->since = served_.revision;
+  step->changes = std::move(changes);
+  ContentHash hash;
+  hash.add(served_.revision);
+  hash.add(what);
+  hash.add(changes_taken_++);
+  served_.revision = hash.value();
+  served_.layer = patcher_->now();
+  served_.report.loaded = features_of(*served_.layer);
+  served_.last_step = std::move(step);
+}
+
+std::optional<LiveLayer::Reading> LiveLayer::read_changes(
+    std::span<const std::int64_t> changed) const {
   const auto is_much = [this](std::size_t features) {
     const auto all = static_cast<double>(patcher_->now()->features().size());
     return features > kManyFeatures && static_cast<double>(features) > kLargeShare * all;
   };
-  is_worn_ = is_much(ids.size());
-  if (is_worn_) return std::nullopt;
-  LoadedLayer changed = read(ids);
-  const std::vector<std::int64_t> to_build =
-      patcher_->ids_to_build(ids, places_of(*changed.layer), reach_of(config_));
-  is_worn_ = is_much(to_build.size());
-  if (is_worn_) return std::nullopt;
-  if (!std::ranges::equal(to_build, ids)) changed = read(to_build);
-  ServedLayer next = served_;
-  auto step = std::make_shared<ServedLayer::Step>();
-  step->since = served_.revision;
-  step->changes = patcher_->apply({to_build, ids, *changed.layer});
-  ContentHash hash;
-  hash.add(served_.revision);
-  for (const std::int64_t id : to_build) hash.add(static_cast<std::uint64_t>(id));
-  hash.add(revision_of(*changed.layer));
-  next.revision = hash.value();
-  next.layer = patcher_->now();
-  next.last_step = std::move(step);
-  served_ = std::move(next);
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  spdlog::info("layer \"{}\": {} features have changed, {} were built anew, {:.0f} ms",
-               config_.name, ids.size(), changed.layer->features().size(), took.count());
-  if (changed.report.skipped > 0) {
-    spdlog::warn("layer \"{}\": {} of them were skipped", config_.name, changed.report.skipped);
-  }
-  return served_;
+  if (is_much(changed.size())) return std::nullopt;
+  LoadedLayer features = read(changed);
+  std::vector<std::int64_t> ids =
+      patcher_->ids_to_build(changed, places_of(*features.layer), reach_of(config_));
+  if (is_much(ids.size())) return std::nullopt;
+  if (!std::ranges::equal(ids, changed)) features = read(ids);
+  return Reading{std::move(ids), std::move(features)};
 }
 
 std::vector<Box> LiveLayer::places_of(const Layer& features) const {

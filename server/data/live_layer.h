@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -32,10 +33,18 @@ class LiveLayer {
   std::optional<ServedLayer> next();
 
   /// Whether it should be read whole again, as so much has changed by now.
-  bool is_worn() const;
+  bool is_worn() const { return is_worn_; }
 
  private:
   std::optional<ServedLayer> patch(std::span<const std::int64_t> ids);
+  /// What there is to apply for changes of these; nothing if it is too much.
+  struct Reading {
+    std::vector<std::int64_t> ids;
+    LoadedLayer features;
+  };
+  std::optional<Reading> read_changes(std::span<const std::int64_t> changed) const;
+  std::optional<ServedLayer> join_patches();
+  void take_step(LayerChanges changes, std::uint64_t what);
   std::vector<Box> places_of(const Layer& features) const;
   LoadedLayer read(std::span<const std::int64_t> ids) const;
 
@@ -43,6 +52,8 @@ class LiveLayer {
   ChangeFeed feed_;
   std::optional<LayerPatcher> patcher_;
   ServedLayer served_;
+  std::set<std::int64_t> changed_;  // since it was read whole
+  std::uint64_t changes_taken_ = 0;
   bool is_worn_ = false;
 };
 

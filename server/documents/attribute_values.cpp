@@ -134,7 +134,7 @@ Result<Counts> count_values(const ServedLayer& served, std::size_t position, int
   const FeatureClassifier classifier(style->classing, layer.features());
   Counts counts;
   for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
-    if (is_part && !rows[row]) continue;
+    if (layer.is_removed(row) || (is_part && !rows[row])) continue;
     if (classifier.class_of(row) == kNotDrawn) continue;
     counts.add(value_of(layer.features(), row, field));
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -73,6 +74,29 @@ class SourceSelectionTest : public ::testing::Test {
 
 TEST_F(SourceSelectionTest, TakesAllThatHoldPolygonsUnlessToldOtherwise) {
   EXPECT_THAT(numbers(*load_layer(town_).layer), ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(SourceSelectionTest, TakesFeaturesByIdInTheOrderInWhichTheyAreNamed) {
+  const auto of_ids = [&](std::vector<std::int64_t> ids, const std::string& where) {
+    return numbers(
+        *load_layer(town_, {.selection = {.layer = "houses", .where = where, .ids = ids}}).layer);
+  };
+  EXPECT_THAT(of_ids({3, 1}, ""), ElementsAre(3, 1));
+  EXPECT_THAT(of_ids({2, 77, 3}, ""), ElementsAre(2, 3)) << "77 is not there";
+  EXPECT_THAT(of_ids({3, 2, 1}, "text = 'stone' OR number = 9"), ElementsAre(3, 1));
+  EXPECT_THAT(of_ids({}, ""), ElementsAre());
+  std::vector<std::int64_t> many(5000);
+  std::iota(many.rbegin(), many.rend(), -4000);
+  EXPECT_THAT(of_ids(many, ""), ElementsAre(3, 2, 1)) << "in several requests";
+}
+
+TEST_F(SourceSelectionTest, TakesFeaturesOfAFileById) {
+  const std::string file = folder_.file("town.geojson");
+  write_source(
+      file, "GeoJSON",
+      {{.type = wkbPolygon, .features = {square(1, "a"), square(2, "b"), square(3, "c")}}});
+  EXPECT_THAT(numbers(*load_layer(file, {.selection = {.ids = {{2, 0}}}}).layer),
+              ElementsAre(3, 1));
 }
 
 TEST_F(SourceSelectionTest, TakesOneLayerOfSeveral) {
