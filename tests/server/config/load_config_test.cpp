@@ -98,6 +98,17 @@ TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
               HasSubstr("is prepared: select from its source"));
 }
 
+TEST_F(ConfigTest, OnlyATableThatCanBeReadInPartsIsLive) {
+  const std::string query = "live_query = \"SELECT n, id FROM c WHERE n > {since}\"\n";
+  const std::string layer = "[[layer]]\nname = \"d\"\n" + query;
+  const std::string table = "file = \"d.gpkg\"\nsource_layer = \"houses\"\n";
+  EXPECT_EQ(read(layer + table).layers[0].live_query, "SELECT n, id FROM c WHERE n > {since}");
+  EXPECT_THAT(error_of(layer + "file = \"d.gpkg\""), HasSubstr("needs a source_layer"));
+  EXPECT_THAT(error_of(layer + "prepared = \"d.trapeze\""), HasSubstr("it is prepared"));
+  EXPECT_THAT(error_of(layer + table + "[layer.style]\ntopology = \"fast\""),
+              HasSubstr("without the topology test"));
+}
+
 TEST_F(ConfigTest, ALimitOfSkippedFeaturesIsANumberOrAShare) {
   const Config config = read(R"(
     [[layer]]
@@ -443,7 +454,7 @@ std::string example_text() {
 /// What not to say is another thing than any value.
 bool is_comment_in_example(const std::string& key) {
   return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes" ||
-         key == "detail_zoom" || key == "group" || key == "title_attribute";
+         key == "live_query" || key == "detail_zoom" || key == "group" || key == "title_attribute";
 }
 
 TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {
