@@ -22,10 +22,10 @@ Digest digest_of_hex(std::string_view hex) {
 }  // namespace
 
 JobPainter::JobPainter(const SeedPlan& plan, TilePainter painter,
-                       std::shared_ptr<FeatureClassCache> classes, FindKnown find_known)
+                       const std::shared_ptr<FeatureClassCache>& classes, FindKnown find_known)
     : plan_(plan),
       painter_(std::move(painter)),
-      known_(plan, std::move(classes)),
+      known_(plan, classes),
       find_known_(std::move(find_known)),
       approached_(static_cast<std::size_t>(plan.zooms().last) + 1) {
   TilePlan nothing = plan.at(plan.zooms().first);
@@ -156,6 +156,7 @@ JobPainter::Painted JobPainter::paint_whole(
     fingerprint = painter_.identify(job);
     if (is_wanted && !is_wanted(fingerprint)) return {};
     std::vector<PaintedBand> painted;
+    painted.reserve(static_cast<std::size_t>(bands));
     for (int band = 0; band < bands; ++band) {
       painted.push_back(painter_.paint_band(job, band).value());
     }

@@ -28,8 +28,8 @@ class JobPainter {
   using FindKnown = std::function<std::optional<std::string>(const Digest& fingerprint)>;
 
   /// `plan` must outlive it.
-  JobPainter(const SeedPlan& plan, TilePainter painter, std::shared_ptr<FeatureClassCache> classes,
-             FindKnown find_known = {});
+  JobPainter(const SeedPlan& plan, TilePainter painter,
+             const std::shared_ptr<FeatureClassCache>& classes, FindKnown find_known = {});
 
   /// The tiles of the units. Throws what drawing throws.
   SeedBlockBuilder paint(std::span<const SeedUnit> units);

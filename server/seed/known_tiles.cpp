@@ -50,9 +50,25 @@ double crossing_length(const MeshView& mesh, const MeshTrapezoid& trapezoid, con
   return length;
 }
 
+/// Whether there is anything but polygons, drawn as that zoom's selection says.
+bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::Selection& selection,
+                       const LayerPaint& paint) {
+  const std::span<const Lifespan> lifespans = layer.lifespans();
+  const auto is_any_alive = [&](std::span<const std::uint32_t> trapezoids, Level level) {
+    return std::ranges::any_of(trapezoids,
+                               [&](std::uint32_t i) { return lifespans[i].contains(level); });
+  };
+  const GrainIndex::Births births = births_of_dust(paint, selection);
+  return is_any_alive(span.motes(), std::min(selection.level, selection.pixel_level)) ||
+         is_any_alive(span.edges(), selection.level) ||
+         std::ranges::any_of(span.grains(), [&](const FeatureGrain* grain) {
+           return births.contains(grain->born);
+         });
+}
+
 }  // namespace
 
-KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes)
+KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes)
     : plan_(plan) {
   const ZoomRange zooms = plan.zooms();
   steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
@@ -180,53 +196,46 @@ std::optional<TileLook> KnownTiles::find_look(const Step& step, int zoom) {
   return look;
 }
 
-// Of polygons that have edges in common, or lie over each other, more than one is something: an
-// outline may run between them, and colours may add up.
 KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span,
                                        const TileId& tile, int zoom, std::uint8_t& number) {
   if (span.empty()) return Seen::nothing;
   const LayerPaint& paint = *drawn.paints[static_cast<std::size_t>(zoom)];
   const TilePlan& plan = plan_.at(zoom);
   const Layer& layer = plan.layer_of(paint);
-  const Layer::Selection selection =
-      trapeze::selection_of(plan, paint, View::of_tile({zoom, 0, 0}, plan.scale));
-  const std::span<const Lifespan> lifespans = layer.lifespans();
-  const auto is_any_alive = [&](std::span<const std::uint32_t> trapezoids, Level level) {
-    return std::ranges::any_of(trapezoids,
-                               [&](std::uint32_t i) { return lifespans[i].contains(level); });
-  };
-  const GrainIndex::Births births = births_of_dust(paint, selection);
-  if (is_any_alive(span.motes(), std::min(selection.level, selection.pixel_level)) ||
-      is_any_alive(span.edges(), selection.level) ||
-      std::ranges::any_of(
-          span.grains(), [&](const FeatureGrain* grain) { return births.contains(grain->born); })) {
+  const View view = View::of_tile({zoom, 0, 0}, plan.scale);
+  if (has_dust_or_edges(layer, span, trapeze::selection_of(plan, paint, view), paint)) {
     return Seen::something;
   }
+  if (!find_alike(drawn, span, layer, paint, number)) return Seen::something;
+  if (ranges_.empty()) return Seen::nothing;
+  const bool is_filled = paint.style.paints[number].fill.a > 0;
   const bool has_lines = paint.style.stroke.width > 0;
-  const bool is_one_feature_needed = has_lines || !layer.overlaps().empty();
+  if (paint.style.pattern.kind != PatternKind::none) return Seen::something;
+  if (!is_filled && !has_lines) return Seen::nothing;
+  const double reach = has_lines ? paint.style.stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+  if (!cover_box(layer.mesh(), ranges_, widened(tile, reach))) return Seen::something;
+  return is_filled ? Seen::one_colour : Seen::nothing;
+}
+
+// Of polygons that have edges in common, or lie over each other, there must be only one: an outline
+// may run between them, and colours may add up.
+bool KnownTiles::find_alike(const Drawn& drawn, const LevelSpan& span, const Layer& layer,
+                            const LayerPaint& paint, std::uint8_t& number) {
+  const bool is_one_needed = paint.style.stroke.width > 0 || !layer.overlaps().empty();
   ranges_.clear();
   std::uint32_t first_row = Layer::kNoFeature;
   for (const std::uint32_t i : span.polygons()) {
-    if (!lifespans[i].contains(selection.level)) continue;
+    if (!layer.lifespans()[i].contains(paint.level)) continue;
     const std::uint32_t row = layer.feature_of(i);
     const std::uint8_t its = drawn.classes == nullptr ? std::uint8_t{0} : (*drawn.classes)[row];
     if (ranges_.empty()) {
       first_row = row;
       number = its;
     }
-    if (its != number || (is_one_feature_needed && row != first_row)) return Seen::something;
+    if (its != number || (is_one_needed && row != first_row)) return false;
     append_trapezoid(i, ranges_);
   }
-  if (ranges_.empty()) return Seen::nothing;
-  const bool is_filled = paint.style.paints[number].fill.a > 0;
-  const bool has_pattern = paint.style.pattern.kind != PatternKind::none;
-  if (!is_filled && !has_lines && !has_pattern) return Seen::nothing;
-  if (has_pattern) return Seen::something;
-  const double reach = has_lines ? paint.style.stroke.reach(plan.scale) *
-                                       View::of_tile({zoom, 0, 0}, plan.scale).cells_per_pixel
-                                 : 0;
-  if (!cover_box(layer.mesh(), ranges_, widened(tile, reach))) return Seen::something;
-  return is_filled ? Seen::one_colour : Seen::nothing;
+  return true;
 }
 
 std::optional<KnownTiles::Estimate> KnownTiles::estimate() const {

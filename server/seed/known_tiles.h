@@ -31,7 +31,7 @@ using TileLook = std::string;
 class KnownTiles {
  public:
   /// `plan` must outlive it.
-  KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes);
+  KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes);
 
   /// Looks at a tile of a zoom up to the last. It is of zoom 0, or a child of the tile of the
   /// zoom before that was looked at last.
@@ -75,6 +75,11 @@ class KnownTiles {
   enum class Seen : std::uint8_t { nothing, one_colour, something };
   Seen find_seen(const Drawn& drawn, const LevelSpan& span, const TileId& tile, int zoom,
                  std::uint8_t& number);
+
+  /// Replaces ranges_ by the polygons of a zoom, and finds the class of all of them; false if they
+  /// are not drawn alike.
+  bool find_alike(const Drawn& drawn, const LevelSpan& span, const Layer& layer,
+                  const LayerPaint& paint, std::uint8_t& number);
 
   const SeedPlan& plan_;
   std::vector<Drawn> drawn_;  // from the top
