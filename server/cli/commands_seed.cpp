@@ -267,13 +267,13 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
 
 int run_seed(const SeedArguments& arguments) {
   const JoinOptions options{arguments.is_sparse};
+  if (arguments.output.empty() && !arguments.is_dry_run) throw UsageError("--output is missing");
   if (!arguments.join.empty()) {
     check_place_of_archive(arguments.output);
     make_archive(arguments.join, arguments.output, options);
     return 0;
   }
   if (arguments.zooms.empty()) throw UsageError("--zooms is missing");
-  if (arguments.output.empty() && !arguments.is_dry_run) throw UsageError("--output is missing");
   if (!arguments.is_dry_run && arguments.part.empty()) check_place_of_archive(arguments.output);
   const Config config = configure(arguments.serve);
   Work work = prepare_work(arguments, config);
