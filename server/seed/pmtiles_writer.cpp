@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "server/base/build_id.h"
 #include "server/base/gzip.h"
@@ -58,9 +59,9 @@ std::int32_t stored_degrees(double degrees) {
 
 }  // namespace
 
-PmtilesWriter::PmtilesWriter(const std::string& path, const ArchiveDescription& description,
+PmtilesWriter::PmtilesWriter(const std::string& path, ArchiveDescription description,
                              const ArchiveSize& size)
-    : description_(description),
+    : description_(std::move(description)),
       file_(path),
       contents_(path, size.contents),
       entries_(path, size.entries),

@@ -39,8 +39,7 @@ inline constexpr const char* kPmtilesOwnMember = "trapeze";
 
 class PmtilesWriter final : public ArchiveWriter {
  public:
-  PmtilesWriter(const std::string& path, const ArchiveDescription& description,
-                const ArchiveSize& size);
+  PmtilesWriter(const std::string& path, ArchiveDescription description, const ArchiveSize& size);
 
   void add(const ArchiveTiles& tiles) override;
   void add_fingerprint(const Digest& fingerprint, const Digest& content) override;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "core/io/file/atomic_file.h"
 #include "server/base/json_text.h"
@@ -37,10 +38,10 @@ void write_file(const std::string& path, std::string_view bytes) {
 
 }  // namespace
 
-TileFolder::TileFolder(const std::string& path, const ArchiveDescription& description,
+TileFolder::TileFolder(const std::string& path, ArchiveDescription description,
                        const ArchiveSize& size)
     : path_(name_of_folder(path)),
-      description_(description),
+      description_(std::move(description)),
       temporary_(Unfinished::folder_beside(path_)),
       contents_(path_, size.contents) {
   std::error_code error;

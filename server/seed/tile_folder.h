@@ -15,8 +15,7 @@ namespace trapeze {
 class TileFolder final : public ArchiveWriter {
  public:
   /// Throws std::runtime_error also if there is a folder of that name with something in it.
-  TileFolder(const std::string& path, const ArchiveDescription& description,
-             const ArchiveSize& size);
+  TileFolder(const std::string& path, ArchiveDescription description, const ArchiveSize& size);
 
   void add(const ArchiveTiles& tiles) override;
   void finish() override;
