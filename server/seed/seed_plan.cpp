@@ -22,7 +22,7 @@ std::uint32_t tile_at(double cells, int zoom) {
 }  // namespace
 
 Result<SeedPlan> SeedPlan::make(const SeedRequest& request,
-                                std::shared_ptr<const Dataset> dataset) {
+                                const std::shared_ptr<const Dataset>& dataset) {
   SeedPlan plan;
   plan.zooms_ = request.zooms;
   const auto [west, south, east, north] = request.bbox.value_or(kWorldBounds);

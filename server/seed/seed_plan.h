@@ -27,7 +27,8 @@ struct SeedRequest {
 class SeedPlan {
  public:
   /// The problem is that of plan_tile().
-  static Result<SeedPlan> make(const SeedRequest& request, std::shared_ptr<const Dataset> dataset);
+  static Result<SeedPlan> make(const SeedRequest& request,
+                               const std::shared_ptr<const Dataset>& dataset);
 
   const ZoomRange& zooms() const { return zooms_; }
   /// Of one of the zooms, for any tile of it.

@@ -38,7 +38,7 @@ std::vector<std::size_t> spread(std::size_t count) {
 
 Seeder::Seeder(const SeedPlan& plan, const SeedJobs& jobs,
                std::vector<std::unique_ptr<MaskRenderer>> renderers,
-               std::shared_ptr<const Fonts> fonts, const JobPainter::FindKnown& find_known)
+               const std::shared_ptr<const Fonts>& fonts, const JobPainter::FindKnown& find_known)
     : plan_(plan), jobs_(jobs) {
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {

@@ -30,8 +30,8 @@ class Seeder {
 
   /// `plan` and `jobs` must outlive it.
   Seeder(const SeedPlan& plan, const SeedJobs& jobs,
-         std::vector<std::unique_ptr<MaskRenderer>> renderers, std::shared_ptr<const Fonts> fonts,
-         const JobPainter::FindKnown& find_known);
+         std::vector<std::unique_ptr<MaskRenderer>> renderers,
+         const std::shared_ptr<const Fonts>& fonts, const JobPainter::FindKnown& find_known);
 
   /// Does the jobs of the range that the log has not got. `report` is called after each, one call
   /// at a time. Throws what drawing and the log throw, and std::runtime_error if the file of a
