@@ -35,6 +35,9 @@ const Box& Layer::bounds() const {
 const MeshView& Layer::mesh() const {
   return contents_->view;
 }
+std::span<const Lifespan> Layer::lifespans() const {
+  return contents_->lifespans;
+}
 const OutlineView& Layer::outline() const {
   return contents_->outline;
 }

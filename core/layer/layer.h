@@ -49,6 +49,8 @@ class Layer {
   /// The smallest box that holds all polygons; empty if there are none.
   const Box& bounds() const;
   const MeshView& mesh() const;
+  /// By trapezoid of the mesh: the levels at which it is part of it; of dust, the resolutions.
+  std::span<const Lifespan> lifespans() const;
   /// Of the edges and vertices of the mesh, those of dust left out.
   const OutlineView& outline() const;
 

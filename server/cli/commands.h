@@ -13,6 +13,7 @@
 #include "server/cli/option_values.h"
 #include "server/config/load_config.h"
 #include "server/tiles/tile_plan.h"
+#include "server/tiles/tile_request.h"
 
 namespace trapeze {
 
@@ -27,6 +28,9 @@ struct ServeArguments {
 /// What is configured by the file, the environment and the command line. Throws if anything is
 /// wrong with it: UsageError if that is only the command line.
 LoadedConfig load_serve_config(const ServeArguments& arguments);
+/// The same for who draws: there are layers, and none is drawn beyond the last zoom that is
+/// answered. Throws as load_serve_config().
+Config configure(const ServeArguments& arguments);
 int run_serve(const ServeArguments& arguments);
 
 /// Prints all that is wrong with a configuration and the environment; 1 if a server would not
@@ -92,6 +96,23 @@ struct RenderArguments {
   std::string output;
 };
 int run_render(const RenderArguments& arguments);
+
+struct SeedArguments {
+  ServeArguments serve;             // layers, and what draws them
+  std::vector<std::string> layers;  // bottom first; empty: all
+  std::string style;                // a query string
+  std::string zooms;
+  std::string bbox;  // W,S,E,N; may be empty
+  int scale = 1;
+  std::string format{kTileFormatNames.name_of(TileFormat::png)};
+  std::string output;
+  bool is_sparse = false;
+  bool is_dry_run = false;
+  std::string part;               // I/N; empty: all
+  std::string update;             // an archive; may be empty
+  std::vector<std::string> join;  // parts, of which an archive is made, and nothing else is done
+};
+int run_seed(const SeedArguments& arguments);
 
 struct BenchArguments {
   std::string name;

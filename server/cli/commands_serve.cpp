@@ -37,19 +37,6 @@ void throw_if_any(const std::vector<ConfigProblem>& problems) {
   throw std::runtime_error(text);
 }
 
-Config configure(const ServeArguments& arguments) {
-  LoadedConfig loaded = load_serve_config(arguments);
-  if (loaded.config.layers.empty()) {
-    throw UsageError(arguments.config.empty()
-                         ? "there is nothing to serve: name files, or a configuration with "
-                           "[[layer]] by --config"
-                         : "there is nothing to serve: name files, or a [[layer]] in " +
-                               arguments.config);
-  }
-  limit_zooms(loaded.config);
-  return std::move(loaded.config);
-}
-
 /// Instead of the layers of the configuration.
 void take_files(const std::vector<std::string>& files, LoadedConfig& loaded) {
   loaded.config.layers = layers_or_throw(files);
@@ -133,6 +120,19 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
   share_borders(arguments.coverage, loaded);
   if (arguments.max_skipped) limit_skipped(*arguments.max_skipped, loaded);
   return loaded;
+}
+
+Config configure(const ServeArguments& arguments) {
+  LoadedConfig loaded = load_serve_config(arguments);
+  if (loaded.config.layers.empty()) {
+    throw UsageError(arguments.config.empty()
+                         ? "there are no layers: name files, or a configuration with [[layer]] by "
+                           "--config"
+                         : "there are no layers: name files, or a [[layer]] in " +
+                               arguments.config);
+  }
+  limit_zooms(loaded.config);
+  return std::move(loaded.config);
 }
 
 int run_serve(const ServeArguments& arguments) {

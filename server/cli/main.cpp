@@ -28,6 +28,7 @@
 #include "server/config/config_settings.h"
 #include "server/service/server_log.h"
 #include "server/styles/parameter_table.h"
+#include "server/tiles/tile_request.h"
 
 namespace {
 
@@ -47,6 +48,7 @@ constexpr const char* kDescription =
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
     "file\n"
     "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png\n"
+    "  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles   all tiles in one file\n"
     "  trapeze parameters                          what a style can say, as a table\n\n"
     "Exit status: 0 if all is done; 1 if something failed or was found wrong, such as a file that\n"
     "cannot be read or a port in use; 2 if the command line is wrong; 130 or 143 if SIGINT or\n"
@@ -85,6 +87,22 @@ constexpr const char* kCheckFooter =
     "places where polygons do not fit together, as they are in FILE: kind (gap or overlap), area "
     "in\n"
     "square metres, width in metres, and the ids of the features.";
+
+constexpr const char* kSeedFooter =
+    "\nExamples:\n"
+    "  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles\n"
+    "  trapeze seed --config trapeze.toml --layers land,water --style style=night --zooms 0-14 \\\n"
+    "    --bbox 14.1,35.7,14.6,36.1 --output malta.mbtiles\n"
+    "  trapeze seed --config trapeze.toml --zooms 0-14 --dry-run\n"
+    "  trapeze seed --config trapeze.toml --zooms 0-14 --part 3/8 --output world.part3\n"
+    "  trapeze seed --join world.part* --output world.pmtiles\n\n"
+    "Tiles have the bytes that `trapeze serve` with the same options answers with. Where nothing "
+    "but\n"
+    "one colour is seen they are not drawn, nor looked at one by one. What has been done is kept "
+    "in\n"
+    "OUT.seeding until the archive is there: interrupted, the same command goes on. The bytes of "
+    "the\n"
+    "archive do not depend on that, nor on threads or parts.";
 
 constexpr const char* kPrepareFooter =
     "\nExamples:\n"
@@ -228,7 +246,8 @@ std::string coverage_of_files() {
   return "as a file was prepared, else " + usual_coverage();
 }
 
-void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
+/// Of whoever draws: which layers, and on what.
+void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
                      "a layer named after it. Instead of the layers of the configuration.");
@@ -238,13 +257,9 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   add_coverage(command, arguments.coverage,
                "as configured; where nothing is, " + coverage_of_files());
   add_max_skipped(command, arguments.max_skipped, "as configured");
-  add_setting(command, arguments, "--port", "server.port", "N");
-  add_setting(command, arguments, "--address", "server.address", "IP");
-  add_setting(command, arguments, "--threads", "server.threads", "N");
   add_setting(command, arguments, "--workers", "server.workers", "N");
   add_setting(command, arguments, "--renderer", "server.renderer", "NAME");
   add_setting(command, arguments, "--device", "server.device", "DEVICE");
-  add_setting(command, arguments, "--web-root", "server.web_root", "DIR");
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -256,6 +271,14 @@ void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
           "Any setting of the configuration: limits.connections=100; may be given several times")
       ->type_name("TABLE.KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void add_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
+  add_drawing_settings(command, arguments);
+  add_setting(command, arguments, "--port", "server.port", "N");
+  add_setting(command, arguments, "--address", "server.address", "IP");
+  add_setting(command, arguments, "--threads", "server.threads", "N");
+  add_setting(command, arguments, "--web-root", "server.web_root", "DIR");
 }
 
 void add_serve(CLI::App& app, trapeze::ServeArguments& arguments) {
@@ -428,6 +451,55 @@ void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
       ->type_name("F");
 }
 
+void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
+  CLI::App* seed =
+      app.add_subcommand("seed", "Draw all tiles of an area into an archive or a folder");
+  seed->footer(kSeedFooter);
+  add_drawing_settings(*seed, arguments.serve);
+  seed->add_option("--layers", arguments.layers,
+                   "The layers of the tiles, the lowest first, with commas between them; all if "
+                   "not set")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  seed->add_option("--style", arguments.style,
+                   "Style, written as in the query of a URL, such as style=night&fill=teal")
+      ->type_name("QUERY");
+  seed->add_option("--zooms", arguments.zooms, "The zooms of the tiles, such as 0-14")
+      ->type_name("A-B");
+  seed->add_option("--bbox", arguments.bbox,
+                   "The tiles that meet this box, in degrees; those of the whole world if not set")
+      ->type_name("W,S,E,N");
+  add_number(*seed, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
+             });
+  seed->add_option(
+          "--format", arguments.format,
+          fmt::format("{}; {} if not set", trapeze::listed(trapeze::kTileFormatNames.names()),
+                      arguments.format))
+      ->type_name("NAME");
+  seed->add_option("--output", arguments.output,
+                   "The archive to write, .pmtiles or .mbtiles; else a folder, "
+                   "OUT/{z}/{x}/{y}.png")
+      ->type_name("OUT");
+  seed->add_flag("--sparse", arguments.is_sparse,
+                 "Leave out tiles in which nothing is seen, as is always done in a folder");
+  seed->add_flag("--dry-run", arguments.is_dry_run,
+                 "Only estimate how many tiles are to be drawn, how large they are, and how long "
+                 "that takes");
+  seed->add_option("--update", arguments.update,
+                   "An archive that was seeded before, in PMTiles, perhaps that of --output: tiles "
+                   "that have not changed since are taken from there. What is written is the same "
+                   "without it")
+      ->type_name("OLD");
+  seed->add_option("--part", arguments.part,
+                   "Seed one of N parts of about equal cost; OUT is then a file for --join")
+      ->type_name("I/N");
+  seed->add_option("--join", arguments.join,
+                   "Make the archive of all these parts, and do nothing else")
+      ->type_name("PART ...");
+}
+
 /// What follows the name of a benchmark is for the benchmark, --help included.
 std::optional<trapeze::BenchArguments> bench_arguments(int argc, char** argv) {
   if (argc < 3 || std::string_view(argv[1]) != "bench" || argv[2][0] == '-') return std::nullopt;
@@ -538,6 +610,7 @@ int run(int argc, char** argv) {
   trapeze::DiffArguments diff;
   trapeze::ExportArguments to_export;
   trapeze::RenderArguments render;
+  trapeze::SeedArguments seed;
   std::string bench;
   std::string config_path;
   trapeze::ServeArguments config;
@@ -548,6 +621,7 @@ int run(int argc, char** argv) {
   add_diff(app, diff);
   add_export(app, to_export);
   add_render(app, render);
+  add_seed(app, seed);
   add_bench(app, bench);
   add_parameters(app);
   try {
@@ -578,6 +652,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
   if (app.got_subcommand("diff")) return trapeze::run_diff(diff);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);
+  if (app.got_subcommand("seed")) return trapeze::run_seed(seed);
   return trapeze::run_render(render);
 }
 

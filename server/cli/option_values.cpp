@@ -104,10 +104,11 @@ void apply(const CoverageArguments& arguments, LayerConfig& layer) {
   if (arguments.close_gaps) layer.close_gaps = arguments.close_gaps;
 }
 
-StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers) {
+StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,
+                          const std::map<std::string, StyleQuery>& named) {
   const auto parameters = decode_query(query);
   if (!parameters) throw UsageError("--style takes a query string such as fill=red");
-  const auto style = StyleBook().read(*parameters);
+  const auto style = StyleBook(named).read(*parameters);
   if (!style) throw_wrong_style(style.problem());
   auto of_layers = style->style_for(layers);
   if (!of_layers) throw_wrong_style(of_layers.problem());

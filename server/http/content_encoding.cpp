@@ -1,7 +1,5 @@
 #include "server/http/content_encoding.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,15 +7,14 @@
 #include <new>
 #include <stdexcept>
 
+#include "server/base/gzip.h"
+
 #ifdef TRAPEZE_HAS_BROTLI
 #include <brotli/encode.h>
 #endif
 
 namespace trapeze {
 namespace {
-
-constexpr int kGzipWindow = 15 + 16;  // the largest, with the header of gzip
-constexpr int kGzipMemory = 9;        // the most
 
 #ifdef TRAPEZE_HAS_BROTLI
 constexpr std::array kMade = {ContentEncoding::brotli, ContentEncoding::gzip};
@@ -71,23 +68,9 @@ double weight_of(ContentEncoding encoding, std::string_view accept_encoding) {
   return others;
 }
 
-std::string gzip(std::string_view bytes, Effort effort) {
-  z_stream stream{};
-  const int level = effort == Effort::most ? Z_BEST_COMPRESSION : 5;
-  if (deflateInit2(&stream, level, Z_DEFLATED, kGzipWindow, kGzipMemory, Z_DEFAULT_STRATEGY) !=
-      Z_OK) {
-    throw std::bad_alloc();
-  }
-  std::string compressed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
-  stream.avail_out = static_cast<uInt>(compressed.size());
-  const int result = deflate(&stream, Z_FINISH);
-  compressed.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (result != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
-  return compressed;
+int gzip_level(Effort effort) {
+  constexpr int kQuick = 5;
+  return effort == Effort::most ? kMostGzipLevel : kQuick;
 }
 
 #ifdef TRAPEZE_HAS_BROTLI
@@ -111,7 +94,7 @@ std::optional<std::string> compressed(std::string_view bytes, ContentEncoding en
     case ContentEncoding::identity:
       return std::nullopt;
     case ContentEncoding::gzip:
-      return gzip(bytes, effort);
+      return gzip(bytes, gzip_level(effort));
     case ContentEncoding::brotli:
 #ifdef TRAPEZE_HAS_BROTLI
       return brotli(bytes, effort);
@@ -161,7 +144,7 @@ bool is_worth_compressing(std::string_view content_type) {
 
 std::optional<std::string> compress(std::string_view bytes, ContentEncoding encoding,
                                     Effort effort) {
-  if (bytes.size() > std::numeric_limits<uInt>::max()) return std::nullopt;
+  if (bytes.size() > kMostGzipBytes) return std::nullopt;
   auto smaller = compressed(bytes, encoding, effort);
   if (smaller && smaller->size() >= bytes.size()) smaller.reset();
   return smaller;

@@ -30,11 +30,6 @@ std::string why_no_viewer(const std::string& root) {
          "web_root is not set.";
 }
 
-int worker_count(const Config& config) {
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  return static_cast<int>(config.server.workers == 0 ? cores : config.server.workers);
-}
-
 SiteOptions site_options(const Config& config) {
   SiteOptions options;
   options.public_url = config.server.public_url;
@@ -134,7 +129,7 @@ Service::Service(const Config& config, LayerSource source)
   drawing.fonts = open_fonts(config.text.fonts);
   drawing.find_kept = [this](const std::string& fingerprint) { return cache_.find(fingerprint); };
   drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
-  auto renderers = start_renderers(config.server.renderer, worker_count(config));
+  auto renderers = start_renderers(config.server.renderer, renderer_count(config.server.workers));
   warm_up(renderers);
   tiles_ = std::make_unique<TileService>(drawing, std::move(renderers));
   SiteOptions options = site_options(config);

@@ -2,12 +2,19 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "core/grid/for_each_in_parallel.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
+
+int renderer_count(unsigned workers) {
+  return static_cast<int>(workers == 0 ? std::max(1u, std::thread::hardware_concurrency())
+                                       : workers);
+}
 
 std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions& options,
                                                            int count) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/grid/name_table.h"
 #include "core/grid/web_mercator.h"
 #include "server/base/limits.h"
 #include "server/base/result.h"
@@ -16,6 +17,12 @@
 namespace trapeze {
 
 enum class TileFormat : std::uint8_t { png, webp };
+
+/// As files end.
+inline constexpr NameTable<TileFormat, 2> kTileFormatNames({
+    {"png", TileFormat::png},
+    {"webp", TileFormat::webp},
+});
 
 /// "image/png" or "image/webp".
 std::string_view content_type_of(TileFormat format);

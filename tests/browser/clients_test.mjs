@@ -1,7 +1,10 @@
 // Other people's map clients show our tiles: pages of their own, from another origin than the tiles.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
+import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import test, { after, before } from "node:test";
 
@@ -22,6 +25,8 @@ const FOLDERS = {
   "/leaflet/": join(WEB, "node_modules", "leaflet", "dist"),
   "/ol/": join(HERE, "node_modules", "ol"),
   "/maplibre-gl/": join(HERE, "node_modules", "maplibre-gl", "dist"),
+  "/pmtiles/": join(HERE, "node_modules", "pmtiles", "dist"),
+  "/archives/": mkdtempSync(join(tmpdir(), "trapeze-archives-")),
   "/": join(HERE, "clients"),
 };
 const TYPES = {
@@ -35,11 +40,17 @@ const { browser, server } = await start_browser_and_server(
 let pages;
 
 before(async () => {
+  execFileSync(process.env.TRAPEZE_BINARY, ["seed", "--config", server.config_file,
+    "--layers", "land,lake", "--style", "lake.fill=ff0000", "--zooms", "0-6",
+    "--output", join(FOLDERS["/archives/"], "map.pmtiles")], { stdio: "pipe" });
   pages = createServer(answer);
   await new Promise((resolve) => pages.listen(0, "127.0.0.1", resolve));
 });
 
-after(() => pages?.close());
+after(() => {
+  pages?.close();
+  rmSync(FOLDERS["/archives/"], { recursive: true });
+});
 
 async function answer(request, response) {
   const { pathname } = new URL(request.url, "http://localhost");
@@ -47,6 +58,13 @@ async function answer(request, response) {
   const file = join(folder, normalize(`/${pathname.slice(prefix.length)}`));
   try {
     const bytes = await readFile(file);
+    const range = request.headers.range?.match(/^bytes=(\d+)-(\d+)$/);
+    if (range) {
+      const [begin, last] = [Number(range[1]), Math.min(Number(range[2]), bytes.length - 1)];
+      response.writeHead(206, { "Content-Range": `bytes ${begin}-${last}/${bytes.length}`, ETag: '"one"' });
+      response.end(bytes.subarray(begin, last + 1));
+      return;
+    }
     response.writeHead(200, { "Content-Type": TYPES[extname(file)] ?? "application/octet-stream" });
     response.end(bytes);
   } catch {
@@ -137,6 +155,8 @@ const CLIENTS = [
   ["openlayers_xyz", "OpenLayers, by the pattern of addresses", RED, XYZ],
   ["openlayers_wmts", "OpenLayers, from WMTS capabilities", LAKE, WMTS],
   ["maplibre", "MapLibre GL JS, from TileJSON", RED, XYZ],
+  ["leaflet_pmtiles", "Leaflet, from an archive that was seeded", RED, [/map\.pmtiles$/]],
+  ["maplibre_pmtiles", "MapLibre GL JS, from an archive that was seeded", RED, [/map\.pmtiles$/]],
 ];
 
 for (const [name, words, lake, middle_tiles] of CLIENTS) {

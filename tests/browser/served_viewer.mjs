@@ -98,7 +98,7 @@ async function start_server(more_config) {
   writeFileSync(config_file, config(web_root, more_config));
 
   const port = await free_port();
-  const server = { output: "", base: `http://127.0.0.1:${port}/` };
+  const server = { output: "", base: `http://127.0.0.1:${port}/`, config_file };
   let exited;
   const launch = () => {
     const child = spawn(binary, ["serve", "--config", config_file, "--port", String(port)], {

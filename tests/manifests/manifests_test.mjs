@@ -100,7 +100,7 @@ test('one image is built, labelled and started, of the version of the project', 
   const kustomization = yaml.load(read('docker/kubernetes/kustomization.yaml'));
   assert.deepEqual(
     kustomization.resources,
-    readdirSync(folder).filter((name) => name !== 'kustomization.yaml'),
+    readdirSync(folder).filter((name) => name.endsWith('.yaml') && name !== 'kustomization.yaml'),
   );
   assert.deepEqual(kustomization.images, [{ name: 'trapeze', newName: 'trapeze', newTag: version }]);
   const pod = named('Deployment').spec.template.spec;

@@ -13,7 +13,7 @@ ROOMS = [
     "core/io/file", "core/io/source", "core/io/load", "core/io/prepared", "core/io/export",
     "render/mask", "render/gl", "render/software", "render/picture", "render/text", "render",
     "server/base", "server/http", "server/styles", "server/config", "server/data", "server/tiles",
-    "server/changes", "server/documents", "server/service", "server/cli",
+    "server/changes", "server/seed", "server/documents", "server/service", "server/cli",
 ]
 
 

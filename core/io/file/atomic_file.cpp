@@ -12,8 +12,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/io/file/unfinished.h"
-
 namespace trapeze {
 namespace {
 
@@ -22,49 +20,6 @@ constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // what one write ta
 [[noreturn]] void fail(const std::string& path) {
   throw std::runtime_error("cannot write " + path + ": " + std::generic_category().message(errno));
 }
-
-/// A file under a name of its own, gone at the end unless it was given its final one.
-class NewFile {
- public:
-  explicit NewFile(const std::string& path)
-      : path_(path),
-        temporary_(Unfinished::file_beside(path)),
-        // Read-only: to write into a file that is mapped would change what is being served.
-        descriptor_(
-            open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444)) {
-    if (descriptor_ < 0) fail(path_);
-  }
-  ~NewFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-
-  void write(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written =
-          ::write(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce));
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(path_);
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-  }
-
-  void give_name() {
-    if (fsync(descriptor_) != 0) fail(path_);
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    if (close(descriptor) != 0) fail(path_);
-    std::error_code error;
-    Unfinished::give_name(temporary_.path(), path_, error);
-    if (error) throw std::runtime_error("cannot write " + path_ + ": " + error.message());
-  }
-
- private:
-  const std::string path_;
-  const Unfinished temporary_;
-  int descriptor_ = -1;
-};
 
 /// So that the name outlives a power cut, too. Not every file system can, and the file is there
 /// already: failing is no failure.
@@ -78,12 +33,67 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
+AtomicFile::AtomicFile(const std::string& path)
+    : path_(path),
+      temporary_(Unfinished::file_beside(path)),
+      // Read-only: to write into a file that is mapped would change what is being served.
+      descriptor_(open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444)) {
+  if (descriptor_ < 0) fail(path_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::write(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = pwrite(descriptor_, bytes.data(), std::min(bytes.size(), kBytesAtOnce),
+                                   static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_);
+    offset += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::finish() {
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (close(descriptor) != 0) fail(path_);
+  give_name_durably(temporary_, path_);
+}
+
+void give_name_durably(const Unfinished& unfinished, const std::string& path) {
+  const int descriptor = open(unfinished.path().c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path);
+  struct stat status {};
+  const bool is_folder = fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode);
+  const int result = is_folder ? syncfs(descriptor) : fsync(descriptor);
+  const int reason = errno;
+  close(descriptor);
+  errno = reason;
+  if (result != 0) fail(path);
+  std::error_code error;
+  Unfinished::give_name(unfinished.path(), path, error);
+  if (error) throw std::runtime_error("cannot write " + path + ": " + error.message());
+  sync_folder_of(path);
+}
+
 void write_atomically(const std::string& path,
                       const std::vector<std::span<const std::byte>>& pieces) {
-  NewFile file(path);
+  AtomicFile file(path);
   for (const std::span<const std::byte> piece : pieces) file.write(piece);
-  file.give_name();
-  sync_folder_of(path);
+  file.finish();
 }
 
 }  // namespace trapeze

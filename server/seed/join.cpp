@@ -1,0 +1,103 @@
+#include "server/seed/join.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include "server/seed/write_archive.h"
+
+namespace trapeze {
+namespace {
+
+ArchiveSize size_of(const SeedLogs& logs) {
+  ArchiveSize size;
+  const ZoomRange zooms = logs.archive().zooms;
+  constexpr std::uint64_t kMostRun = 0xffffffff;  // of PMTiles: a longer run has several entries
+  for (const SeedBlock& block : logs.blocks()) {
+    size.contents += block.contents().size();
+    size.fingerprints += block.fingerprints().size();
+    for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
+      for (const BlockEntry& entry : block.entries(zoom)) {
+        size.entries += 1 + entry.places.count / kMostRun;
+      }
+    }
+  }
+  return size;
+}
+
+/// Puts tiles together that follow each other and are equal.
+class Runs {
+ public:
+  explicit Runs(ArchiveWriter& writer) : writer_(writer) {}
+
+  void add(const ArchiveTiles& tiles) {
+    const bool goes_on = run_ && run_->zoom == tiles.zoom && run_->digest == tiles.digest &&
+                         run_->places.first + run_->places.count == tiles.places.first;
+    if (goes_on) {
+      run_->places.count += tiles.places.count;
+      return;
+    }
+    finish();
+    run_ = tiles;
+  }
+  void finish() {
+    if (run_) writer_.add(*run_);
+    run_.reset();
+  }
+
+ private:
+  ArchiveWriter& writer_;
+  std::optional<ArchiveTiles> run_;
+};
+
+}  // namespace
+
+void check_place_of_archive(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::absolute(path).lexically_normal();
+  const fs::path parent = (folder.has_filename() ? folder : folder.parent_path()).parent_path();
+  if (!fs::is_directory(parent, error)) {
+    throw std::runtime_error(
+        fmt::format("cannot write {}: there is no folder {}", path, parent.string()));
+  }
+  const bool is_folder = kind_of_archive(path) == ArchiveKind::folder;
+  if (is_folder && fs::exists(path, error) && !fs::is_empty(path, error)) {
+    throw std::runtime_error(fmt::format(
+        "cannot write {}: it is there already, with something in it; name another folder", path));
+  }
+  if (!is_folder && fs::is_directory(path, error)) {
+    throw std::runtime_error(fmt::format("cannot write {}: it is a folder", path));
+  }
+}
+
+// A log has the fingerprints of what was left out, too.
+void join_into_archive(const SeedLogs& logs, const std::string& path, const JoinOptions& options) {
+  const bool is_sparse = options.is_sparse || kind_of_archive(path) == ArchiveKind::folder;
+  const auto writer = write_archive(path, logs.archive(), size_of(logs));
+  const ZoomRange zooms = logs.archive().zooms;
+  Runs runs(*writer);
+  for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
+    for (const SeedBlock& block : logs.blocks()) {
+      for (const BlockEntry& entry : block.entries(zoom)) {
+        const BlockContent& content = block.contents()[entry.content];
+        if (is_sparse && content.is_empty != 0) continue;
+        runs.add({zoom, entry.places, content.digest, block.bytes_of(content)});
+      }
+    }
+  }
+  runs.finish();
+  for (const SeedBlock& block : logs.blocks()) {
+    for (const BlockFingerprint& item : block.fingerprints()) {
+      const BlockContent& content = block.contents()[item.content];
+      if (is_sparse && content.is_empty != 0) continue;
+      writer->add_fingerprint(item.fingerprint, content.digest);
+    }
+  }
+  writer->finish();
+}
+
+}  // namespace trapeze

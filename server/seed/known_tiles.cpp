@@ -1,0 +1,269 @@
+#include "server/seed/known_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/mesh/mesh_index.h"
+#include "render/mask/mask.h"
+#include "server/seed/hilbert_order.h"
+#include "server/tiles/layer_drawing.h"
+
+namespace trapeze {
+namespace {
+
+/// So many trapezoids below a tile hardly ever leave it of one colour.
+constexpr std::uint64_t kMostTrapezoids = 4096;
+
+/// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
+constexpr double kReachOfDust = 3;
+
+/// Places are rounded to cells, here and where a tile is drawn.
+constexpr double kCellsForRounding = 2;
+
+Box widened(const TileId& tile, double cells) {
+  const auto margin = static_cast<std::int64_t>(std::ceil(cells + kCellsForRounding));
+  const auto cell = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, kGridMin, kGridMax));
+  };
+  return {cell(tile.origin_x() - margin), cell(tile.origin_y() - margin),
+          cell(tile.origin_x() + tile.side() + margin),
+          cell(tile.origin_y() + tile.side() + margin)};
+}
+
+/// The length of boundary between two heights, as it crosses columns and rows of tiles.
+double crossing_length(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box) {
+  const double top = std::max(mesh.vertices[trapezoid.top].y, box.min_y);
+  const double bottom = std::min(mesh.vertices[trapezoid.bottom].y, box.max_y);
+  if (top >= bottom) return 0;
+  double length = 0;
+  for (const std::uint32_t edge : {trapezoid.left, trapezoid.right}) {
+    const EdgeLine line(mesh, edge);
+    const auto clamped = [&](double y) {
+      return std::clamp<double>(line.x_at(y), box.min_x, box.max_x);
+    };
+    const double from = clamped(top);
+    const double to = clamped(bottom);
+    const bool is_outside = from == to && (from == box.min_x || from == box.max_x);
+    if (!is_outside) length += bottom - top + std::abs(to - from);
+  }
+  return length;
+}
+
+/// Whether there is anything but polygons, drawn as that zoom's selection says.
+bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::Selection& selection,
+                       const LayerPaint& paint) {
+  const std::span<const Lifespan> lifespans = layer.lifespans();
+  const auto is_any_alive = [&](std::span<const std::uint32_t> trapezoids, Level level) {
+    return std::ranges::any_of(trapezoids,
+                               [&](std::uint32_t i) { return lifespans[i].contains(level); });
+  };
+  const GrainIndex::Births births = births_of_dust(paint, selection);
+  return is_any_alive(span.motes(), std::min(selection.level, selection.pixel_level)) ||
+         is_any_alive(span.edges(), selection.level) ||
+         std::ranges::any_of(span.grains(), [&](const FeatureGrain* grain) {
+           return births.contains(grain->born);
+         });
+}
+
+}  // namespace
+
+KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes)
+    : plan_(plan) {
+  const ZoomRange zooms = plan.zooms();
+  steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
+  looks_.resize(steps_.size());
+  for (int zoom = zooms.first; zoom <= zooms.last; ++zoom) {
+    const TilePlan& of_zoom = plan.at(zoom);
+    for (auto paint = of_zoom.layers.rbegin(); paint != of_zoom.layers.rend(); ++paint) {
+      if (!paint->style.is_visible()) continue;
+      auto drawn = std::ranges::find(drawn_, paint->layer, &Drawn::layer);
+      if (drawn == drawn_.end()) {
+        drawn_.push_back({paint->layer, paint->topology, nullptr, {}});
+        drawn = drawn_.end() - 1;
+        drawn->paints.resize(steps_.size());
+        const Classing& classing = paint->style.classing;
+        if (!classing.is_plain()) {
+          const ServedLayer& served = of_zoom.dataset->layers()[paint->layer];
+          drawn->classes = classes->find(served.revision, classing, served.layer->features());
+        }
+      }
+      drawn->paints[static_cast<std::size_t>(zoom)] = &*paint;
+    }
+  }
+  for (Step& step : steps_) {
+    step.spans.resize(drawn_.size());
+    step.is_found.resize(drawn_.size());
+  }
+}
+
+int KnownTiles::first_zoom(const TileId& tile) const {
+  return std::max(tile.z, plan_.zooms().first);
+}
+
+// Whatever any of the zooms looks at. Pixels are largest at the first of them.
+LevelSpanSelection KnownTiles::selection_of(const Drawn& drawn, const TileId& tile) const {
+  LevelSpanSelection selection;
+  double reach = 0;
+  double reach_of_dust = 0;
+  bool is_first = true;
+  for (int zoom = first_zoom(tile); zoom <= plan_.zooms().last; ++zoom) {
+    const LayerPaint* paint = drawn.paints[static_cast<std::size_t>(zoom)];
+    if (paint == nullptr) continue;
+    const TilePlan& plan = plan_.at(zoom);
+    const View view = View::of_tile({zoom, 0, 0}, plan.scale);
+    const Layer::Selection of_zoom = trapeze::selection_of(plan, *paint, view);
+    const Stroke& stroke = paint->style.stroke;
+    const double lines = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+    reach = std::max(reach, lines);
+    reach_of_dust = std::max(reach_of_dust, lines + kReachOfDust * view.cells_per_pixel);
+    const Level resolution = std::min(of_zoom.level, of_zoom.pixel_level);
+    const GrainIndex::Births births = births_of_dust(*paint, of_zoom);
+    selection.has_edges = stroke.width > 0;
+    selection.has_motes = of_zoom.small != SmallPolygons::drop;
+    if (is_first) {
+      selection.levels = {of_zoom.level, of_zoom.level};
+      selection.resolutions = {resolution, resolution};
+      selection.births = births;
+      is_first = false;
+      continue;
+    }
+    const auto include = [](LevelRange& range, Level level) {
+      range = {std::min(range.finest, level), std::max(range.coarsest, level)};
+    };
+    include(selection.levels, of_zoom.level);
+    include(selection.resolutions, resolution);
+    if (births.is_empty()) continue;
+    selection.births = selection.births.is_empty()
+                           ? births
+                           : GrainIndex::Births{std::min(selection.births.first, births.first),
+                                                std::max(selection.births.last, births.last)};
+  }
+  selection.box = widened(tile, reach);
+  selection.dust_box = widened(tile, reach_of_dust);
+  return selection;
+}
+
+void KnownTiles::look_at(const TileId& tile) {
+  Step& step = steps_[static_cast<std::size_t>(tile.z)];
+  step.tile = tile;
+  for (std::size_t k = 0; k < drawn_.size(); ++k) {
+    const Drawn& drawn = drawn_[k];
+    const TilePlan& any = plan_.at(plan_.zooms().first);
+    const Layer& layer = *any.dataset->layers()[drawn.layer].layer_for(drawn.topology);
+    const LevelSpanSelection selection = selection_of(drawn, tile);
+    const Step* above = tile.z > 0 ? &steps_[static_cast<std::size_t>(tile.z) - 1] : nullptr;
+    if (above != nullptr && above->is_found[k] != 0) {
+      step.spans[k].narrow(layer, above->spans[k], selection);
+      step.is_found[k] = 1;
+    } else {
+      const std::span<const std::uint8_t> classes =
+          drawn.classes == nullptr ? std::span<const std::uint8_t>() : *drawn.classes;
+      step.is_found[k] = step.spans[k].find(layer, classes, selection, kMostTrapezoids) ? 1 : 0;
+    }
+  }
+  find_looks(step);
+}
+
+void KnownTiles::find_looks(const Step& step) {
+  tile_ = step.tile;
+  is_known_ = false;
+  std::ranges::fill(looks_, std::nullopt);
+  for (int zoom = first_zoom(tile_); zoom <= plan_.zooms().last; ++zoom) {
+    std::optional<TileLook>& look = looks_[static_cast<std::size_t>(zoom)];
+    look = find_look(step, zoom);
+    if (!look) return;
+  }
+  is_known_ = true;
+}
+
+std::optional<TileLook> KnownTiles::find_look(const Step& step, int zoom) {
+  if (plan_.at(zoom).debug.any()) return std::nullopt;
+  TileLook look;
+  for (std::size_t k = 0; k < drawn_.size(); ++k) {
+    const LayerPaint* paint = drawn_[k].paints[static_cast<std::size_t>(zoom)];
+    if (paint == nullptr) continue;
+    if (step.is_found[k] == 0) return std::nullopt;
+    std::uint8_t number = 0;
+    const Seen seen = find_seen(drawn_[k], step.spans[k], step.tile, zoom, number);
+    if (seen == Seen::something) return std::nullopt;
+    if (seen == Seen::nothing) continue;
+    look.push_back(static_cast<char>(k));
+    look.push_back(static_cast<char>(number));
+    // Nothing below it is seen.
+    if (paint->style.paints[number].fill.a == 255 && paint->style.opacity == 1) break;
+  }
+  return look;
+}
+
+KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span,
+                                       const TileId& tile, int zoom, std::uint8_t& number) {
+  if (span.empty()) return Seen::nothing;
+  const LayerPaint& paint = *drawn.paints[static_cast<std::size_t>(zoom)];
+  const TilePlan& plan = plan_.at(zoom);
+  const Layer& layer = plan.layer_of(paint);
+  const View view = View::of_tile({zoom, 0, 0}, plan.scale);
+  if (has_dust_or_edges(layer, span, trapeze::selection_of(plan, paint, view), paint)) {
+    return Seen::something;
+  }
+  if (!find_alike(drawn, span, layer, paint, number)) return Seen::something;
+  if (ranges_.empty()) return Seen::nothing;
+  const bool is_filled = paint.style.paints[number].fill.a > 0;
+  const bool has_lines = paint.style.stroke.width > 0;
+  if (paint.style.pattern.kind != PatternKind::none) return Seen::something;
+  if (!is_filled && !has_lines) return Seen::nothing;
+  const double reach = has_lines ? paint.style.stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+  if (!cover_box(layer.mesh(), ranges_, widened(tile, reach))) return Seen::something;
+  return is_filled ? Seen::one_colour : Seen::nothing;
+}
+
+// Of polygons that have edges in common, or lie over each other, there must be only one: an outline
+// may run between them, and colours may add up.
+bool KnownTiles::find_alike(const Drawn& drawn, const LevelSpan& span, const Layer& layer,
+                            const LayerPaint& paint, std::uint8_t& number) {
+  const bool is_one_needed = paint.style.stroke.width > 0 || !layer.overlaps().empty();
+  ranges_.clear();
+  std::uint32_t first_row = Layer::kNoFeature;
+  for (const std::uint32_t i : span.polygons()) {
+    if (!layer.lifespans()[i].contains(paint.level)) continue;
+    const std::uint32_t row = layer.feature_of(i);
+    const std::uint8_t its = drawn.classes == nullptr ? std::uint8_t{0} : (*drawn.classes)[row];
+    if (ranges_.empty()) {
+      first_row = row;
+      number = its;
+    }
+    if (its != number || (is_one_needed && row != first_row)) return false;
+    append_trapezoid(i, ranges_);
+  }
+  return true;
+}
+
+std::optional<KnownTiles::Estimate> KnownTiles::estimate() const {
+  const Step& step = steps_[static_cast<std::size_t>(tile_.z)];
+  Estimate sum;
+  for (int zoom = first_zoom(tile_); zoom <= plan_.zooms().last; ++zoom) {
+    const auto side = static_cast<double>(TileId{zoom, 0, 0}.side());
+    double tiles = 0;
+    for (std::size_t k = 0; k < drawn_.size(); ++k) {
+      const LayerPaint* paint = drawn_[k].paints[static_cast<std::size_t>(zoom)];
+      if (paint == nullptr) continue;
+      if (step.is_found[k] == 0) return std::nullopt;
+      const Layer& layer = plan_.at(zoom).layer_of(*paint);
+      const std::span<const Lifespan> lifespans = layer.lifespans();
+      const Box box = widened(tile_, 0);
+      double length = 0;
+      for (const std::uint32_t i : step.spans[k].polygons()) {
+        if (!lifespans[i].contains(paint->level)) continue;
+        length += crossing_length(layer.mesh(), layer.mesh().trapezoids[i], box);
+        ++sum.trapezoids;
+      }
+      tiles += length / side;
+    }
+    const bool is_something = !look_at_zoom(zoom).has_value();
+    sum.tiles += std::min(tiles + (is_something ? 1 : 0),
+                          static_cast<double>(places_below(tile_, zoom).count));
+  }
+  return sum;
+}
+
+}  // namespace trapeze

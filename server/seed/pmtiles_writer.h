@@ -1,0 +1,80 @@
+// PMTiles, version 3: one file for everything, read by ranges of HTTP.
+//
+// The header and the root directory come first, within 16 KiB, as the specification has it; then
+// the tiles, in order and each content once ("clustered"), the leaf directories, the metadata, and
+// last what only `trapeze seed --update` reads: the fingerprints by which tiles are known again,
+// with where their bytes are. The metadata tell where those are.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/grid/digest.h"
+#include "core/io/file/atomic_file.h"
+#include "server/seed/archive.h"
+#include "server/seed/content_table.h"
+#include "server/seed/scratch_array.h"
+
+namespace trapeze {
+
+/// An entry of a directory: `run` tiles from `id` on have these bytes. Of a leaf directory, run is
+/// 0.
+struct PmtilesEntry {
+  std::uint64_t id = 0;
+  std::uint64_t offset = 0;
+  std::uint32_t length = 0;
+  std::uint32_t run = 0;
+};
+
+/// As fingerprints are stored, in their order.
+struct StoredFingerprint {
+  Digest fingerprint;
+  std::uint64_t offset = 0;  // in the file
+  std::uint64_t length = 0;
+};
+
+/// The member of the metadata that says where the fingerprints are.
+inline constexpr const char* kPmtilesOwnMember = "trapeze";
+
+class PmtilesWriter final : public ArchiveWriter {
+ public:
+  PmtilesWriter(const std::string& path, ArchiveDescription description, const ArchiveSize& size);
+
+  void add(const ArchiveTiles& tiles) override;
+  void add_fingerprint(const Digest& fingerprint, const Digest& content) override;
+  void finish() override;
+
+ private:
+  struct Section {
+    std::uint64_t offset = 0;
+    std::uint64_t length = 0;
+  };
+  struct Directories {
+    std::string root;
+    Section leaves;
+  };
+
+  void append(std::string_view bytes);
+  void flush();
+  void add_entries(std::uint64_t id, std::uint64_t count, const ContentTable::Content& content);
+  Directories write_directories();
+  Section write_fingerprints();
+  std::string metadata(const Section& fingerprints) const;
+  std::string header(const Directories& directories, const Section& metadata,
+                     std::uint64_t end_of_data) const;
+
+  const ArchiveDescription description_;
+  AtomicFile file_;
+  std::string buffer_;
+  std::uint64_t end_ = 0;  // of what was written
+  ContentTable contents_;
+  ScratchArray<PmtilesEntry> entries_;
+  ScratchArray<StoredFingerprint> fingerprints_;
+  std::uint64_t entry_count_ = 0;
+  std::uint64_t fingerprint_count_ = 0;
+  std::uint64_t content_count_ = 0;
+  std::uint64_t tile_count_ = 0;
+};
+
+}  // namespace trapeze

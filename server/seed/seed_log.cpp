@@ -1,0 +1,210 @@
+#include "server/seed/seed_log.h"
+
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace trapeze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kMark = "trapeze seeding 1\n";
+constexpr std::size_t kAlignment = 8;
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) {
+  throw std::runtime_error(fmt::format("{}: {}", path, why));
+}
+
+[[noreturn]] void fail_to_write(const std::string& path, int error) {
+  throw std::runtime_error(
+      fmt::format("cannot write {}: {}", path, std::generic_category().message(error)));
+}
+
+/// A line of JSON after the mark, and spaces up to where blocks begin.
+std::string text_of(const SeedLogHead& head) {
+  const ArchiveDescription& archive = head.archive;
+  const Json json = {{"identity", head.identity},
+                     {"jobs", head.jobs},
+                     {"first_job", head.range.first},
+                     {"end_job", head.range.end},
+                     {"part", head.part.number},
+                     {"parts", head.part.count},
+                     {"name", archive.name},
+                     {"description", archive.description},
+                     {"attribution", archive.attribution},
+                     {"minzoom", archive.zooms.first},
+                     {"maxzoom", archive.zooms.last},
+                     {"bounds", archive.bounds},
+                     {"format", kTileFormatNames.name_of(archive.format)},
+                     {"scale", archive.scale},
+                     {"layers", archive.layers},
+                     {"style", archive.style}};
+  std::string text = std::string(kMark) + json.dump();
+  const std::size_t size = (text.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  text.append(size - 1 - text.size(), ' ').push_back('\n');
+  return text;
+}
+
+struct ReadHead {
+  SeedLogHead head;
+  std::size_t size = 0;
+};
+
+/// Nothing if it is no head, or not a whole one.
+std::optional<ReadHead> read_head(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!text.starts_with(kMark)) return std::nullopt;
+  const std::size_t end = text.find('\n', kMark.size());
+  if (end == std::string_view::npos) return std::nullopt;
+  const Json json = Json::parse(text.substr(kMark.size(), end - kMark.size()), nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  try {
+    SeedLogHead head;
+    head.identity = json.at("identity");
+    head.jobs = json.at("jobs");
+    head.range = {json.at("first_job"), json.at("end_job")};
+    head.part = {json.at("part"), json.at("parts")};
+    ArchiveDescription& archive = head.archive;
+    archive.name = json.at("name");
+    archive.description = json.at("description");
+    archive.attribution = json.at("attribution");
+    archive.zooms = {json.at("minzoom"), json.at("maxzoom")};
+    archive.bounds = json.at("bounds");
+    archive.format = json.at("format") == "webp" ? TileFormat::webp : TileFormat::png;
+    archive.scale = json.at("scale");
+    archive.layers = json.at("layers");
+    archive.style = json.at("style");
+    return ReadHead{head, end + 1};
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Calls visit(block) for the blocks that are whole, up to the first that is not; where that is.
+template <typename Visit>
+std::size_t for_each_block(std::span<const std::byte> bytes, std::size_t begin,
+                           const Visit& visit) {
+  while (begin < bytes.size()) {
+    const auto block = SeedBlock::read(bytes.subspan(begin));
+    if (!block) break;
+    visit(*block);
+    begin += block->size();
+  }
+  return begin;
+}
+
+}  // namespace
+
+SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
+    : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  if (file_ < 0) fail_to_write(path, errno);
+  try {
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail(path, "another process is writing it");
+    const std::string text = text_of(head);
+    struct stat status {};
+    if (fstat(file_, &status) != 0) fail_to_write(path, errno);
+    // What is shorter was interrupted before anything was done.
+    if (static_cast<std::size_t>(status.st_size) <= text.size()) {
+      append(std::as_bytes(std::span(text)));
+      if (ftruncate(file_, static_cast<off_t>(end_)) != 0) fail_to_write(path, errno);
+      return;
+    }
+    const MappedFile mapped(path);
+    const std::span<const std::byte> bytes = mapped.bytes();
+    if (!std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)))) {
+      fail(path,
+           "this is what is left of seeding something else: the data, the options or the program "
+           "have changed. Remove it to begin anew, or give another --output");
+    }
+    end_ = for_each_block(bytes, text.size(), [this](const SeedBlock& block) {
+      if (done_.insert(block.job()).second) figures_.add(block.figures());
+    });
+    if (ftruncate(file_, static_cast<off_t>(end_)) != 0) fail_to_write(path, errno);
+  } catch (...) {
+    close(file_);
+    throw;
+  }
+}
+
+SeedLog::~SeedLog() {
+  close(file_);
+}
+
+void SeedLog::append(std::span<const std::byte> block) {
+  const std::lock_guard lock(mutex_);
+  std::uint64_t at = end_;
+  while (!block.empty()) {
+    const ssize_t written = pwrite(file_, block.data(), block.size(), static_cast<off_t>(at));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int error = errno;
+      // What is left of it is cut off, here or when it is gone on with.
+      [[maybe_unused]] const int ignored = ftruncate(file_, static_cast<off_t>(end_));
+      fail_to_write(path_, error);
+    }
+    at += static_cast<std::uint64_t>(written);
+    block = block.subspan(static_cast<std::size_t>(written));
+  }
+  end_ = at;
+}
+
+void SeedLog::sync() {
+  if (fsync(file_) != 0) fail_to_write(path_, errno);
+}
+
+SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
+  std::optional<SeedLogHead> first;
+  std::vector<std::optional<SeedBlock>> found;
+  for (const std::string& path : paths) {
+    files_.push_back(std::make_unique<MappedFile>(path));
+    const std::span<const std::byte> bytes = files_.back()->bytes();
+    const std::optional<ReadHead> read = read_head(bytes);
+    if (!read) fail(path, "this is no part of a seeding");
+    const SeedLogHead& head = read->head;
+    if (!first) {
+      first = head;
+      found.resize(head.jobs);
+    }
+    if (head.identity != first->identity || head.jobs != first->jobs) {
+      fail(path, fmt::format("this is a part of another seeding than {}", paths.front()));
+    }
+    std::size_t jobs = 0;
+    for_each_block(bytes, read->size, [&](const SeedBlock& block) {
+      if (block.job() >= found.size()) return;
+      found[block.job()] = block;
+      ++jobs;
+    });
+    if (jobs < head.range.end - head.range.first) {
+      fail(path,
+           fmt::format("part {} of {} has not been finished: {} of {} jobs are done",
+                       head.part.number, head.part.count, jobs, head.range.end - head.range.first));
+    }
+  }
+  archive_ = first->archive;
+  for (const std::optional<SeedBlock>& block : found) {
+    if (!block) {
+      fail(paths.front(), fmt::format("of its {} parts, not all were given", first->part.count));
+    }
+    blocks_.push_back(*block);
+  }
+}
+
+SeedFigures SeedLogs::figures() const {
+  SeedFigures sum;
+  for (const SeedBlock& block : blocks_) sum.add(block.figures());
+  return sum;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,106 @@
+// What seeds on Kubernetes and on Slurm is taken by both, and the commands in it by Trapeze.
+//
+//   TRAPEZE_BINARY=build/dev/trapeze node tests/manifests/seed_test.mjs
+//
+// The commands are run as they are, on a fixture in place of the sample and with a folder in place of the
+// volume. Without the packages of script/bootstrap it ends with 77.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const root = path.join(path.dirname(fileURLToPath(import.meta.url)), '../..');
+const folder = path.join(root, 'docker/kubernetes/seed');
+const script = path.join(root, 'docker/slurm/seed.sbatch');
+const binary = path.resolve(process.env.TRAPEZE_BINARY ?? path.join(root, 'build/dev/trapeze'));
+
+const yaml = await import('js-yaml').catch(() => process.exit(77));
+const read = (name) => yaml.loadAll(readFileSync(path.join(folder, name), 'utf8'));
+const [claim, seed] = read('seed.yaml');
+const [join] = read('join.yaml');
+
+async function validate(manifest) {
+  const { apiVersion, kind } = manifest;
+  const model = await import(`kubernetes-models/${apiVersion}/${kind}`);
+  new model[kind](structuredClone(manifest)).validate();
+}
+
+/// A folder with a program `trapeze`, and a configuration of two layers where the image has the sample's.
+function workplace() {
+  const work = mkdtempSync(path.join(tmpdir(), 'trapeze-'));
+  mkdirSync(path.join(work, 'bin'));
+  mkdirSync(path.join(work, 'config'));
+  symlinkSync(binary, path.join(work, 'bin/trapeze'));
+  const layers = { countries: 'rings', water: 'west' };
+  const tables = Object.entries(layers).map(
+    ([name, file]) => `[[layer]]\nname = "${name}"\nfile = "${root}/tests/data/${file}.geojson"\n`,
+  );
+  writeFileSync(path.join(work, 'config/trapeze.toml'), `[server]\nrenderer = "software"\n${tables.join('')}`);
+  return work;
+}
+
+function run(work, command, args, variables) {
+  const PATH = `${path.join(work, 'bin')}:${process.env.PATH}`;
+  return execFileSync(command, args, { cwd: work, env: { ...process.env, PATH, ...variables }, stdio: 'pipe' });
+}
+
+/// In one go, for comparison.
+function whole(work) {
+  const args = ['seed', '--config', 'config/trapeze.toml', '--layers', 'countries,water', '--zooms', '0-12'];
+  run(work, 'trapeze', [...args, '--output', 'whole.pmtiles']);
+  return readFileSync(path.join(work, 'whole.pmtiles'));
+}
+
+function withWorkplace(action) {
+  const work = workplace();
+  try {
+    action(work);
+  } finally {
+    rmSync(work, { recursive: true });
+  }
+}
+
+test('every manifest is as its schema says', async () => {
+  assert.deepEqual([claim, seed, join].map(({ kind }) => kind), ['PersistentVolumeClaim', 'Job', 'Job']);
+  for (const manifest of [claim, seed, join]) await validate(manifest);
+});
+
+test('all pods have the volume, which several nodes can write, and the image of the version', () => {
+  const [, version] = readFileSync(path.join(root, 'CMakeLists.txt'), 'utf8').match(/^project\([^)]*VERSION ([\d.]+)/m);
+  assert.deepEqual(claim.spec.accessModes, ['ReadWriteMany']);
+  for (const { spec } of [seed, join]) {
+    const pod = spec.template.spec;
+    const [volume] = pod.volumes;
+    assert.equal(volume.persistentVolumeClaim.claimName, claim.metadata.name);
+    const [container] = pod.containers;
+    assert.deepEqual(container.volumeMounts, [{ name: volume.name, mountPath: '/seed' }]);
+    assert.equal(container.image, `trapeze:${version}`);
+  }
+});
+
+test('the pods of the Job seed all parts, which become the archive of one process', () => {
+  const [container] = seed.spec.template.spec.containers;
+  const { completions } = seed.spec;
+  const variables = Object.fromEntries(container.env.map(({ name, value }) => [name, value]));
+  assert.equal(Number(variables.PARTS), completions);
+  withWorkplace((work) => {
+    const here = ({ command, args }) => [...command.slice(1), ...args].map((text) => text.replaceAll('/seed/', `${work}/`));
+    for (let index = 0; index < completions; ++index) {
+      run(work, 'sh', here(container), { ...variables, JOB_COMPLETION_INDEX: String(index) });
+    }
+    run(work, 'sh', here(join.spec.template.spec.containers[0]));
+    assert.ok(readFileSync(path.join(work, 'world.pmtiles')).equals(whole(work)));
+  });
+});
+
+test('the tasks of an array on Slurm seed all parts, which become the archive of one process', () => {
+  withWorkplace((work) => {
+    const variables = { SEED_FOLDER: work, SLURM_ARRAY_TASK_COUNT: '3', SLURM_CPUS_PER_TASK: '1' };
+    for (const task of ['1', '2', '3']) run(work, 'bash', [script], { ...variables, SLURM_ARRAY_TASK_ID: task });
+    run(work, 'bash', [script, 'join'], variables);
+    assert.ok(readFileSync(path.join(work, 'world.pmtiles')).equals(whole(work)));
+  });
+});
