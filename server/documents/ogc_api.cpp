@@ -378,12 +378,14 @@ Result<Document> ogc_document(const DocumentRequest& request) {
   return Document{std::string(kJsonType), to_text(*json)};
 }
 
-std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
+std::optional<Result<PictureRequest>> parse_ogc_tile(const DocumentRequest& request) {
   const Route* route = route_of(request);
   const bool is_tile = route != nullptr && (route->id == RouteId::collection_tile ||
                                             route->id == RouteId::dataset_tile);
   if (!is_tile) return std::nullopt;
-  return tile_of(path_below_ogc(request), request);
+  auto tile = tile_of(path_below_ogc(request), request);
+  if (!tile) return Result<PictureRequest>(std::move(tile).problem());
+  return Result<PictureRequest>(*std::move(tile));
 }
 
 }  // namespace trapeze

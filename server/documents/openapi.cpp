@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -130,6 +131,34 @@ Json components_json() {
       {"explode", false},
       {"schema",
        {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["path-centre"] =
+      path_parameter("centre", "Longitude and latitude in degrees, and zoom, with commas between",
+                     {{"type", "string"}});
+  parameters["path-size"] = path_parameter(
+      "size", "Width and height in pixels, such as 640x480", {{"type", "string"}});
+  parameters["window"] = {
+      {"name", "bbox"},
+      {"in", "query"},
+      {"required", true},
+      {"description",
+       "West, south, east, north in degrees, or as crs says; where the west is east of the east, it "
+       "goes over the antimeridian"},
+      {"style", "form"},
+      {"explode", false},
+      {"schema",
+       {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["window-crs"] = {
+      {"name", "crs"},
+      {"in", "query"},
+      {"description", "What bbox is in, if not in degrees: metres of EPSG:3857"},
+      {"schema", {{"type", "string"}, {"enum", Json::array({"EPSG:3857"})}}}};
+  for (const std::string side : {"width", "height"}) {
+    parameters[side] = {
+        {"name", side},
+        {"in", "query"},
+        {"description", "In pixels; without it, it follows from the bbox"},
+        {"schema", {{"type", "integer"}, {"minimum", 1}, {"maximum", kMaxPicturePixels}}}};
+  }
   parameters["z"] = {
       {"name", "z"},
       {"in", "query"},
@@ -178,10 +207,21 @@ std::vector<std::string> names_in(std::string_view path) {
   }
 }
 
+/// Between blanks.
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    words.push_back(word);
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+  }
+  return words;
+}
+
 Json parameters_of(const Route& route) {
   Json list = Json::array();
   for (const std::string& name : names_in(route.path)) list.push_back(reference("path-" + name));
-  if (!route.query.empty()) list.push_back(reference(route.query));
+  for (const std::string_view name : words_of(route.query)) list.push_back(reference(name));
   if (!route.has_style) return list;
   for (const StyleParameter& parameter : style_parameters()) {
     list.push_back(reference(parameter.name));

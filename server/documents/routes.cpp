@@ -8,6 +8,8 @@ namespace {
 
 constexpr std::string_view kJson = "application/json";
 constexpr std::string_view kPng = "image/png";
+constexpr std::string_view kWebp = "image/webp";
+constexpr std::string_view kWindowQuery = "window window-crs width height";
 
 constexpr std::array kRoutes = {
     Route{RouteId::tile, "/tiles/{layers}/{z}/{x}/{y}.png", "getTile", "A tile of 256 pixels", kPng,
@@ -15,7 +17,7 @@ constexpr std::array kRoutes = {
     Route{RouteId::tile_at_2x, "/tiles/{layers}/{z}/{x}/{y}@2x.png", "getTile2x",
           "A tile of 512 pixels", kPng, true},
     Route{RouteId::webp_tile, "/tiles/{layers}/{z}/{x}/{y}.webp", "getWebpTile",
-          "A tile of 256 pixels, as WebP", "image/webp", true},
+          "A tile of 256 pixels, as WebP", kWebp, true},
     Route{RouteId::styled_tile, "/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
           "A tile in a style of the configuration, or one that was posted", kPng},
     Route{RouteId::tile_json_at_2x, "/tiles/{layers}@2x.json", "getTileJson2x",
@@ -24,6 +26,24 @@ constexpr std::array kRoutes = {
           kJson, true},
     Route{RouteId::styled_tile_json, "/tiles/{layers}/s/{style}.json", "getStyledTileJson",
           "TileJSON 3.0 of layers in a style of the configuration, or one that was posted", kJson},
+    Route{RouteId::map_window, "/map/{layers}.png", "getMapPicture",
+          "A picture of a window of the map", kPng, true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}@2x.png", "getMapPicture2x",
+          "The same with twice as many pixels in both directions", kPng, true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}.webp", "getMapPictureWebp", "The same as WebP", kWebp,
+          true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}/s/{style}.png", "getStyledMapPicture",
+          "The same in a style of the configuration, or one that was posted", kPng, false,
+          kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}.png", "getMapPictureAround",
+          "A picture around a place", kPng, true},
+    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}@2x.png", "getMapPictureAround2x",
+          "The same with twice as many pixels in both directions", kPng, true},
+    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}.webp", "getMapPictureAroundWebp",
+          "The same as WebP", kWebp, true},
+    Route{RouteId::map_window, "/map/{layers}/s/{style}/{centre}/{size}.png",
+          "getStyledMapPictureAround",
+          "The same in a style of the configuration, or one that was posted", kPng},
     Route{RouteId::styles, "/styles", "getStyles", "The names of styles", kJson},
     Route{RouteId::style, "/styles/{style}", "getStyle", "A style, by name or id", kJson},
     Route{RouteId::post_style,
@@ -96,7 +116,7 @@ constexpr std::array kRoutes = {
 };
 
 constexpr std::array<std::string_view, kAreas> kAreaNames = {
-    "tiles", "legend", "identify", "values", "catalog", "styles",
+    "tiles", "map", "legend", "identify", "values", "catalog", "styles",
     "wmts",  "ogc",    "health",   "ready",  "metrics", "other"};
 
 /// Takes the first segment off a path, and the slash before it.

@@ -15,6 +15,7 @@ namespace trapeze {
 /// What the first segment of a path says.
 enum class Area : std::uint8_t {
   tiles,
+  map,
   legend,
   identify,
   values,
@@ -43,6 +44,7 @@ enum class RouteId : std::uint8_t {
   tile_json_at_2x,
   tile_json,
   styled_tile_json,
+  map_window,
   styles,
   style,
   post_style,
@@ -81,7 +83,7 @@ struct Route {
   std::string_view summary;
   std::string_view content_type;
   bool has_style = false;       // takes the parameters of styles
-  std::string_view query = {};  // another query parameter that it takes
+  std::string_view query = {};  // others that it takes, as OpenAPI names them, blanks between
   std::string_view method = "GET";
 };
 

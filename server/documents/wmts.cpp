@@ -188,13 +188,13 @@ Result<Document> wmts_document(const DocumentRequest& request) {
   return Document{info->content_type, *std::move(text)};
 }
 
-std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
+std::optional<Result<PictureRequest>> parse_wmts_tile(const DocumentRequest& request) {
   auto parsed = parse_wmts_request(request);
-  if (!parsed) return std::move(parsed).problem();
+  if (!parsed) return Result<PictureRequest>(std::move(parsed).problem());
   WmtsRequest asked = *std::move(parsed);
   auto* tile = std::get_if<TileRequest>(&asked);
   if (tile == nullptr) return std::nullopt;
-  return std::move(*tile);
+  return Result<PictureRequest>(std::move(*tile));
 }
 
 }  // namespace trapeze

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "render/picture/webp.h"
 #include "server/base/content_hash.h"
 #include "server/base/json_text.h"
 #include "server/base/url.h"
@@ -16,6 +17,7 @@
 #include "server/documents/document.h"
 #include "server/documents/identify.h"
 #include "server/documents/legend.h"
+#include "server/documents/map_picture.h"
 #include "server/documents/ogc_api.h"
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
@@ -25,6 +27,7 @@
 #include "server/service/metrics.h"
 #include "server/styles/style_document.h"
 #include "server/tiles/drawing_cost.h"
+#include "server/tiles/map_window.h"
 #include "server/tiles/paint_stages.h"
 
 namespace trapeze {
@@ -57,7 +60,7 @@ Problem too_large_style(std::size_t length, const SiteOptions& options) {
 
 Problem too_dear(std::uint64_t most) {
   return {400,
-          fmt::format("This tile takes more drawing than the {} units that one may take here. "
+          fmt::format("This picture takes more drawing than the {} units that one may take here. "
                       "Ask for a coarser simplify, a smaller scale, fewer layers or no outlines.",
                       most)};
 }
@@ -221,6 +224,17 @@ HttpResponse undrawn_response(TileOutcome outcome) {
   }
 }
 
+/// All that there is below /map are pictures.
+std::optional<Result<PictureRequest>> find_map_picture(const DocumentRequest& request) {
+  auto window = parse_map_picture(request);
+  if (!window) return Result<PictureRequest>(std::move(window).problem());
+  return Result<PictureRequest>(*std::move(window));
+}
+
+std::uint64_t pixels_of(const View& view) {
+  return static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
+}
+
 std::vector<std::size_t> layers_of(const TilePlan& plan) {
   std::vector<std::size_t> layers;
   for (const LayerPaint& paint : plan.layers) layers.push_back(paint.layer);
@@ -279,6 +293,8 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
       return handle_document({values_document}, target, request, respond);
     case Area::ogc:
       return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
+    case Area::map:
+      return handle_document({nullptr, find_map_picture}, target, request, respond);
     case Area::wmts:
       return handle_document({wmts_document, parse_wmts_tile}, target, request, respond);
     case Area::styles:
@@ -459,13 +475,13 @@ HttpResponse Site::answer_file(const Target& target, const HttpRequest& request)
 void Site::handle_tiles(const Target& target, const HttpRequest& request,
                         const Respond& respond) const {
   if (answer_known(request, respond)) return;
-  const auto parsed = parse_tiles_target(target, *styles_);
+  auto parsed = parse_tiles_target(target, *styles_);
   if (!parsed) return respond(problem_response(parsed.problem()));
-  const auto& tiles = *parsed;
+  auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
     return send_json(request, tile_json_of(*tile_json, request), respond);
   }
-  handle_tile(std::get<TileRequest>(tiles), request, respond);
+  handle_picture(std::get<TileRequest>(std::move(tiles)), request, respond);
 }
 
 /// False if the target is not known, or the tile has to be drawn.
@@ -506,9 +522,9 @@ void Site::handle_document(const Documents& documents, const Target& target,
   std::string key = fmt::format("{} {}", *base, request.target);
   const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
                               *std::move(base), std::move(*path), *std::move(query)};
-  if (const auto tile = documents.find_tile ? documents.find_tile(asked) : std::nullopt) {
-    const Result<TileRequest>& found = *tile;
-    return found ? handle_tile(*found, request, respond)
+  if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
+    Result<PictureRequest>& found = *picture;
+    return found ? handle_picture(*std::move(found), request, respond)
                  : respond(problem_response(found.problem()));
   }
   if (const auto kept = documents_->find(dataset, key)) {
@@ -551,20 +567,53 @@ std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",
                    fmt::format("{}x", tile.scale), fmt::format("1x to {}x", options_.max_scale)};
   }
-  if (tile.layers.size() > options_.max_layers) {
-    return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers),
-                   "layers", fmt::format("{} layers", tile.layers.size()),
-                   fmt::format("at most {} layers", options_.max_layers)};
-  }
-  return std::nullopt;
+  return find_excess(tile.layers);
 }
 
-void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
-                       const Respond& respond) const {
-  if (const auto excess = find_excess(tile)) return respond(problem_response(*excess));
+std::optional<Problem> Site::find_excess(std::span<const std::string> layers) const {
+  if (layers.size() <= options_.max_layers) return std::nullopt;
+  return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers), "layers",
+                 fmt::format("{} layers", layers.size()),
+                 fmt::format("at most {} layers", options_.max_layers)};
+}
+
+std::optional<Problem> Site::find_excess(const WindowRequest& window) const {
+  const View& view = window.view;
+  const std::string size = fmt::format("{} x {}", view.width, view.height);
+  if (pixels_of(view) > options_.map_pixels) {
+    return Problem{400, fmt::format("A picture has at most {} pixels here.", options_.map_pixels),
+                   "width", size,
+                   fmt::format("width times height of at most {}", options_.map_pixels)};
+  }
+  if (window.format == TileFormat::webp && std::max(view.width, view.height) > kMaxWebpPixels) {
+    return Problem{400, fmt::format("WebP is at most {} pixels wide and high.", kMaxWebpPixels),
+                   "width", size, fmt::format("1 to {}", kMaxWebpPixels)};
+  }
+  const double zoom = zoom_of(view, window.scale);
+  if (zoom > options_.max_zoom) {
+    return Problem{400,
+                   fmt::format("The pixels are smaller than those of zoom {}, which is the last.",
+                               options_.max_zoom),
+                   "bbox", fmt::format("zoom {:.2f}", zoom),
+                   fmt::format("a window of zoom 0 to {}", options_.max_zoom)};
+  }
+  return find_excess(window.layers);
+}
+
+void Site::handle_picture(PictureRequest asked, const HttpRequest& request,
+                          const Respond& respond) const {
+  const auto excess =
+      std::visit([this](const auto& picture) { return find_excess(picture); }, asked);
+  if (excess) return respond(problem_response(*excess));
+  if (auto* tile = std::get_if<TileRequest>(&asked)) asked = window_of(std::move(*tile));
+  handle_window(std::get<WindowRequest>(asked), request, respond);
+}
+
+void Site::handle_window(const WindowRequest& window, const HttpRequest& request,
+                         const Respond& respond) const {
   auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
-  auto planned = plan_tile(tile, std::move(dataset));
+  auto planned = plan_window(window, std::move(dataset));
   if (!planned) {
     return respond(problem_response(planned.problem()));
   }
@@ -575,7 +624,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   TileService::Order order;
   order.key = plan.key();
   if (std::string fingerprint = known_fingerprints_->find(order.key); !fingerprint.empty()) {
-    KnownTarget known{std::move(fingerprint), tile.format, layers_of(plan)};
+    KnownTarget known{std::move(fingerprint), window.format, layers_of(plan)};
     if (auto held = find_held(request, known)) {
       if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
         known_targets_->insert(plan.dataset, request.target, std::move(known));
@@ -591,7 +640,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
   // The last answers come while the service ends, when this site may be gone.
   auto answer_with = [&cache = cache_, fingerprints = known_fingerprints_, key = order.key, respond,
-                      head = TileHead{tile.format, options_.cache_control},
+                      head = TileHead{window.format, options_.cache_control},
                       if_none_match = request.if_none_match, cost](const TileAnswer& answer) {
     if (!answer.is_known()) return respond(undrawn_response(answer.outcome));
     fingerprints->insert(key, answer.tile.fingerprint);

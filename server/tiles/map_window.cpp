@@ -21,6 +21,11 @@ View moved_by_worlds(View view, std::int64_t worlds) {
   return view;
 }
 
+/// So that its west is in the world itself.
+View brought_home(const View& view) {
+  return moved_by_worlds(view, -copy_at(static_cast<double>(view.origin_x)));
+}
+
 }  // namespace
 
 std::optional<View> view_of_window(const WindowSides& sides, int width, int height) {
@@ -39,7 +44,17 @@ std::optional<View> view_of_window(const WindowSides& sides, int width, int heig
   view.stretch = static_cast<double>(rows) / height / view.cells_per_pixel;
   view.width = width;
   view.height = height;
-  return moved_by_worlds(view, -copy_at(static_cast<double>(view.origin_x)));
+  return brought_home(view);
+}
+
+View view_around(GridPosition centre, double zoom, int width, int height, int scale) {
+  View view;
+  view.cells_per_pixel = static_cast<double>(kGridSize) / std::exp2(zoom) / (kTilePixels * scale);
+  view.width = width;
+  view.height = height;
+  view.origin_x = std::llround(centre.x - view.cells_per_pixel * width / 2);
+  view.origin_y = std::llround(centre.y - view.cells_per_pixel * height / 2);
+  return brought_home(view);
 }
 
 double zoom_of(const View& view, double scale) {

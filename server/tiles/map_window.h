@@ -32,6 +32,10 @@ struct WindowSides {
 /// or if the window is less than a cell wide or high.
 std::optional<View> view_of_window(const WindowSides& sides, int width, int height);
 
+/// The picture around a place, of width x height pixels as large as those of tiles of that zoom, 0
+/// to kMaxZoom, and scale. Its north-west corner is moved to the nearest whole cell.
+View view_around(GridPosition centre, double zoom, int width, int height, int scale);
+
 /// The zoom at which tiles of that scale have pixels as large; of pixels that are not square, the
 /// shorter side counts. Exact for tiles.
 double zoom_of(const View& view, double scale);
