@@ -31,7 +31,8 @@ Sides sides_of(const View& view) {
   const auto x = static_cast<double>(view.origin_x);
   const auto y = static_cast<double>(view.origin_y);
   const double rows = view.cells_per_row();
-  return {x, y + std::floor(view.first_row * rows), x + std::ceil(view.width * view.cells_per_pixel),
+  return {x, y + std::floor(view.first_row * rows),
+          x + std::ceil(view.width * view.cells_per_pixel),
           y + std::ceil((view.first_row + view.height) * rows)};
 }
 

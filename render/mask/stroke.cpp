@@ -453,8 +453,8 @@ void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEd
     if (view_.stretch != 1) {  // `along` grows by cells, whatever a pixel has of them here
       const Point from = vertices[edge.from];
       const Point to = vertices[edge.to];
-      const double cells = std::hypot(static_cast<double>(to.x) - from.x,
-                                      static_cast<double>(to.y) - from.y);
+      const double cells =
+          std::hypot(static_cast<double>(to.x) - from.x, static_cast<double>(to.y) - from.y);
       lines_.back().rate *= cells * columns_per_cell / lines_.back().length;
     }
     ends_.push_back({edge.from, edge.to});

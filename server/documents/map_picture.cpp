@@ -54,8 +54,8 @@ std::optional<Centre> parse_centre(std::string_view text) {
   const std::size_t second = text.find(',', std::min(first + 1, text.size()));
   if (second == std::string_view::npos) return std::nullopt;
   const auto lon = parse_number(text.substr(0, first), -360, 360);
-  const auto lat = parse_number(text.substr(first + 1, second - first - 1), -kMaxLatitude,
-                                kMaxLatitude);
+  const auto lat =
+      parse_number(text.substr(first + 1, second - first - 1), -kMaxLatitude, kMaxLatitude);
   const auto zoom = parse_number(text.substr(second + 1), 0, kMaxZoom);
   if (!lon || !lat || !zoom) return std::nullopt;
   return Centre{grid_from_lonlat({*lon, *lat}), *zoom};
@@ -147,7 +147,7 @@ Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
   if (std::max(width, height) > kMaxPicturePixels) return too_large();
   const auto view = view_of_window(*sides, width, height);
   if (!view) return bad_window(*request.find("bbox"));
-  return WindowRequest{*std::move(layers), *view,        static_cast<double>(name->scale), {},
+  return WindowRequest{*std::move(layers), *view,          static_cast<double>(name->scale), {},
                        name->format,       request.path[1]};
 }
 
@@ -159,20 +159,20 @@ Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {
   if (!name) return name.problem();
   const auto size = parse_size(name->stem);
   if (!centre || !size) {
-    return Problem{400,
-                   fmt::format("A picture is named by longitude, latitude and zoom, and by its width "
-                               "and height, from 1 to {} pixels: {}.",
-                               kMaxPicturePixels, kPattern),
-                   centre ? "width x height" : "lon,lat,zoom",
-                   request.path[centre ? 3 : 2], centre ? "512x384" : "14.5,35.9,11"};
+    return Problem{
+        400,
+        fmt::format("A picture is named by longitude, latitude and zoom, and by its width "
+                    "and height, from 1 to {} pixels: {}.",
+                    kMaxPicturePixels, kPattern),
+        centre ? "width x height" : "lon,lat,zoom", request.path[centre ? 3 : 2],
+        centre ? "512x384" : "14.5,35.9,11"};
   }
   const int width = size->width * name->scale;
   const int height = size->height * name->scale;
   if (std::max(width, height) > kMaxPicturePixels) return too_large();
   const auto view = view_around(centre->place, centre->zoom, width, height, name->scale);
-  return WindowRequest{*std::move(layers), view,
-                       static_cast<double>(name->scale), {},
-                       name->format, request.path[2]};
+  return WindowRequest{*std::move(layers), view,           static_cast<double>(name->scale), {},
+                       name->format,       request.path[2]};
 }
 
 bool has_style(const std::vector<std::string>& path) {

@@ -16,15 +16,15 @@
 
 namespace trapeze {
 
-/// The picture that is asked for. Width and height are in pixels of scale 1: a picture @2x has twice
-/// as many. Where one of them is missing, it follows from the sides of the window; without both, the
-/// longer side has 1024 pixels. The problem is 400 for what is malformed, 404 for another path or a
-/// style in the path that there is not.
+/// The picture that is asked for. Width and height are in pixels of scale 1: a picture @2x has
+/// twice as many. Where one of them is missing, it follows from the sides of the window; without
+/// both, the longer side has 1024 pixels. The problem is 400 for what is malformed, 404 for another
+/// path or a style in the path that there is not.
 Result<WindowRequest> parse_map_picture(const DocumentRequest& request);
 
 /// "west,south,east,north" in degrees. Where the west is east of the east, the window goes over the
-/// antimeridian; latitudes beyond the ends of the map are taken for these. Nothing if it is not four
-/// numbers, or if the window has no width or no height.
+/// antimeridian; latitudes beyond the ends of the map are taken for these. Nothing if it is not
+/// four numbers, or if the window has no width or no height.
 std::optional<WindowSides> parse_window_in_degrees(std::string_view text);
 /// The same in metres of EPSG:3857, as they are.
 std::optional<WindowSides> parse_window_in_metres(std::string_view text);

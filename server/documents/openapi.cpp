@@ -134,14 +134,15 @@ Json components_json() {
   parameters["path-centre"] =
       path_parameter("centre", "Longitude and latitude in degrees, and zoom, with commas between",
                      {{"type", "string"}});
-  parameters["path-size"] = path_parameter(
-      "size", "Width and height in pixels, such as 640x480", {{"type", "string"}});
+  parameters["path-size"] =
+      path_parameter("size", "Width and height in pixels, such as 640x480", {{"type", "string"}});
   parameters["window"] = {
       {"name", "bbox"},
       {"in", "query"},
       {"required", true},
       {"description",
-       "West, south, east, north in degrees, or as crs says; where the west is east of the east, it "
+       "West, south, east, north in degrees, or as crs says; where the west is east of the east, "
+       "it "
        "goes over the antimeridian"},
       {"style", "form"},
       {"explode", false},

@@ -35,13 +35,13 @@ constexpr std::array kRoutes = {
     Route{RouteId::map_window, "/map/{layers}/s/{style}.png", "getStyledMapPicture",
           "The same in a style of the configuration, or one that was posted", kPng, false,
           kWindowQuery},
-    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}.png", "getMapPictureAround",
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}.png", "getMapPictureAround",
           "A picture around a place", kPng, true},
-    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}@2x.png", "getMapPictureAround2x",
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}@2x.png", "getMapPictureAround2x",
           "The same with twice as many pixels in both directions", kPng, true},
-    Route{RouteId::map_window, "/map/{layers}/{centre}/{size}.webp", "getMapPictureAroundWebp",
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}.webp", "getMapPictureAroundWebp",
           "The same as WebP", kWebp, true},
-    Route{RouteId::map_window, "/map/{layers}/s/{style}/{centre}/{size}.png",
+    Route{RouteId::map_around, "/map/{layers}/s/{style}/{centre}/{size}.png",
           "getStyledMapPictureAround",
           "The same in a style of the configuration, or one that was posted", kPng},
     Route{RouteId::styles, "/styles", "getStyles", "The names of styles", kJson},
@@ -116,8 +116,8 @@ constexpr std::array kRoutes = {
 };
 
 constexpr std::array<std::string_view, kAreas> kAreaNames = {
-    "tiles", "map", "legend", "identify", "values", "catalog", "styles",
-    "wmts",  "ogc",    "health",   "ready",  "metrics", "other"};
+    "tiles", "map", "legend", "identify", "values",  "catalog", "styles",
+    "wmts",  "ogc", "health", "ready",    "metrics", "other"};
 
 /// Takes the first segment off a path, and the slash before it.
 constexpr std::string_view take_segment(std::string_view& path) {

@@ -45,6 +45,7 @@ enum class RouteId : std::uint8_t {
   tile_json,
   styled_tile_json,
   map_window,
+  map_around,
   styles,
   style,
   post_style,

@@ -406,8 +406,7 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
 void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing& drawing) {
   const bool has_made = !drawing.made_trapezoids.empty();
   if (drawing.alpha == 0 && !has_pattern()) return;
-  drawing.is_full =
-      !has_made && view_.is_on_world() && layer_->fill_box(selection, drawing.ranges);
+  drawing.is_full = !has_made && view_.is_on_world() && layer_->fill_box(selection, drawing.ranges);
   if (drawing.is_full) return;
   if (!drawing.ranges.empty()) drawing.parts.push_back({layer_->mesh(), drawing.ranges});
   if (has_made) {
@@ -656,7 +655,8 @@ void LayerDrawing::add_pattern_to(ContentHash& hash, const View& picture) const 
   const Pattern& pattern = style().pattern;
   hash.add(kPatternNames.name_of(pattern.kind));
   hash.add(to_hex(pattern.colour));
-  for (const double length : {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel}) {
+  for (const double length :
+       {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel}) {
     hash.add(std::bit_cast<std::uint64_t>(length));
   }
   hash.add(static_cast<std::uint64_t>(picture.origin_x));

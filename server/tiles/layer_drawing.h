@@ -51,10 +51,10 @@ bool is_plain(const LayerStyle& style);
 
 class LayerDrawing {
  public:
-  /// Selects what is to be drawn of the world where it lies in the view, of which the drawing takes a
-  /// copy; of other copies of the world see views_of_copies(). `classes` has the class of every feature; null if the style is
-  /// plain. False if nothing of the layer is seen here; the drawing must then not be used. Throws
-  /// Cancelled.
+  /// Selects what is to be drawn of the world where it lies in the view, of which the drawing takes
+  /// a copy; of other copies of the world see views_of_copies(). `classes` has the class of every
+  /// feature; null if the style is plain. False if nothing of the layer is seen here; the drawing
+  /// must then not be used. Throws Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
               const FeatureClasses* classes, DrawingTools& tools);
 

@@ -12,8 +12,7 @@ constexpr double kZoomError = 1e-9;
 
 /// The number of the copy that a place is in: 0 is the world itself.
 std::int64_t copy_at(double x) {
-  return static_cast<std::int64_t>(
-      std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
+  return static_cast<std::int64_t>(std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
 }
 
 View moved_by_worlds(View view, std::int64_t worlds) {
@@ -67,8 +66,8 @@ double zoom_of(const View& view, double scale) {
 std::vector<View> views_of_copies(const View& view) {
   const auto west = static_cast<double>(view.origin_x);
   const double east = west + view.width * view.cells_per_pixel;
-  const std::int64_t last = static_cast<std::int64_t>(
-      std::ceil((east - kGridMin) / static_cast<double>(kGridSize)) - 1);
+  const std::int64_t last =
+      static_cast<std::int64_t>(std::ceil((east - kGridMin) / static_cast<double>(kGridSize)) - 1);
   std::vector<View> views;
   for (std::int64_t copy = copy_at(west); copy <= last; ++copy) {
     views.push_back(moved_by_worlds(view, -copy));

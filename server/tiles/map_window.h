@@ -28,8 +28,8 @@ struct WindowSides {
 /// The picture of a window, of width x height pixels. Its sides are moved to the nearest whole
 /// cells, each by half a cell at most, which is less than a centimetre; so nothing in the picture
 /// moves further either. West of the world or east of it, the world repeats: the picture is that of
-/// the window around the world whose west is on it. Nothing if a side is more than kMostWorlds away,
-/// or if the window is less than a cell wide or high.
+/// the window around the world whose west is on it. Nothing if a side is more than kMostWorlds
+/// away, or if the window is less than a cell wide or high.
 std::optional<View> view_of_window(const WindowSides& sides, int width, int height);
 
 /// The picture around a place, of width x height pixels as large as those of tiles of that zoom, 0

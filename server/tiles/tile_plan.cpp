@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -46,8 +47,9 @@ Quality quality_of(const StyleQuery& query) {
   return value ? kQualityNames.find(std::get<std::string>(*value)).value() : Quality::bounded;
 }
 
+/// Where all the world is smaller than a tile, that is as at zoom 0.
 bool is_drawn_at(const LayerConfig& config, double zoom) {
-  return zoom >= config.min_zoom && std::floor(zoom) <= config.max_zoom;
+  return std::max(zoom, 0.0) >= config.min_zoom && std::floor(zoom) <= config.max_zoom;
 }
 
 Problem no_fast_topology(const std::string& layer) {
