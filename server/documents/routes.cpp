@@ -63,6 +63,7 @@ constexpr std::array kRoutes = {
     Route{RouteId::values, "/values/{layer}/{attribute}", "getValues",
           "The values of an attribute, and how they are spread", kJson, true, "bbox"},
     Route{RouteId::catalog, "/catalog", "getCatalog", "The layers and the parameters", kJson},
+    Route{RouteId::wms, "/wms", {}, "WMS 1.3.0 and 1.1.1, by key-value pairs", "text/xml"},
     Route{RouteId::wmts_capabilities, "/wmts.xml", "getWmtsCapabilities", "WMTS 1.0.0 capabilities",
           "application/xml"},
     Route{
@@ -116,8 +117,8 @@ constexpr std::array kRoutes = {
 };
 
 constexpr std::array<std::string_view, kAreas> kAreaNames = {
-    "tiles", "map", "legend", "identify", "values",  "catalog", "styles",
-    "wmts",  "ogc", "health", "ready",    "metrics", "other"};
+    "tiles", "map",  "legend", "identify", "values", "catalog", "styles",
+    "wms",   "wmts", "ogc",    "health",   "ready",  "metrics", "other"};
 
 /// Takes the first segment off a path, and the slash before it.
 constexpr std::string_view take_segment(std::string_view& path) {

@@ -21,6 +21,8 @@
 #include "server/documents/ogc_api.h"
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
+#include "server/documents/wms.h"
+#include "server/documents/wms_exception.h"
 #include "server/documents/wmts.h"
 #include "server/documents/wmts_request.h"
 #include "server/http/content_encoding.h"
@@ -42,7 +44,8 @@ constexpr std::string_view kDocumentCaching = "no-cache";
 
 constexpr std::uint64_t kDocumentCost = 500'000;  // as drawing_cost() counts: 20 ms
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
-constexpr int kClientGone = 499;  // as nginx logs it; there is nobody to read it
+constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture that tells what is wrong
+constexpr int kClientGone = 499;                    // as nginx logs it; there is nobody to read it
 
 // An address may post an eighth of the styles that are kept, and as much again each hour: so others
 // keep theirs.
@@ -201,13 +204,33 @@ HttpResponse answered_response(const TileAnswer& answer, const std::string& if_n
 
 /// What is wrong, as clients of WMTS expect to be told. By key-value pairs nothing is "not found":
 /// the address is always the same.
-HttpResponse in_words_of_wmts(HttpResponse response, std::string_view path) {
+HttpResponse in_words_of_wmts(HttpResponse response, std::string_view target) {
   if (response.problem == nullptr) return response;
+  const auto split = split_target(target);
+  const std::string_view path = split ? split->path : std::string_view();
   if (response.status == 404 && is_wmts_key_value_path(path)) response.status = 400;
   for (auto& [name, value] : response.headers) {
     if (name == "Content-Type") value = "application/xml";
   }
   response.body = std::make_shared<const std::string>(exception_report(*response.problem));
+  return response;
+}
+
+/// What is wrong, as clients of WMS ask to be told. A picture that tells of it is shown by them
+/// only if all seems well.
+HttpResponse in_words_of_wms(HttpResponse response, std::string_view target, const Fonts& fonts,
+                             std::uint64_t most_pixels) {
+  if (response.problem == nullptr) return response;
+  const auto split = split_target(target);
+  const auto query = decode_query(split ? split->query : std::string_view());
+  Document told = wms_exception(*response.problem, query.value_or(std::vector<QueryPair>()), fonts,
+                                std::min(most_pixels, kMostToldPixels));
+  if (response.status == 404) response.status = 400;  // the address is always the same
+  if (told.content_type.starts_with("image/")) response.status = 200;
+  for (auto& [name, value] : response.headers) {
+    if (name == "Content-Type") value = told.content_type;
+  }
+  response.body = std::make_shared<const std::string>(std::move(told.bytes));
   return response;
 }
 
@@ -262,14 +285,18 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
 void Site::handle(const HttpRequest& request, Respond respond) const {
   const auto target = split_target(request.target);
   const std::string_view path = target ? target->path : std::string_view();
-  const bool is_wmts = area_of(path) == Area::wmts;
-  const auto respond_to_all = [respond = std::move(respond), is_wmts,
-                               path = is_wmts ? std::string(path)
-                                              : std::string()](HttpResponse response) {
-    if (is_wmts) response = in_words_of_wmts(std::move(response), path);
-    allow_every_origin(response);
-    respond(std::move(response));
-  };
+  const Area area = area_of(path);
+  const bool has_own_words = area == Area::wmts || area == Area::wms;
+  // The last answers come while the service ends, when this site may be gone.
+  const auto respond_to_all =
+      [respond = std::move(respond), area, fonts = options_.fonts, most = options_.map_pixels,
+       target = has_own_words ? request.target : std::string()](HttpResponse response) {
+        if (area == Area::wmts) response = in_words_of_wmts(std::move(response), target);
+        if (area == Area::wms)
+          response = in_words_of_wms(std::move(response), target, *fonts, most);
+        allow_every_origin(response);
+        respond(std::move(response));
+      };
   if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
   if (!understands(path, request.method)) {
     return respond_to_all(refuse_method(request.method, path));
@@ -295,6 +322,8 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
       return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
     case Area::map:
       return handle_document({nullptr, find_map_picture}, target, request, respond);
+    case Area::wms:
+      return handle_document({wms_document, parse_wms_map}, target, request, respond);
     case Area::wmts:
       return handle_document({wmts_document, parse_wmts_tile}, target, request, respond);
     case Area::styles:
@@ -520,8 +549,9 @@ void Site::handle_document(const Documents& documents, const Target& target,
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
   std::string key = fmt::format("{} {}", *base, request.target);
-  const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
-                              *std::move(base), std::move(*path), *std::move(query)};
+  const DocumentRequest asked{*dataset,           *styles_,         *options_.fonts,
+                              *std::move(base),   std::move(*path), *std::move(query),
+                              options_.map_pixels};
   if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
     Result<PictureRequest>& found = *picture;
     return found ? handle_picture(*std::move(found), request, respond)

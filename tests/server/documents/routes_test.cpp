@@ -108,6 +108,7 @@ TEST_F(AllRoutesTest, AreAnsweredWithWhatTheyPromise) {
     std::string target = filled_in(std::string(route.path));
     if (route.id == RouteId::style) target = "/styles/night";
     if (route.id == RouteId::wmts_key_values) target += "?service=WMTS&request=GetCapabilities";
+    if (route.id == RouteId::wms) target += "?service=WMS&request=GetCapabilities";
     if (route.id == RouteId::map_window) target += "?bbox=-10,-10,20,10&width=64";
     const HttpResponse response = site_.get(target);
     EXPECT_EQ(response.status, 200) << target << ": " << *response.body;

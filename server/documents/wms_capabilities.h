@@ -1,0 +1,13 @@
+// What WMS says of itself.
+#pragma once
+
+#include "server/documents/document.h"
+#include "server/documents/wms_request.h"
+
+namespace trapeze {
+
+/// The capabilities: layers with their bounds, the styles that fit each of them, legends,
+/// attributions, and the scales at which they are drawn.
+Document wms_capabilities(WmsVersion version, const DocumentRequest& request);
+
+}  // namespace trapeze
