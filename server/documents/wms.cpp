@@ -25,7 +25,7 @@ Result<Document> wms_document(const DocumentRequest& request) {
   if (!parsed) return parsed.problem();
   const WmsRequest& asked = *parsed;
   if (const auto* capabilities = std::get_if<WmsCapabilitiesRequest>(&asked)) {
-    return wms_capabilities(capabilities->version, request);
+    return wms_capabilities(*capabilities, request);
   }
   if (const auto* legend = std::get_if<WmsLegendRequest>(&asked)) {
     return legend_in(*legend, request);

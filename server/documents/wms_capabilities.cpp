@@ -40,8 +40,8 @@ constexpr double kMetresPerPixel = 0.00028;  // that the OGC takes pixels for
 /// Writes the document in one of the versions, which differ in names and in little else.
 class CapabilitiesWriter {
  public:
-  CapabilitiesWriter(WmsVersion version, const DocumentRequest& request)
-      : is_new_(version == WmsVersion::v1_3_0), request_(request) {}
+  CapabilitiesWriter(const WmsCapabilitiesRequest& asked, const DocumentRequest& request)
+      : is_new_(asked.version == WmsVersion::v1_3_0), query_(asked.query), request_(request) {}
 
   std::string write() {
     xml_ = is_new_ ? kHead130 : kHead111;
@@ -88,7 +88,7 @@ class CapabilitiesWriter {
       xml_ += fmt::format("        <Format>{}</Format>\n", format);
     }
     xml_ += fmt::format("        <DCPType><HTTP><Get>{}</Get></HTTP></DCPType>\n      </{}>\n",
-                        link(request_.base_url + "/wms?"), name);
+                        link(request_.base_url + "/wms?" + query_), name);
   }
 
   void add_requests() {
@@ -214,16 +214,17 @@ class CapabilitiesWriter {
   }
 
   const bool is_new_;
+  const std::string& query_;
   const DocumentRequest& request_;
   std::string xml_;
 };
 
 }  // namespace
 
-Document wms_capabilities(WmsVersion version, const DocumentRequest& request) {
-  const bool is_new = version == WmsVersion::v1_3_0;
+Document wms_capabilities(const WmsCapabilitiesRequest& asked, const DocumentRequest& request) {
+  const bool is_new = asked.version == WmsVersion::v1_3_0;
   return {is_new ? "text/xml" : "application/vnd.ogc.wms_xml",
-          CapabilitiesWriter(version, request).write()};
+          CapabilitiesWriter(asked, request).write()};
 }
 
 }  // namespace trapeze

@@ -7,7 +7,8 @@
 namespace trapeze {
 
 /// The capabilities: layers with their bounds, the styles that fit each of them, legends,
-/// attributions, and the scales at which they are drawn.
-Document wms_capabilities(WmsVersion version, const DocumentRequest& request);
+/// attributions, and the scales at which they are drawn. A style in the query is kept in
+/// the addresses of maps and features.
+Document wms_capabilities(const WmsCapabilitiesRequest& asked, const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -87,7 +87,11 @@ WmsVersion version_of(const KeyValuePairs& pairs) {
 
 Result<WmsRequest> capabilities_of(const KeyValuePairs& pairs) {
   if (auto problem = check(pairs, "SERVICE", "WMS")) return std::move(*problem);
-  return WmsRequest(WmsCapabilitiesRequest{version_of(pairs)});
+  WmsCapabilitiesRequest request{version_of(pairs)};
+  for (const auto& [name, value] : pairs.others) {
+    request.query += fmt::format("{}={}&", percent_encode(name), percent_encode(value));
+  }
+  return WmsRequest(std::move(request));
 }
 
 Result<std::vector<std::string>> layers_in(const KeyValuePairs& pairs, std::string_view key,

@@ -33,6 +33,7 @@ constexpr double kUsualDpi = 96;
 
 struct WmsCapabilitiesRequest {
   WmsVersion version = WmsVersion::v1_3_0;
+  std::string query = {};  // about style, to be kept in addresses: "fill=teal&", encoded
 };
 
 /// What lies under a pixel of a map.

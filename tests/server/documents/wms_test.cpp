@@ -159,6 +159,14 @@ TEST_F(WmsTest, CapabilitiesTellOfLayersStylesAndLegends) {
   }
 }
 
+TEST_F(WmsTest, CapabilitiesKeepTheStyleOfTheirQueryInAddresses) {
+  const auto response = sample_.get(
+      "/wms?service=WMS&request=GetCapabilities&rings.fill=%23f00&map=any&filter=a%3C%26b");
+  EXPECT_THAT(*response.body,
+              HasSubstr("xlink:href=\"http://maps.example:8080/wms?rings.fill=%23f00&amp;"
+                        "filter=a%3C%26b&amp;\""));
+}
+
 TEST_F(WmsTest, LegendsAreAsLargeAsTheCapabilitiesSay) {
   const auto response = sample_.get("/wms?service=WMS&request=GetCapabilities");
   const Picture legend = picture("/legend/rings.png?style=night");
