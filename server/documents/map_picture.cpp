@@ -140,13 +140,8 @@ Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
   if (!layers) return std::move(layers).problem();
   const auto sides = sides_of(request);
   if (!sides) return sides.problem();
-  const auto size = size_of(*sides, request);
-  if (!size) return size.problem();
-  const int width = size->width * name->scale;
-  const int height = size->height * name->scale;
-  if (std::max(width, height) > kMaxPicturePixels) return too_large();
-  const auto view = view_of_window(*sides, width, height);
-  if (!view) return bad_window(*request.find("bbox"));
+  const auto view = map_view(*sides, request, name->scale);
+  if (!view) return view.problem();
   return WindowRequest{*std::move(layers), *view,          static_cast<double>(name->scale), {},
                        name->format,       request.path[1]};
 }
@@ -211,6 +206,18 @@ std::optional<int> parse_pixels(std::string_view text) {
   const bool is_one = error == std::errc() && end == text.data() + text.size() && pixels >= 1 &&
                       pixels <= kMaxPicturePixels;
   return is_one ? std::optional(pixels) : std::nullopt;
+}
+
+Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale) {
+  const auto size = size_of(sides, request);
+  if (!size) return size.problem();
+  const int width = size->width * scale;
+  const int height = size->height * scale;
+  if (std::max(width, height) > kMaxPicturePixels) return too_large();
+  const auto view = view_of_window(sides, width, height);
+  const std::string* box = request.find("bbox");
+  if (!view) return bad_window(box == nullptr ? std::string() : *box);
+  return *view;
 }
 
 Result<WindowRequest> parse_map_picture(const DocumentRequest& request) {

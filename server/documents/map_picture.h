@@ -22,6 +22,10 @@ namespace trapeze {
 /// path or a style in the path that there is not.
 Result<WindowRequest> parse_map_picture(const DocumentRequest& request);
 
+/// The picture of the window, with `width` and `height` of the query or what follows from the
+/// sides, as parse_map_picture() has it.
+Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale = 1);
+
 /// "west,south,east,north" in degrees. Where the west is east of the east, the window goes over the
 /// antimeridian; latitudes beyond the ends of the map are taken for these. Nothing if it is not
 /// four numbers, or if the window has no width or no height.

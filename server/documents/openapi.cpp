@@ -153,6 +153,37 @@ Json components_json() {
       {"in", "query"},
       {"description", "What bbox is in, if not in degrees: metres of EPSG:3857"},
       {"schema", {{"type", "string"}, {"enum", Json::array({"EPSG:3857"})}}}};
+  parameters["map-bbox"] = {
+      {"name", "bbox"},
+      {"in", "query"},
+      {"description", "West, south, east, north in degrees, or as bbox-crs says; without it: all"},
+      {"style", "form"},
+      {"explode", false},
+      {"schema",
+       {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["bbox-crs"] = {
+      {"name", "bbox-crs"},
+      {"in", "query"},
+      {"description", "What bbox is in"},
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", {kDegreesCrsUri, kTileCrsUri}}}}};
+  parameters["map-crs"] = {
+      {"name", "crs"},
+      {"in", "query"},
+      {"description", "The reference system of the map"},
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", Json::array({kTileCrsUri})}}}};
+  parameters["bgcolor"] = {{"name", "bgcolor"},
+                           {"in", "query"},
+                           {"description", "The background, such as 0xFFFFFF"},
+                           {"schema", {{"type", "string"}}}};
+  parameters["transparent"] = {
+      {"name", "transparent"},
+      {"in", "query"},
+      {"description", "Whether there is no background; true unless bgcolor is given"},
+      {"schema", {{"type", "boolean"}}}};
+  parameters["map-f"] = {{"name", "f"},
+                         {"in", "query"},
+                         {"description", "The format of the map"},
+                         {"schema", {{"type", "string"}, {"enum", {"png", "webp"}}}}};
   for (const std::string side : {"width", "height"}) {
     parameters[side] = {
         {"name", side},

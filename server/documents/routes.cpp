@@ -9,6 +9,10 @@ namespace {
 constexpr std::string_view kJson = "application/json";
 constexpr std::string_view kPng = "image/png";
 constexpr std::string_view kWebp = "image/webp";
+constexpr std::string_view kMapQuery =
+    "map-bbox bbox-crs map-crs width height bgcolor transparent map-f";
+constexpr std::string_view kDatasetMapQuery =
+    "collections map-bbox bbox-crs map-crs width height bgcolor transparent map-f";
 constexpr std::string_view kWindowQuery = "window window-crs width height";
 
 constexpr std::array kRoutes = {
@@ -94,6 +98,8 @@ constexpr std::array kRoutes = {
     Route{RouteId::collections, "/ogc/collections", "getCollections", "The layers", kJson},
     Route{RouteId::collection, "/ogc/collections/{collectionId}", "getCollection", "A layer",
           kJson},
+    Route{RouteId::collection_map, "/ogc/collections/{collectionId}/map",
+          "trapeze.collection.getMap", "A map of a layer", kPng, true, kMapQuery},
     Route{RouteId::collection_tilesets, "/ogc/collections/{collectionId}/map/tiles",
           "trapeze.collection.map.getTileSetsList", "The tilesets of a layer", kJson, true},
     Route{RouteId::collection_tileset,
@@ -103,6 +109,8 @@ constexpr std::array kRoutes = {
           "/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/"
           "{tileCol}",
           "trapeze.collection.map.getTile", "A tile of a layer", kPng, true},
+    Route{RouteId::dataset_map, "/ogc/map", "trapeze.dataset.getMap", "A map of all layers", kPng,
+          true, kDatasetMapQuery},
     Route{RouteId::dataset_tilesets, "/ogc/map/tiles", "trapeze.dataset.map.getTileSetsList",
           "The tilesets of all layers", kJson, true, "collections"},
     Route{RouteId::dataset_tileset, "/ogc/map/tiles/{tileMatrixSetId}",

@@ -21,6 +21,7 @@
 #include "server/documents/ogc_api.h"
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
+#include "server/documents/tile_matrix_set.h"
 #include "server/documents/wms.h"
 #include "server/documents/wms_exception.h"
 #include "server/documents/wmts.h"
@@ -84,9 +85,9 @@ HttpResponse not_ready(const Json& state) {
 
 void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  response.headers.emplace_back(
-      "Access-Control-Expose-Headers",
-      "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache, X-Tile-Cost");
+  response.headers.emplace_back("Access-Control-Expose-Headers",
+                                "Content-Bbox, Content-Crs, ETag, OATiles-hint, Retry-After, "
+                                "Server-Timing, X-Cache, X-Tile-Cost");
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
@@ -254,6 +255,15 @@ std::optional<Result<PictureRequest>> find_map_picture(const DocumentRequest& re
   return Result<PictureRequest>(*std::move(window));
 }
 
+/// Of a picture, in metres: west, south, east, north.
+std::string bounds_text(const View& view) {
+  const auto x = static_cast<double>(view.origin_x);
+  const auto y = static_cast<double>(view.origin_y);
+  const GridPosition from = metres_from_grid(x, y + view.height * view.cells_per_row());
+  const GridPosition to = metres_from_grid(x + view.width * view.cells_per_pixel, y);
+  return fmt::format("{:.3f},{:.3f},{:.3f},{:.3f}", from.x, from.y, to.x, to.y);
+}
+
 std::uint64_t pixels_of(const View& view) {
   return static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
 }
@@ -319,7 +329,7 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
     case Area::values:
       return handle_document({values_document}, target, request, respond);
     case Area::ogc:
-      return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
+      return handle_document({ogc_document, parse_ogc_picture}, target, request, respond);
     case Area::map:
       return handle_document({nullptr, find_map_picture}, target, request, respond);
     case Area::wms:
@@ -635,8 +645,17 @@ void Site::handle_picture(PictureRequest asked, const HttpRequest& request,
   const auto excess =
       std::visit([this](const auto& picture) { return find_excess(picture); }, asked);
   if (excess) return respond(problem_response(*excess));
-  if (auto* tile = std::get_if<TileRequest>(&asked)) asked = window_of(std::move(*tile));
-  handle_window(std::get<WindowRequest>(asked), request, respond);
+  if (auto* tile = std::get_if<TileRequest>(&asked)) {
+    return handle_window(window_of(std::move(*tile)), request, respond);
+  }
+  const auto& window = std::get<WindowRequest>(asked);
+  handle_window(window, request, [respond, bounds = bounds_text(window.view)](HttpResponse answer) {
+    if (answer.problem == nullptr) {
+      answer.headers.emplace_back("Content-Bbox", bounds);
+      answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", kTileCrsUri));
+    }
+    respond(std::move(answer));
+  });
 }
 
 void Site::handle_window(const WindowRequest& window, const HttpRequest& request,

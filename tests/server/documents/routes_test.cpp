@@ -51,7 +51,8 @@ TEST(RoutesTest, SegmentsFindTheirRoute) {
   EXPECT_EQ(id_of("/styles"), "/styles");
   EXPECT_EQ(id_of("/ogc/map/tiles"), "/ogc/map/tiles");
   EXPECT_EQ(id_of("/ogc/map/tiles/a"), "/ogc/map/tiles/{tileMatrixSetId}");
-  EXPECT_EQ(id_of("/ogc/map"), "nothing");
+  EXPECT_EQ(id_of("/ogc/map"), "/ogc/map");
+  EXPECT_EQ(id_of("/ogc/maps"), "nothing");
   EXPECT_EQ(id_of("/ogc/conformance/more"), "nothing");
 }
 
