@@ -360,6 +360,13 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int width,
 }
 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
+  for (const View& copy : views_of_copies(view)) mark_layers(plan, copy, picture);
+  if (!plan.debug.tile) return;
+  mark_border(kBorderColour, picture);
+  draw_label(plan.caption, 3, 3, {kLabelSize, kBorderColour}, *fonts_, picture);
+}
+
+void TilePainter::mark_layers(const TilePlan& plan, const View& view, Picture& picture) {
   const View around = with_margin(view);  // of marks that reach into the picture
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = plan.layer_of(paint);
@@ -376,9 +383,6 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
                      picture);
     }
   }
-  if (!plan.debug.tile) return;
-  mark_border(kBorderColour, picture);
-  draw_label(plan.caption, 3, 3, {kLabelSize, kBorderColour}, *fonts_, picture);
 }
 
 }  // namespace trapeze

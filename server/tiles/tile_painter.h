@@ -138,6 +138,7 @@ class TilePainter {
   std::shared_ptr<const std::string> constant(Rgba colour, int width, int height,
                                               TileFormat format);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
+  static void mark_layers(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<MaskRenderer> renderer_;
   std::string renderer_identity_;
