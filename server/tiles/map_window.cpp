@@ -66,7 +66,7 @@ double zoom_of(const View& view, double scale) {
 std::vector<View> views_of_copies(const View& view) {
   const auto west = static_cast<double>(view.origin_x);
   const double east = west + view.width * view.cells_per_pixel;
-  const std::int64_t last =
+  const auto last =
       static_cast<std::int64_t>(std::ceil((east - kGridMin) / static_cast<double>(kGridSize)) - 1);
   std::vector<View> views;
   for (std::int64_t copy = copy_at(west); copy <= last; ++copy) {
