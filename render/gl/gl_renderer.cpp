@@ -290,8 +290,8 @@ void GlRenderer::set_band(const Band& band) const {
   const View& view = band.task->view;
   gl_.Uniform2d(program_.origin, static_cast<double>(view.origin_x),
                 static_cast<double>(view.origin_y));
-  gl_.Uniform1d(program_.pixels_per_cell, 1.0 / view.cells_per_pixel);
-  gl_.Uniform1d(program_.first_row, band.first_row);
+  gl_.Uniform2d(program_.pixels_per_cell, 1.0 / view.cells_per_pixel, 1.0 / view.cells_per_row());
+  gl_.Uniform1d(program_.first_row, view.first_row + band.first_row);
   gl_.Uniform2i(program_.size, view.width, band.rows);
   gl_.Uniform1i(program_.place, static_cast<GLint>(band.place));
 }

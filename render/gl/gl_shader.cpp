@@ -16,7 +16,7 @@ layout(std430, binding = DIFFERENCES) buffer Differences { int differences[]; };
 uniform uint first;             // of the indices
 uniform uint count;             // of them
 uniform dvec2 origin;           // of the picture, in cells
-uniform double pixels_per_cell;
+uniform dvec2 pixels_per_cell;
 uniform double first_row;       // of the band, in the picture
 uniform ivec2 size;             // of the band, in pixels
 uniform int place;              // of its first pixel among the differences
@@ -34,7 +34,7 @@ struct Side {
 Side side_at(int ends, dvec2 span, double row) {
   dvec2 upper = dvec2(texelFetch(trapezoids, ends).xy);
   dvec2 along = dvec2(texelFetch(trapezoids, ends + 1).xy) - upper;
-  double slope = along.x / along.y;
+  double slope = along.x / along.y * (pixels_per_cell.x / pixels_per_cell.y);
   dvec2 start = (upper - origin) * pixels_per_cell - dvec2(0.0LF, first_row);
   double x_top = start.x + (span.x - start.y) * slope;
   double x = clamp(x_top, -1.0LF, double(size.x) + 1.0LF);
@@ -113,7 +113,7 @@ void main() {
   int sign = is_right ? -1 : 1;
   int texel = int(index) * 5;
   ivec2 top_and_bottom = texelFetch(trapezoids, texel).xy;
-  dvec2 span = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell - first_row;
+  dvec2 span = (dvec2(top_and_bottom) - origin.y) * pixels_per_cell.y - first_row;
   span = dvec2(max(span.x, 0.0LF), min(span.y, double(size.y)));
   if (span.x >= span.y) return;
 

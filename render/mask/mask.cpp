@@ -19,6 +19,23 @@ bool is_off_grid(double from, double to) {
   return to < kGridMin || from > kGridMax;
 }
 
+/// Of the whole cells that a picture may show.
+struct Sides {
+  double west;
+  double north;
+  double east;
+  double south;
+};
+
+Sides sides_of(const View& view) {
+  const auto x = static_cast<double>(view.origin_x);
+  const auto y = static_cast<double>(view.origin_y);
+  const double rows = view.cells_per_row();
+  return {x, y + std::floor(view.first_row * rows),
+          x + std::ceil(view.width * view.cells_per_pixel),
+          y + std::ceil((view.first_row + view.height) * rows)};
+}
+
 }  // namespace
 
 View View::of_tile(const TileId& tile, int scale) {
@@ -30,14 +47,24 @@ View View::of_tile(const TileId& tile, int scale) {
   return view;
 }
 
+View View::band(int row, int rows) const {
+  View band = *this;
+  band.first_row += row;
+  band.height = rows;
+  return band;
+}
+
 Box View::box() const {
-  const auto min_x = static_cast<double>(origin_x);
-  const auto min_y = static_cast<double>(origin_y);
-  const double max_x = min_x + std::ceil(width * cells_per_pixel);
-  const double max_y = min_y + std::ceil(height * cells_per_pixel);
-  if (is_off_grid(min_x, max_x) || is_off_grid(min_y, max_y)) return Box{};
-  return Box{clamp_to_grid(min_x), clamp_to_grid(min_y), clamp_to_grid(max_x),
-             clamp_to_grid(max_y)};
+  const Sides sides = sides_of(*this);
+  if (is_off_grid(sides.west, sides.east) || is_off_grid(sides.north, sides.south)) return Box{};
+  return Box{clamp_to_grid(sides.west), clamp_to_grid(sides.north), clamp_to_grid(sides.east),
+             clamp_to_grid(sides.south)};
+}
+
+bool View::is_on_world() const {
+  const Sides sides = sides_of(*this);
+  return std::min(sides.west, sides.north) >= kGridMin &&
+         std::max(sides.east, sides.south) <= kGridMax;
 }
 
 void View::check() const {
@@ -46,8 +73,8 @@ void View::check() const {
                                 " pixels wide and high, not " + std::to_string(width) + " x " +
                                 std::to_string(height));
   }
-  if (!(cells_per_pixel > 0) || !std::isfinite(cells_per_pixel)) {
-    throw std::invalid_argument("cells_per_pixel must be positive and finite");
+  if (!(shorter_side() > 0) || !std::isfinite(longer_side())) {
+    throw std::invalid_argument("the sides of a pixel must be positive and finite");
   }
   if (std::max(std::abs(origin_x), std::abs(origin_y)) > kMaxOrigin) {
     throw std::invalid_argument("the view lies too far off the world");
@@ -99,6 +126,34 @@ bool Mask::is_all(std::uint8_t value) const {
   return used_ == row_end_.size() &&
          std::all_of(runs_.begin(), runs_.begin() + static_cast<std::ptrdiff_t>(used_),
                      [value](const MaskRun& run) { return run.value == value; });
+}
+
+namespace {
+
+template <typename Combine>
+Mask combined(const Mask& a, const Mask& b, const Combine& combine) {
+  Mask made;
+  made.begin(a.width(), a.height());
+  for (int row = 0; row < a.height(); ++row) {
+    for_each_run_of_both(a.row(row), b.row(row),
+                         [&](std::size_t end, std::uint8_t of_a, std::uint8_t of_b) {
+                           made.append(end, combine(of_a, of_b));
+                         });
+    made.end_row();
+  }
+  return made;
+}
+
+}  // namespace
+
+Mask sum_of(const Mask& a, const Mask& b) {
+  return combined(a, b, [](std::uint8_t of_a, std::uint8_t of_b) {
+    return static_cast<std::uint8_t>(std::min(of_a + of_b, 255));
+  });
+}
+
+Mask greater_of(const Mask& a, const Mask& b) {
+  return combined(a, b, [](std::uint8_t of_a, std::uint8_t of_b) { return std::max(of_a, of_b); });
 }
 
 bool operator==(const Mask& a, const Mask& b) {

@@ -24,24 +24,39 @@ namespace trapeze {
 constexpr int kTilePixels = 256;          // pixels along a side of a tile at scale 1
 constexpr int kMaxPicturePixels = 16384;  // at most, along either side of a picture
 
-/// What a picture shows. Pixel (column, row) is the square of cells that begins at
-/// origin + (column, row) * cells_per_pixel; row 0 is the northernmost.
+/// What a picture shows. Pixel (column, row) is the rectangle of cells that begins at
+/// origin + (column * cells_per_pixel, (first_row + row) * cells_per_row()); row 0 is the
+/// northernmost.
 struct View {
   std::int64_t origin_x = 0;  // north-west corner of the picture, in cells; may lie off the world
   std::int64_t origin_y = 0;
-  double cells_per_pixel = 1;
-  int width = kTilePixels;  // pixels
+  double cells_per_pixel = 1;  // from west to east
+  int width = kTilePixels;     // pixels
   int height = kTilePixels;
+  double stretch = 1;  // of a pixel: its cells from north to south over those from west to east
+  int first_row = 0;   // of a band: the rows between the origin and it
 
   /// A tile of 256 * scale pixels a side. `tile` is valid, 1 <= scale <= 64.
   static View of_tile(const TileId& tile, int scale = 1);
 
+  /// So many rows of it, `row` being the first: each is where it is in the whole picture, to the
+  /// last bit.
+  View band(int row, int rows) const;
+
+  /// Cells of a pixel from north to south.
+  double cells_per_row() const { return cells_per_pixel * stretch; }
+  /// The shorter and the longer side of a pixel, in cells.
+  double shorter_side() const { return cells_per_pixel * (stretch < 1 ? stretch : 1); }
+  double longer_side() const { return cells_per_pixel * (stretch > 1 ? stretch : 1); }
+
   /// All grid points whose cells the picture may show, in cells; empty if the picture lies wholly
   /// off the world.
   Box box() const;
+  /// Whether nothing of it lies off the world.
+  bool is_on_world() const;
 
-  /// Throws std::invalid_argument unless 1 <= width, height <= kMaxPicturePixels, cells_per_pixel
-  /// is positive and finite, and the origin is within 2^40 cells of the grid's.
+  /// Throws std::invalid_argument unless 1 <= width, height <= kMaxPicturePixels, the sides of a
+  /// pixel are positive and finite, and the origin is within 2^40 cells of the grid's.
   void check() const;
 };
 
@@ -122,6 +137,10 @@ void for_each_run_of_both(std::span<const MaskRun> a, std::span<const MaskRun> b
     if (next_b->end == run.end) ++next_b;
   }
 }
+
+/// Of two masks of one size, pixel by pixel: the sum, at most 255, and the greater value.
+Mask sum_of(const Mask& a, const Mask& b);
+Mask greater_of(const Mask& a, const Mask& b);
 
 /// Some trapezoids of one mesh; a view of the caller's memory. The ranges lie within the mesh.
 struct MeshPart {

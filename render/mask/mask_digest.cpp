@@ -15,7 +15,7 @@ namespace {
 // Takes the place of the points of a side that lies wholly to the west of the view.
 constexpr std::uint64_t kWest = 0x6a09e667f3bcc908;
 
-/// The rows of cells from one to another, counted from the north of the view.
+/// The rows of cells from one to another, counted from the origin of the view.
 struct Span {
   std::int64_t top = 0;
   std::int64_t bottom = 0;
@@ -33,15 +33,18 @@ class SidesInView {
   explicit SidesInView(const View& view)
       : view_(view),
         width_(view.width * view.cells_per_pixel),
-        height_(static_cast<std::int64_t>(std::ceil(view.height * view.cells_per_pixel))) {}
+        rows_{static_cast<std::int64_t>(std::floor(view.first_row * view.cells_per_row())),
+              static_cast<std::int64_t>(
+                  std::ceil((view.first_row + view.height) * view.cells_per_row()))} {}
 
-  std::int64_t height() const { return height_; }
+  /// The whole of the view.
+  Span rows() const { return rows_; }
 
   /// Of a trapezoid, what lies in the view; nothing if `top` is not less than `bottom`.
   Span span_of(const MeshView& mesh, const MeshTrapezoid& trapezoid) const {
     const std::int64_t top = mesh.vertices[trapezoid.top].y - view_.origin_y;
     const std::int64_t bottom = mesh.vertices[trapezoid.bottom].y - view_.origin_y;
-    return {std::max<std::int64_t>(top, 0), std::min(bottom, height_)};
+    return {std::max(top, rows_.top), std::min(bottom, rows_.bottom)};
   }
 
   /// What lies east of a side is covered, or if it is a right side, uncovered.
@@ -90,8 +93,8 @@ class SidesInView {
   }
 
   const View& view_;
-  double width_;         // cells
-  std::int64_t height_;  // cells
+  double width_;  // cells
+  Span rows_;
 };
 
 /// Ink and dashes of a line.
@@ -144,7 +147,7 @@ Digest mask_digest(std::span<const MeshPart> parts, const View& view) {
 
 Digest whole_mask_digest(const View& view) {
   SetHash hash;
-  SidesInView::add_west({0, SidesInView(view).height()}, false, hash);
+  SidesInView::add_west(SidesInView(view).rows(), false, hash);
   return hash.digest();
 }
 

@@ -94,12 +94,12 @@ double Stroke::ink_of_ring(double extent) const {
   return extent < kFullExtent * width ? extent / (kFullExtent * width) : 1;
 }
 
-double Stroke::reach(int scale) const {
+double Stroke::reach(double scale) const {
   const double half = width * scale / 2;
   return (join == LineJoin::miter ? kMiterLimit * half : half) + 0.5;
 }
 
-std::uint64_t Stroke::most_values(std::uint64_t edges, const View& view, int scale) const {
+std::uint64_t Stroke::most_values(std::uint64_t edges, const View& view, double scale) const {
   const double pixels = static_cast<double>(view.width) * view.height;
   // A line as long as it is wide, and a join at either end.
   const auto around_edges = [edges](double half) {
@@ -125,7 +125,7 @@ Stroker::Line Stroker::Line::between(PicturePlace new_from, PicturePlace new_to)
 // A line's width and dashes, in pixels of one picture.
 class Stroker::Pen {
  public:
-  Pen(const Stroke& stroke, int scale, Canvas& canvas)
+  Pen(const Stroke& stroke, double scale, Canvas& canvas)
       : half_(stroke.width * scale / 2),
         most_(std::min(1.0f, static_cast<float>(2 * half_))),
         join_(stroke.join),
@@ -407,7 +407,7 @@ class Stroker::Pen {
   std::uint64_t values_ = 0;  // computed so far
 };
 
-void Stroker::begin(const View& view, int scale) {
+void Stroker::begin(const View& view, double scale) {
   view_ = view;
   scale_ = scale;
   canvas_.begin(view.width, view.height);
@@ -435,19 +435,28 @@ void Stroker::draw(std::span<const Point> vertices, std::span<const OutlineEdge>
 }
 
 void Stroker::measure(std::span<const Point> vertices, std::span<const OutlineEdge> edges) {
-  const double pixels_per_cell = 1 / view_.cells_per_pixel;
+  const double columns_per_cell = 1 / view_.cells_per_pixel;
+  const double rows_per_cell = 1 / view_.cells_per_row();
   const auto place_of = [&](std::uint32_t vertex) {
     const Point p = vertices[vertex];
-    return PicturePlace{static_cast<double>(p.x - view_.origin_x) * pixels_per_cell,
-                        static_cast<double>(p.y - view_.origin_y) * pixels_per_cell};
+    return PicturePlace{
+        static_cast<double>(p.x - view_.origin_x) * columns_per_cell,
+        static_cast<double>(p.y - view_.origin_y) * rows_per_cell - view_.first_row};
   };
   lines_.clear();
   ends_.clear();
   length_of_lines_ = 0;
   for (const OutlineEdge& edge : edges) {
     const Line line{
-        {}, {}, 0, 0, 0, edge.along * pixels_per_cell, edge.rate, static_cast<float>(edge.ink)};
+        {}, {}, 0, 0, 0, edge.along * columns_per_cell, edge.rate, static_cast<float>(edge.ink)};
     lines_.push_back(line.between(place_of(edge.from), place_of(edge.to)));
+    if (view_.stretch != 1) {  // `along` grows by cells, whatever a pixel has of them here
+      const Point from = vertices[edge.from];
+      const Point to = vertices[edge.to];
+      const double cells =
+          std::hypot(static_cast<double>(to.x) - from.x, static_cast<double>(to.y) - from.y);
+      lines_.back().rate *= cells * columns_per_cell / lines_.back().length;
+    }
     ends_.push_back({edge.from, edge.to});
     length_of_lines_ += lines_.back().length;
   }

@@ -50,7 +50,7 @@ struct Stroke {
   bool is_dashed() const;
   /// The greatest distance from the edge at which the line covers anything, in pixels of a picture
   /// of that scale.
-  double reach(int scale) const;
+  double reach(double scale) const;
   /// The share of ink for the outline of a ring that has the area of a circle of that diameter
   /// (pixels of a picture of scale 1): 1 from kFullExtent times the width of the line on, and less
   /// in proportion below. So the outline of a small circle has as much ink as the circle would have
@@ -60,7 +60,7 @@ struct Stroke {
   /// About how many values of pixels are computed at most for lines along so many edges that are
   /// not longer than wide, in a picture of that view and scale. Never less for more edges, or for
   /// wider lines.
-  std::uint64_t most_values(std::uint64_t edges, const View& view, int scale) const;
+  std::uint64_t most_values(std::uint64_t edges, const View& view, double scale) const;
 
   friend bool operator==(const Stroke&, const Stroke&) = default;
 };
@@ -82,7 +82,7 @@ class Stroker {
   static constexpr std::uint64_t kCrowd = 64;
 
   /// Begins a picture of that view and scale, without lines.
-  void begin(const View& view, int scale);
+  void begin(const View& view, double scale);
   /// Draws lines along the edges: each value becomes the greater of what it was and what the lines
   /// cover. No edge is given twice; edges that share a vertex are joined there. Throws Cancelled.
   void draw(std::span<const Point> vertices, std::span<const OutlineEdge> edges,
@@ -135,7 +135,7 @@ class Stroker {
   void draw_nearest(const Pen& pen, const Cancellation* cancellation);
 
   View view_;
-  int scale_ = 1;
+  double scale_ = 1;
   Canvas canvas_;
   std::vector<Line> lines_;
   std::vector<Ends> ends_;  // by line

@@ -42,7 +42,7 @@ void PlacedPattern::Bands::assign(double period, double width) {
   }
 }
 
-void PlacedPattern::place(const Pattern& pattern, const View& view, int scale) {
+void PlacedPattern::place(const Pattern& pattern, const View& view, double scale) {
   kind_ = pattern.kind;
   width_ = view.width;
   height_ = view.height;
@@ -52,7 +52,7 @@ void PlacedPattern::place(const Pattern& pattern, const View& view, int scale) {
   along_x_ = std::cos(angle);
   along_y_ = -std::sin(angle);  // rows run south
   west_ = static_cast<double>(view.origin_x - kGridMin) / view.cells_per_pixel + 0.5;
-  north_ = static_cast<double>(view.origin_y - kGridMin) / view.cells_per_pixel;
+  north_ = static_cast<double>(view.origin_y - kGridMin) / view.cells_per_row() + view.first_row;
   if (kind_ != PatternKind::none && kind_ != PatternKind::dots) bands_.assign(period_, band_width_);
 }
 

@@ -38,7 +38,7 @@ struct Pattern {
 class PlacedPattern {
  public:
   /// `scale` is the picture's. Keeps its memory from one picture to the next.
-  void place(const Pattern& pattern, const View& view, int scale);
+  void place(const Pattern& pattern, const View& view, double scale);
 
   int width() const { return width_; }
   int height() const { return height_; }

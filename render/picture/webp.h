@@ -7,6 +7,8 @@
 
 namespace trapeze {
 
+constexpr int kMaxWebpPixels = 16383;  // along either side
+
 /// Whether this was built with libwebp; only then may encode_webp() be called.
 bool has_webp();
 
@@ -15,7 +17,7 @@ bool has_webp();
 int webp_version();
 
 /// No pixel changes, hidden colours included. Throws std::runtime_error if the picture has no
-/// pixels, has more than 16,383 a side, or libwebp fails. Thread-safe.
+/// pixels, has more than kMaxWebpPixels a side, or libwebp fails. Thread-safe.
 std::string encode_webp(const RunPicture& picture);
 
 }  // namespace trapeze

@@ -14,16 +14,29 @@ namespace trapeze {
 struct SoftwareRenderer::Frame {
   std::int64_t origin_x;
   std::int64_t origin_y;
-  double pixels_per_cell;
+  double columns_per_cell;
+  double rows_per_cell;
+  double columns_per_row;  // of a square piece of the ground
+  double first_row;
   double width;
   double height;
 
+  explicit Frame(const View& view)
+      : origin_x(view.origin_x),
+        origin_y(view.origin_y),
+        columns_per_cell(1.0 / view.cells_per_pixel),
+        rows_per_cell(1.0 / view.cells_per_row()),
+        columns_per_row(columns_per_cell / rows_per_cell),
+        first_row(view.first_row),
+        width(view.width),
+        height(view.height) {}
+
   // The subtraction is exact, so the error is that of one multiplication: 2^-22 pixel at worst.
   double x(std::int32_t cells) const {
-    return static_cast<double>(cells - origin_x) * pixels_per_cell;
+    return static_cast<double>(cells - origin_x) * columns_per_cell;
   }
   double y(std::int32_t cells) const {
-    return static_cast<double>(cells - origin_y) * pixels_per_cell;
+    return static_cast<double>(cells - origin_y) * rows_per_cell - first_row;
   }
 };
 
@@ -91,8 +104,7 @@ void SoftwareRenderer::draw(const MaskTask& task, DrawTimes& times) {
   view.check();
   prepare(view);
   task.out->begin(view.width, view.height);
-  const Frame frame{view.origin_x, view.origin_y, 1.0 / view.cells_per_pixel,
-                    static_cast<double>(view.width), static_cast<double>(view.height)};
+  const Frame frame(view);
   bool is_wanted = true;
   {
     const Stopwatch stopwatch(times.draw_ms);
@@ -186,7 +198,7 @@ void SoftwareRenderer::add_side(Point upper, Point lower, double y_top, double y
                                 Rounding rounding, const Frame& frame) {
   const auto dx = static_cast<double>(std::int64_t{lower.x} - upper.x);
   const auto dy = static_cast<double>(std::int64_t{lower.y} - upper.y);
-  const double slope = dx / dy;
+  const double slope = dx / dy * frame.columns_per_row;
   const double x = frame.x(upper.x);
   const double y = frame.y(upper.y);
   const Piece piece{x + (y_top - y) * slope, y_top, x + (y_bottom - y) * slope, y_bottom};

@@ -29,6 +29,7 @@ constexpr std::uint64_t kDearTile = 500'000;      // from which on a tile waits 
 constexpr std::uint64_t kTileCost = 100'000'000;
 constexpr double kCostPerSecond = 25'000'000;
 constexpr double kCostBurst = 250'000'000;
+constexpr std::uint64_t kMapPixels = 16'777'216;  // of a picture of a window
 constexpr std::chrono::milliseconds kDeadline{10'000};
 constexpr unsigned kBatch = 8;  // tiles
 

@@ -50,7 +50,7 @@ class Comparison {
       const auto after = plan_tile(tile, after_);
       if (!after) return after.problem();
       try {
-        const auto tiles = changed(candidates(*before, *after), *before, *after);
+        const auto tiles = changed(candidates(zoom, *before, *after), *before, *after);
         found.tiles.insert(found.tiles.end(), tiles.begin(), tiles.end());
       } catch (const std::length_error&) {
         found.zooms.last = zoom - 1;
@@ -97,17 +97,16 @@ class Comparison {
 
   /// Layers that are seen in one state and not in the other are of other zooms or opacities, which
   /// is no change of the data.
-  std::vector<TileId> candidates(const TilePlan& before, const TilePlan& after) const {
+  std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
     std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // mostly alike in both
     for (const TilePlan* plan : {&before, &after}) {
-      const View view = View::of_tile(plan->tile, plan->scale);
       for (const LayerPaint& paint : plan->layers) {
         const LayerChanges* changes = changes_of(*plan, paint);
         if (changes == nullptr) continue;
         const Stroke& stroke = paint.style.stroke;
         const double reach = (stroke.width > 0 ? stroke.reach(plan->scale) : 0) + kReachOfDust;
-        const TileDrawing drawing{plan->tile.z, paint.level, plan->pixel_level(),
-                                  reach * view.cells_per_pixel};
+        const TileDrawing drawing{zoom, paint.level, plan->pixel_level(),
+                                  reach * plan->view.cells_per_pixel};
         const std::pair each(changes, drawing);
         if (std::ranges::find(drawings, each) == drawings.end()) drawings.push_back(each);
       }
@@ -132,7 +131,7 @@ class Comparison {
       TilePlan old = before;
       TilePlan now = after;
       for (std::size_t i = thread; i < tiles.size(); i += painters_.size()) {
-        old.tile = now.tile = tiles[i];
+        old.view = now.view = View::of_tile(tiles[i], request_.tile.scale);
         is_different[i] = are_different(old, now, painters_[thread]) ? 1 : 0;
       }
     });

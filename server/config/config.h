@@ -87,6 +87,7 @@ struct LimitsConfig {
   std::size_t layers = kMaxLayersPerTile;               // of one tile
   int scale = kMaxScale;
   int zoom = kMaxZoom;
+  std::uint64_t map_pixels = defaults::kMapPixels;              // of a picture of a window
   unsigned idle_timeout_ms = defaults::kIdleTimeout.count();    // until a request begins
   unsigned read_timeout_ms = defaults::kReadTimeout.count();    // from its first byte to its last
   unsigned write_timeout_ms = defaults::kWriteTimeout.count();  // for a whole response

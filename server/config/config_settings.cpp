@@ -459,6 +459,10 @@ void append_limits(std::vector<Setting<Config>>& all) {
   all.push_back(integer<Config>(
       "limits.zoom", [](auto& c) -> auto& { return c.limits.zoom; }, 0, kMaxZoom,
       "the last zoom; tiles beyond it are answered with 404"));
+  all.push_back(integer<Config>(
+      "limits.map_pixels", [](auto& c) -> auto& { return c.limits.map_pixels; }, 1,
+      static_cast<std::int64_t>(kMaxMapPixels),
+      "pixels of a picture of a window, width times height; more are answered with 400"));
   all.push_back(milliseconds(
       "limits.idle_timeout_ms", [](auto& c) -> auto& { return c.limits.idle_timeout_ms; }, 1,
       "how long a connection is kept that asks for nothing"));

@@ -2,6 +2,7 @@
 // what comes out.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "render/text/fonts.h"
+#include "server/base/defaults.h"
 #include "server/base/url.h"
 #include "server/data/dataset.h"
 #include "server/styles/style_book.h"
@@ -22,6 +24,7 @@ struct DocumentRequest {
   std::string base_url;           // how this server is reached, without a '/' at the end
   std::vector<std::string> path;  // decoded segments, untrusted
   std::vector<QueryPair> query;   // untrusted
+  std::uint64_t map_pixels = defaults::kMapPixels;  // that a picture of a window may have
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {

@@ -25,6 +25,13 @@ namespace {
 constexpr std::array<std::string_view, 1> kOwnParameters = {"z"};
 constexpr std::string_view kPattern = "/identify/{layers}/{lon},{lat}";
 
+constexpr std::array kInfoFormats = {
+    InfoFormat{"application/geo+json", ".json", "application/geo+json", IdentifyFormat::json},
+    InfoFormat{"application/json", "", "application/json", IdentifyFormat::json},
+    InfoFormat{"text/plain", ".txt", "text/plain; charset=utf-8", IdentifyFormat::text},
+    InfoFormat{"text/html", ".html", "text/html; charset=utf-8", IdentifyFormat::html},
+};
+
 Result<Point> place_in(const std::string& text) {
   if (const auto place = parse_place(text)) return *place;
   const std::string takes = fmt::format(
@@ -191,7 +198,8 @@ Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
     if (!served.is_whole()) return damaged_layer(served);
     const auto rows = find_rows(query, served, *position);
     if (!rows) return rows.problem();
-    for (const std::uint32_t row : *rows) features.add(served, row);
+    const std::size_t count = std::min(rows->size(), query.most_of_layer);
+    for (const std::uint32_t row : std::span(*rows).first(count)) features.add(served, row);
   }
   return features.take_json();
 }
@@ -244,6 +252,10 @@ std::string html_of(const Json& collection) {
 }
 
 }  // namespace
+
+std::span<const InfoFormat> info_formats() {
+  return kInfoFormats;
+}
 
 Result<std::string> identified_features(const PlaceQuery& query, const Dataset& dataset,
                                         IdentifyFormat format) {

@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/grid/grid.h"
@@ -24,9 +27,20 @@ struct PlaceQuery {
   Point place;
   std::optional<double> zoom;  // nothing: by the true polygons
   StyleQuery style;
+  std::size_t most_of_layer = std::numeric_limits<std::size_t>::max();  // features
 };
 
 enum class IdentifyFormat : std::uint8_t { json, text, html };
+
+/// The media types that the services of the OGC have features in, and the endings of their
+/// addresses.
+struct InfoFormat {
+  std::string_view name;
+  std::string_view ending;  // empty: by key-value pairs only
+  std::string_view content_type;
+  IdentifyFormat format;
+};
+std::span<const InfoFormat> info_formats();
 
 /// The features under the place, as those of identify_document(), in words for a reader, or as a
 /// page of HTML with them.

@@ -270,16 +270,20 @@ std::vector<std::string> fitted_labels(const std::vector<LegendRow>& rows, const
   return labels;
 }
 
-Picture blank_legend(const std::vector<LegendRow>& rows, const std::vector<std::string>& labels,
-                     const Fonts& fonts, int scale) {
+LegendSize size_of(const std::vector<LegendRow>& rows, const std::vector<std::string>& labels,
+                   const Fonts& fonts) {
   int width = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int label = fonts.width_of(labels[i], kTextSize);
     width = std::max(width, left_of_label(rows[i]) + label + kMargin);
   }
+  return {width, height_of(rows)};
+}
+
+Picture blank_legend(LegendSize size, int scale) {
   Picture picture;
-  picture.width = width * scale;
-  picture.height = height_of(rows) * scale;
+  picture.width = size.width * scale;
+  picture.height = size.height * scale;
   picture.pixels.assign(
       static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), kPaper);
   return picture;
@@ -287,7 +291,7 @@ Picture blank_legend(const std::vector<LegendRow>& rows, const std::vector<std::
 
 Picture draw_legend(const std::vector<LegendRow>& rows, const Fonts& fonts, int scale) {
   const std::vector<std::string> labels = fitted_labels(rows, fonts);
-  Picture picture = blank_legend(rows, labels, fonts, scale);
+  Picture picture = blank_legend(size_of(rows, labels, fonts), scale);
   Swatch swatch(scale);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const LegendRow& row = rows[i];
@@ -334,6 +338,13 @@ Result<Document> legend_as_png(std::string_view file, const DocumentRequest& req
 }
 
 }  // namespace
+
+Result<LegendSize> legend_size(const std::string& layer, const DocumentRequest& request) {
+  const auto legend = legend_of({layer}, request);
+  if (!legend) return legend.problem();
+  const std::vector<LegendRow> rows = rows_of(*legend);
+  return size_of(rows, fitted_labels(rows, request.fonts), request.fonts);
+}
 
 Result<Document> legend_document(const DocumentRequest& request) {
   if (request.path.size() == 2) {

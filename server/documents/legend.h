@@ -1,6 +1,8 @@
 // What the colours of a map mean.
 #pragma once
 
+#include <string>
+
 #include "server/base/result.h"
 #include "server/documents/document.h"
 
@@ -11,5 +13,13 @@ namespace trapeze {
 /// picture shows a small polygon for each, with pattern and outline as in the map, but
 /// no outline wider than 4 pixels.
 Result<Document> legend_document(const DocumentRequest& request);
+
+/// Of the picture at scale 1, in pixels.
+struct LegendSize {
+  int width = 0;
+  int height = 0;
+};
+/// The problem is a layer that there is not, or a style of the query that does not fit it.
+Result<LegendSize> legend_size(const std::string& layer, const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -9,6 +9,7 @@
 #include "core/grid/web_mercator.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/ogc_map.h"
 #include "server/documents/openapi.h"
 #include "server/documents/routes.h"
 #include "server/documents/tile_matrix_set.h"
@@ -19,16 +20,16 @@ namespace {
 constexpr std::array<std::string_view, 2> kOwnParameters = {"collections", "f"};
 constexpr std::string_view kJsonType = "application/json";
 constexpr std::string_view kPngType = "image/png";
+constexpr std::string_view kMapRelation = "http://www.opengis.net/def/rel/ogc/1.0/map";
 constexpr std::string_view kTilesetsRelation =
     "http://www.opengis.net/def/rel/ogc/1.0/tilesets-map";
 constexpr std::string_view kTilingSchemeRelation =
     "http://www.opengis.net/def/rel/ogc/1.0/tiling-scheme";
 constexpr std::string_view kTilingSchemesRelation =
     "http://www.opengis.net/def/rel/ogc/1.0/tiling-schemes";
-constexpr std::string_view kDegreesCrsUri = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 
 // Only what holds.
-constexpr std::array<std::string_view, 16> kConformance = {
+constexpr std::array<std::string_view, 20> kConformance = {
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/landing-page",
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/json",
@@ -42,6 +43,10 @@ constexpr std::array<std::string_view, 16> kConformance = {
     "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/collections-selection",
     "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/png",
     "http://www.opengis.net/spec/ogcapi-tiles-1/1.0/conf/oas30",
+    "http://www.opengis.net/spec/ogcapi-maps-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-maps-1/1.0/conf/dataset-map",
+    "http://www.opengis.net/spec/ogcapi-maps-1/1.0/conf/collection-map",
+    "http://www.opengis.net/spec/ogcapi-maps-1/1.0/conf/png",
     "http://www.opengis.net/spec/tms/2.0/conf/tilematrixset",
     "http://www.opengis.net/spec/tms/2.0/conf/json-tilematrixset",
     "http://www.opengis.net/spec/tms/2.0/conf/json-tilesetmetadata"};
@@ -127,6 +132,7 @@ Json landing_page(const DocumentRequest& request) {
   links.push_back(link("data", kJsonType, "The layers", root + "/collections"));
   links.push_back(link("http://www.opengis.net/def/rel/ogc/1.0/data", kJsonType, "The layers",
                        root + "/collections"));
+  links.push_back(link(kMapRelation, kPngType, "A map of all layers together", root + "/map"));
   links.push_back(
       link(kTilesetsRelation, kJsonType, "Map tiles of all layers together", root + "/map/tiles"));
   links.push_back(
@@ -151,6 +157,7 @@ Json collection_json(const ServedLayer& served, const DocumentRequest& request) 
   json["crs"] = Json::array({kTileCrsUri});
   json["links"] =
       Json::array({link("self", kJsonType, "This layer", url),
+                   link(kMapRelation, kPngType, "A map", url + "/map"),
                    link(kTilesetsRelation, kJsonType, "Map tiles", url + "/map/tiles")});
   return json;
 }
@@ -349,6 +356,12 @@ Result<Json> find_json(const Route& route, const DocumentRequest& request) {
   }
 }
 
+Result<WindowRequest> map_of(std::span<const std::string> path, const DocumentRequest& request) {
+  const auto resource = tiled_resource(path, request);
+  if (!resource) return resource.problem();
+  return parse_ogc_map(resource->layers, request);
+}
+
 Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentRequest& request) {
   if (auto problem = check_format(request, "png")) return std::move(*problem);
   auto resource = tiled_resource(path, request);
@@ -378,12 +391,24 @@ Result<Document> ogc_document(const DocumentRequest& request) {
   return Document{std::string(kJsonType), to_text(*json)};
 }
 
-std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request) {
+std::optional<Result<PictureRequest>> parse_ogc_picture(const DocumentRequest& request) {
   const Route* route = route_of(request);
-  const bool is_tile = route != nullptr && (route->id == RouteId::collection_tile ||
-                                            route->id == RouteId::dataset_tile);
-  if (!is_tile) return std::nullopt;
-  return tile_of(path_below_ogc(request), request);
+  if (route == nullptr) return std::nullopt;
+  const auto path = path_below_ogc(request);
+  const auto as_picture = [](auto picture) -> Result<PictureRequest> {
+    if (!picture) return std::move(picture).problem();
+    return PictureRequest(*std::move(picture));
+  };
+  switch (route->id) {
+    case RouteId::collection_tile:
+    case RouteId::dataset_tile:
+      return as_picture(tile_of(path, request));
+    case RouteId::collection_map:
+    case RouteId::dataset_map:
+      return as_picture(map_of(path, request));
+    default:
+      return std::nullopt;
+  }
 }
 
 }  // namespace trapeze

@@ -6,7 +6,7 @@
 
 #include "server/base/result.h"
 #include "server/documents/document.h"
-#include "server/tiles/tile_request.h"
+#include "server/tiles/window_request.h"
 
 namespace trapeze {
 
@@ -14,6 +14,6 @@ namespace trapeze {
 Result<Document> ogc_document(const DocumentRequest& request);
 
 /// The tile that a path below /ogc names; nothing if it names none.
-std::optional<Result<TileRequest>> parse_ogc_tile(const DocumentRequest& request);
+std::optional<Result<PictureRequest>> parse_ogc_picture(const DocumentRequest& request);
 
 }  // namespace trapeze

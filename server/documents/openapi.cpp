@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -130,6 +131,66 @@ Json components_json() {
       {"explode", false},
       {"schema",
        {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["path-centre"] =
+      path_parameter("centre", "Longitude and latitude in degrees, and zoom, with commas between",
+                     {{"type", "string"}});
+  parameters["path-size"] =
+      path_parameter("size", "Width and height in pixels, such as 640x480", {{"type", "string"}});
+  parameters["window"] = {
+      {"name", "bbox"},
+      {"in", "query"},
+      {"required", true},
+      {"description",
+       "West, south, east, north in degrees, or as crs says; where the west is east of the east, "
+       "it "
+       "goes over the antimeridian"},
+      {"style", "form"},
+      {"explode", false},
+      {"schema",
+       {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["window-crs"] = {
+      {"name", "crs"},
+      {"in", "query"},
+      {"description", "What bbox is in, if not in degrees: metres of EPSG:3857"},
+      {"schema", {{"type", "string"}, {"enum", Json::array({"EPSG:3857"})}}}};
+  parameters["map-bbox"] = {
+      {"name", "bbox"},
+      {"in", "query"},
+      {"description", "West, south, east, north in degrees, or as bbox-crs says; without it: all"},
+      {"style", "form"},
+      {"explode", false},
+      {"schema",
+       {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}}}};
+  parameters["bbox-crs"] = {
+      {"name", "bbox-crs"},
+      {"in", "query"},
+      {"description", "What bbox is in"},
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", {kDegreesCrsUri, kTileCrsUri}}}}};
+  parameters["map-crs"] = {
+      {"name", "crs"},
+      {"in", "query"},
+      {"description", "The reference system of the map"},
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", Json::array({kTileCrsUri})}}}};
+  parameters["bgcolor"] = {{"name", "bgcolor"},
+                           {"in", "query"},
+                           {"description", "The background, such as 0xFFFFFF"},
+                           {"schema", {{"type", "string"}}}};
+  parameters["transparent"] = {
+      {"name", "transparent"},
+      {"in", "query"},
+      {"description", "Whether there is no background; true unless bgcolor is given"},
+      {"schema", {{"type", "boolean"}}}};
+  parameters["map-f"] = {{"name", "f"},
+                         {"in", "query"},
+                         {"description", "The format of the map"},
+                         {"schema", {{"type", "string"}, {"enum", {"png", "webp"}}}}};
+  for (const std::string side : {"width", "height"}) {
+    parameters[side] = {
+        {"name", side},
+        {"in", "query"},
+        {"description", "In pixels; without it, it follows from the bbox"},
+        {"schema", {{"type", "integer"}, {"minimum", 1}, {"maximum", kMaxPicturePixels}}}};
+  }
   parameters["z"] = {
       {"name", "z"},
       {"in", "query"},
@@ -178,10 +239,21 @@ std::vector<std::string> names_in(std::string_view path) {
   }
 }
 
+/// Between blanks.
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    words.push_back(word);
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+  }
+  return words;
+}
+
 Json parameters_of(const Route& route) {
   Json list = Json::array();
   for (const std::string& name : names_in(route.path)) list.push_back(reference("path-" + name));
-  if (!route.query.empty()) list.push_back(reference(route.query));
+  for (const std::string_view name : words_of(route.query)) list.push_back(reference(name));
   if (!route.has_style) return list;
   for (const StyleParameter& parameter : style_parameters()) {
     list.push_back(reference(parameter.name));

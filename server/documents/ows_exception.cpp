@@ -21,13 +21,13 @@ constexpr std::string_view kReport =
 </ows:ExceptionReport>
 )";
 
+}  // namespace
+
 std::string_view code_of(const Problem& problem) {
   if (!problem.code.empty()) return problem.code;
   const bool is_about_a_parameter = problem.status < 500 && !problem.parameter.empty();
   return is_about_a_parameter ? ows::kInvalidParameterValue : ows::kNoApplicableCode;
 }
-
-}  // namespace
 
 std::string exception_report(const Problem& problem) {
   const std::string_view code = code_of(problem);

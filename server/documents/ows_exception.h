@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "server/base/problem.h"
 
@@ -15,12 +16,21 @@ constexpr const char* kOperationNotSupported = "OperationNotSupported";
 constexpr const char* kVersionNegotiationFailed = "VersionNegotiationFailed";
 constexpr const char* kTileOutOfRange = "TileOutOfRange";
 constexpr const char* kPointIJOutOfRange = "PointIJOutOfRange";
+constexpr const char* kInvalidFormat = "InvalidFormat";
+constexpr const char* kInvalidCrs = "InvalidCRS";
+constexpr const char* kInvalidSrs = "InvalidSRS";
+constexpr const char* kInvalidPoint = "InvalidPoint";
+constexpr const char* kLayerNotDefined = "LayerNotDefined";
+constexpr const char* kStyleNotDefined = "StyleNotDefined";
 constexpr const char* kNoApplicableCode = "NoApplicableCode";
 }  // namespace ows
 
-/// An ows:ExceptionReport of one exception. Its code is that of the problem; where that has none,
-/// InvalidParameterValue if it names a parameter, else NoApplicableCode. Its locator is the
-/// parameter. Bytes of the request are escaped and cut as problem_json() does.
+/// The code of the problem; where that has none, InvalidParameterValue if it names a parameter,
+/// else NoApplicableCode.
+std::string_view code_of(const Problem& problem);
+
+/// An ows:ExceptionReport of one exception. Its locator is the parameter. Bytes of the request are
+/// escaped and cut as problem_json() does.
 std::string exception_report(const Problem& problem);
 
 }  // namespace trapeze

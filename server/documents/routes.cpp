@@ -8,6 +8,12 @@ namespace {
 
 constexpr std::string_view kJson = "application/json";
 constexpr std::string_view kPng = "image/png";
+constexpr std::string_view kWebp = "image/webp";
+constexpr std::string_view kMapQuery =
+    "map-bbox bbox-crs map-crs width height bgcolor transparent map-f";
+constexpr std::string_view kDatasetMapQuery =
+    "collections map-bbox bbox-crs map-crs width height bgcolor transparent map-f";
+constexpr std::string_view kWindowQuery = "window window-crs width height";
 
 constexpr std::array kRoutes = {
     Route{RouteId::tile, "/tiles/{layers}/{z}/{x}/{y}.png", "getTile", "A tile of 256 pixels", kPng,
@@ -15,7 +21,7 @@ constexpr std::array kRoutes = {
     Route{RouteId::tile_at_2x, "/tiles/{layers}/{z}/{x}/{y}@2x.png", "getTile2x",
           "A tile of 512 pixels", kPng, true},
     Route{RouteId::webp_tile, "/tiles/{layers}/{z}/{x}/{y}.webp", "getWebpTile",
-          "A tile of 256 pixels, as WebP", "image/webp", true},
+          "A tile of 256 pixels, as WebP", kWebp, true},
     Route{RouteId::styled_tile, "/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
           "A tile in a style of the configuration, or one that was posted", kPng},
     Route{RouteId::tile_json_at_2x, "/tiles/{layers}@2x.json", "getTileJson2x",
@@ -24,6 +30,24 @@ constexpr std::array kRoutes = {
           kJson, true},
     Route{RouteId::styled_tile_json, "/tiles/{layers}/s/{style}.json", "getStyledTileJson",
           "TileJSON 3.0 of layers in a style of the configuration, or one that was posted", kJson},
+    Route{RouteId::map_window, "/map/{layers}.png", "getMapPicture",
+          "A picture of a window of the map", kPng, true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}@2x.png", "getMapPicture2x",
+          "The same with twice as many pixels in both directions", kPng, true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}.webp", "getMapPictureWebp", "The same as WebP", kWebp,
+          true, kWindowQuery},
+    Route{RouteId::map_window, "/map/{layers}/s/{style}.png", "getStyledMapPicture",
+          "The same in a style of the configuration, or one that was posted", kPng, false,
+          kWindowQuery},
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}.png", "getMapPictureAround",
+          "A picture around a place", kPng, true},
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}@2x.png", "getMapPictureAround2x",
+          "The same with twice as many pixels in both directions", kPng, true},
+    Route{RouteId::map_around, "/map/{layers}/{centre}/{size}.webp", "getMapPictureAroundWebp",
+          "The same as WebP", kWebp, true},
+    Route{RouteId::map_around, "/map/{layers}/s/{style}/{centre}/{size}.png",
+          "getStyledMapPictureAround",
+          "The same in a style of the configuration, or one that was posted", kPng},
     Route{RouteId::styles, "/styles", "getStyles", "The names of styles", kJson},
     Route{RouteId::style, "/styles/{style}", "getStyle", "A style, by name or id", kJson},
     Route{RouteId::post_style,
@@ -43,6 +67,7 @@ constexpr std::array kRoutes = {
     Route{RouteId::values, "/values/{layer}/{attribute}", "getValues",
           "The values of an attribute, and how they are spread", kJson, true, "bbox"},
     Route{RouteId::catalog, "/catalog", "getCatalog", "The layers and the parameters", kJson},
+    Route{RouteId::wms, "/wms", {}, "WMS 1.3.0 and 1.1.1, by key-value pairs", "text/xml"},
     Route{RouteId::wmts_capabilities, "/wmts.xml", "getWmtsCapabilities", "WMTS 1.0.0 capabilities",
           "application/xml"},
     Route{
@@ -73,6 +98,8 @@ constexpr std::array kRoutes = {
     Route{RouteId::collections, "/ogc/collections", "getCollections", "The layers", kJson},
     Route{RouteId::collection, "/ogc/collections/{collectionId}", "getCollection", "A layer",
           kJson},
+    Route{RouteId::collection_map, "/ogc/collections/{collectionId}/map",
+          "trapeze.collection.getMap", "A map of a layer", kPng, true, kMapQuery},
     Route{RouteId::collection_tilesets, "/ogc/collections/{collectionId}/map/tiles",
           "trapeze.collection.map.getTileSetsList", "The tilesets of a layer", kJson, true},
     Route{RouteId::collection_tileset,
@@ -82,6 +109,8 @@ constexpr std::array kRoutes = {
           "/ogc/collections/{collectionId}/map/tiles/{tileMatrixSetId}/{tileMatrix}/{tileRow}/"
           "{tileCol}",
           "trapeze.collection.map.getTile", "A tile of a layer", kPng, true},
+    Route{RouteId::dataset_map, "/ogc/map", "trapeze.dataset.getMap", "A map of all layers", kPng,
+          true, kDatasetMapQuery},
     Route{RouteId::dataset_tilesets, "/ogc/map/tiles", "trapeze.dataset.map.getTileSetsList",
           "The tilesets of all layers", kJson, true, "collections"},
     Route{RouteId::dataset_tileset, "/ogc/map/tiles/{tileMatrixSetId}",
@@ -96,8 +125,8 @@ constexpr std::array kRoutes = {
 };
 
 constexpr std::array<std::string_view, kAreas> kAreaNames = {
-    "tiles", "legend", "identify", "values", "catalog", "styles",
-    "wmts",  "ogc",    "health",   "ready",  "metrics", "other"};
+    "tiles", "map",  "legend", "identify", "values", "catalog", "styles",
+    "wms",   "wmts", "ogc",    "health",   "ready",  "metrics", "other"};
 
 /// Takes the first segment off a path, and the slash before it.
 constexpr std::string_view take_segment(std::string_view& path) {

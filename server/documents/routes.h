@@ -15,11 +15,13 @@ namespace trapeze {
 /// What the first segment of a path says.
 enum class Area : std::uint8_t {
   tiles,
+  map,
   legend,
   identify,
   values,
   catalog,
   styles,
+  wms,
   wmts,
   ogc,
   health,
@@ -43,6 +45,8 @@ enum class RouteId : std::uint8_t {
   tile_json_at_2x,
   tile_json,
   styled_tile_json,
+  map_window,
+  map_around,
   styles,
   style,
   post_style,
@@ -51,6 +55,7 @@ enum class RouteId : std::uint8_t {
   identify,
   values,
   catalog,
+  wms,
   wmts_capabilities,
   wmts_key_values,
   wmts_version_capabilities,
@@ -64,9 +69,11 @@ enum class RouteId : std::uint8_t {
   api,
   collections,
   collection,
+  collection_map,
   collection_tilesets,
   collection_tileset,
   collection_tile,
+  dataset_map,
   dataset_tilesets,
   dataset_tileset,
   dataset_tile,
@@ -81,7 +88,7 @@ struct Route {
   std::string_view summary;
   std::string_view content_type;
   bool has_style = false;       // takes the parameters of styles
-  std::string_view query = {};  // another query parameter that it takes
+  std::string_view query = {};  // others that it takes, as OpenAPI names them, blanks between
   std::string_view method = "GET";
 };
 

@@ -13,6 +13,7 @@ constexpr std::string_view kTileMatrixSetUri =
     "http://www.opengis.net/def/tilematrixset/OGC/1.0/WebMercatorQuad";
 constexpr std::string_view kTileMatrixSetTitle = "Google Maps Compatible for the World";
 constexpr std::string_view kTileCrsUri = "http://www.opengis.net/def/crs/EPSG/0/3857";
+constexpr std::string_view kDegreesCrsUri = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr std::string_view kTileScaleSetUri =
     "http://www.opengis.net/def/wkss/OGC/1.0/GoogleMapsCompatible";
 

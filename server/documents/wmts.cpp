@@ -106,7 +106,7 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
     xml += style_xml(config.name, style, base_url);
   }
   xml += fmt::format("      <Format>{}</Format>\n", kWmtsFormat);
-  for (const WmtsInfoFormat& format : wmts_info_formats()) {
+  for (const InfoFormat& format : info_formats()) {
     xml += fmt::format("      <InfoFormat>{}</InfoFormat>\n", format.name);
   }
   xml += fmt::format(R"(      <TileMatrixSetLink>
@@ -119,7 +119,7 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
       fmt::format("{}/wmts/{}/{{Style}}/{{TileMatrixSet}}/{{TileMatrix}}/{{TileRow}}/{{TileCol}}",
                   base_url, config.name);
   xml += resource_xml(kWmtsFormat, "tile", tile + ".png");
-  for (const WmtsInfoFormat& format : wmts_info_formats()) {
+  for (const InfoFormat& format : info_formats()) {
     if (format.ending.empty()) continue;
     xml += resource_xml(format.name, "FeatureInfo",
                         fmt::format("{}/{{J}}/{{I}}{}", tile, format.ending));
@@ -188,13 +188,13 @@ Result<Document> wmts_document(const DocumentRequest& request) {
   return Document{info->content_type, *std::move(text)};
 }
 
-std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request) {
+std::optional<Result<PictureRequest>> parse_wmts_tile(const DocumentRequest& request) {
   auto parsed = parse_wmts_request(request);
-  if (!parsed) return std::move(parsed).problem();
+  if (!parsed) return Result<PictureRequest>(std::move(parsed).problem());
   WmtsRequest asked = *std::move(parsed);
   auto* tile = std::get_if<TileRequest>(&asked);
   if (tile == nullptr) return std::nullopt;
-  return std::move(*tile);
+  return Result<PictureRequest>(std::move(*tile));
 }
 
 }  // namespace trapeze

@@ -5,7 +5,7 @@
 
 #include "server/base/result.h"
 #include "server/documents/document.h"
-#include "server/tiles/tile_request.h"
+#include "server/tiles/window_request.h"
 
 namespace trapeze {
 
@@ -14,6 +14,6 @@ Result<Document> wmts_document(const DocumentRequest& request);
 
 /// The tile that is asked for, or what is wrong with the request; nothing if a document is asked
 /// for.
-std::optional<Result<TileRequest>> parse_wmts_tile(const DocumentRequest& request);
+std::optional<Result<PictureRequest>> parse_wmts_tile(const DocumentRequest& request);
 
 }  // namespace trapeze

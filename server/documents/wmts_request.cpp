@@ -12,8 +12,8 @@
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
-#include "server/base/nearest_name.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/key_value_pairs.h"
 #include "server/documents/ows_exception.h"
 
 namespace trapeze {
@@ -26,107 +26,13 @@ constexpr std::array<std::string_view, 15> kKeys = {
     "I",       "J",       "InfoFormat",
 };
 
-constexpr std::array kInfoFormats = {
-    WmtsInfoFormat{"application/geo+json", ".json", "application/geo+json", IdentifyFormat::json},
-    WmtsInfoFormat{"application/json", "", "application/json", IdentifyFormat::json},
-    WmtsInfoFormat{"text/plain", ".txt", "text/plain; charset=utf-8", IdentifyFormat::text},
-    WmtsInfoFormat{"text/html", ".html", "text/html; charset=utf-8", IdentifyFormat::html},
-};
-
-Problem wmts_problem(int status, const char* code, std::string_view key, std::string detail,
-                     std::string value = {}) {
-  Problem problem{status, std::move(detail), std::string(key), std::move(value), {}};
-  problem.code = code;
-  return problem;
-}
-
-Problem missing(std::string_view key, std::string_view takes) {
-  return wmts_problem(400, ows::kMissingParameterValue, key,
-                      fmt::format("{} is missing. It takes {}.", key, takes));
-}
-
-Problem invalid(std::string_view key, std::string_view takes, const std::string& value,
-                int status = 400) {
-  return wmts_problem(status, ows::kInvalidParameterValue, key,
-                      fmt::format("{} takes {}.", key, takes), value);
-}
-
-/// A query, divided.
-struct KeyValuePairs {
-  std::array<std::optional<std::string>, kKeys.size()> values;
-  std::vector<QueryPair> others;
-
-  const std::optional<std::string>& operator[](std::string_view key) const {
-    return values[static_cast<std::size_t>(std::ranges::find(kKeys, key) - kKeys.begin())];
-  }
-};
-
-bool is_like_a_style_parameter(const std::string& name) {
-  const std::string_view parameter = std::string_view(name).substr(name.rfind('.') + 1);
-  if (parameter == kFreeParameter) return true;
-  std::vector<std::string> known;
-  for (const StyleParameter& style : style_parameters()) known.emplace_back(style.name);
-  return nearest_name(parameter, known).has_value();
-}
-
-std::vector<QueryPair> style_pairs(std::span<const QueryPair> query) {
-  std::vector<QueryPair> pairs;
-  for (const QueryPair& pair : query) {
-    if (is_like_a_style_parameter(pair.first)) pairs.push_back(pair);
-  }
-  return pairs;
-}
-
-Result<KeyValuePairs> divide(std::span<const QueryPair> query) {
-  KeyValuePairs pairs;
-  std::vector<QueryPair> others;
-  for (const auto& [name, value] : query) {
-    const std::string lower = in_lower_case(name);
-    const auto key = std::ranges::find_if(kKeys, [&lower](std::string_view known) {
-      return in_lower_case(std::string(known)) == lower;
-    });
-    if (key == kKeys.end()) {
-      others.emplace_back(name, value);
-      continue;
-    }
-    auto& place = pairs.values[static_cast<std::size_t>(key - kKeys.begin())];
-    if (place) return invalid(*key, "one value, once", value);
-    place = value;
-  }
-  pairs.others = style_pairs(others);
-  return pairs;
-}
-
-bool is_equal(std::string_view a, std::string_view b) {
-  return in_lower_case(a) == in_lower_case(b);
-}
-
-/// A key that takes one value only.
-std::optional<Problem> check(const KeyValuePairs& pairs, std::string_view key,
-                             std::string_view value) {
-  const auto& given = pairs[key];
-  if (!given || given->empty()) return missing(key, value);
-  if (!is_equal(*given, value)) return invalid(key, value, *given);
-  return std::nullopt;
-}
-
-std::vector<std::string_view> split_list(std::string_view list) {
-  std::vector<std::string_view> items;
-  while (!list.empty()) {
-    const std::size_t comma = std::min(list.find(','), list.size());
-    items.push_back(list.substr(0, comma));
-    list.remove_prefix(std::min(comma + 1, list.size()));
-  }
-  return items;
-}
-
 Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
   if (const auto& versions = pairs["AcceptVersions"]; versions && !versions->empty()) {
     const auto accepted = split_list(*versions);
     if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
-      return wmts_problem(400, ows::kVersionNegotiationFailed, "AcceptVersions",
-                          fmt::format("This is WMTS {}, and no other version.", kWmtsVersion),
-                          *versions);
+      return ows_problem(400, ows::kVersionNegotiationFailed, "AcceptVersions",
+                         fmt::format("This is WMTS {}, and no other version.", kWmtsVersion),
+                         *versions);
     }
   }
   WmtsCapabilitiesRequest request;
@@ -191,7 +97,7 @@ Result<std::uint32_t> number_in(std::string_view key, const std::string& text, s
   const ParsedNumber number = parse_number(text);
   if (number.kind == NumberKind::none) return invalid(key, takes, text);
   if (number.kind == NumberKind::outside || number.value < min || number.value > max) {
-    return wmts_problem(status, code, key, fmt::format("{} takes {}.", key, takes), text);
+    return ows_problem(status, code, key, fmt::format("{} takes {}.", key, takes), text);
   }
   return number.value;
 }
@@ -251,8 +157,8 @@ Result<TileId> tile_id_of(const TileParts& parts, std::span<const std::string> l
   if (!zoom) return zoom.problem();
   const auto limits = limits_of(layers, *zoom, dataset);
   if (!limits) {
-    return wmts_problem(404, ows::kTileOutOfRange, "TileMatrix",
-                        "The layer is not drawn at this TileMatrix.", parts.matrix);
+    return ows_problem(404, ows::kTileOutOfRange, "TileMatrix",
+                       "The layer is not drawn at this TileMatrix.", parts.matrix);
   }
   const auto row =
       number_in("TileRow", parts.row, limits->min_row, limits->max_row, ows::kTileOutOfRange, 404);
@@ -299,7 +205,7 @@ Point place_in(TileId tile, std::uint32_t i, std::uint32_t j) {
 }
 
 Result<WmtsRequest> info_of(const TileParts& parts, const std::string& i, const std::string& j,
-                            const WmtsInfoFormat& format, const DocumentRequest& request) {
+                            const InfoFormat& format, const DocumentRequest& request) {
   auto tile = tile_of(parts, request);
   if (!tile) return std::move(tile).problem();
   const auto column = number_in("I", i, 0, kTilePixels - 1, ows::kPointIJOutOfRange, 400);
@@ -353,13 +259,13 @@ Result<WmtsRequest> key_value_info(const KeyValuePairs& pairs, const DocumentReq
   const auto& name = pairs["InfoFormat"];
   if (!name || name->empty()) return missing("InfoFormat", takes);
   const auto format = std::ranges::find_if(
-      kInfoFormats, [&name](const WmtsInfoFormat& known) { return is_equal(known.name, *name); });
-  if (format == kInfoFormats.end()) return invalid("InfoFormat", takes, *name);
+      info_formats(), [&name](const InfoFormat& known) { return is_equal(known.name, *name); });
+  if (format == info_formats().end()) return invalid("InfoFormat", takes, *name);
   return info_of(*parts, *pairs["I"], *pairs["J"], *format, request);
 }
 
 Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
-  const auto divided = divide(request.query);
+  const auto divided = divide(request.query, kKeys);
   if (!divided) return divided.problem();
   const KeyValuePairs& pairs = *divided;
   if (auto problem = check(pairs, "Service", "WMTS")) return std::move(*problem);
@@ -374,8 +280,8 @@ Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
     if (!parts) return parts.problem();
     return as_request(tile_of(*parts, request));
   }
-  return wmts_problem(501, ows::kOperationNotSupported, *operation,
-                      "Request takes GetCapabilities, GetTile or GetFeatureInfo.", *operation);
+  return ows_problem(501, ows::kOperationNotSupported, *operation,
+                     "Request takes GetCapabilities, GetTile or GetFeatureInfo.", *operation);
 }
 
 Problem nothing_here() {
@@ -399,18 +305,14 @@ Result<WmtsRequest> parse_info_path(const DocumentRequest& request) {
   const std::string& file = request.path[8];
   const std::size_t end = std::min(file.rfind('.'), file.size());
   const std::string_view ending = std::string_view(file).substr(end);
-  const auto format = std::ranges::find_if(kInfoFormats, [ending](const WmtsInfoFormat& known) {
+  const auto format = std::ranges::find_if(info_formats(), [ending](const InfoFormat& known) {
     return !ending.empty() && known.ending == ending;
   });
-  if (format == kInfoFormats.end()) return nothing_here();
+  if (format == info_formats().end()) return nothing_here();
   return info_of(parts_of_path(request), file.substr(0, end), request.path[7], *format, request);
 }
 
 }  // namespace
-
-std::span<const WmtsInfoFormat> wmts_info_formats() {
-  return kInfoFormats;
-}
 
 TileLimits wmts_limits(const ServedLayer& layer, int zoom) {
   const Box& bounds = layer.layer->bounds();

@@ -40,15 +40,6 @@ struct WmtsFeatureInfoRequest {
 
 using WmtsRequest = std::variant<WmtsCapabilitiesRequest, TileRequest, WmtsFeatureInfoRequest>;
 
-/// The media types that GetFeatureInfo answers in, and the endings of their addresses.
-struct WmtsInfoFormat {
-  std::string_view name;
-  std::string_view ending;  // empty: by key-value pairs only
-  std::string_view content_type;
-  IdentifyFormat format;
-};
-std::span<const WmtsInfoFormat> wmts_info_formats();
-
 /// The tiles of a zoom in which the layer may show something: outside, there is no tile to WMTS.
 /// With a margin for outlines.
 TileLimits wmts_limits(const ServedLayer& layer, int zoom);

@@ -41,6 +41,7 @@ SiteOptions site_options(const Config& config) {
   options.max_layers = config.limits.layers;
   options.max_scale = config.limits.scale;
   options.max_zoom = config.limits.zoom;
+  options.map_pixels = config.limits.map_pixels;
   options.drawn_per_second = config.limits.drawn_per_second;
   options.drawn_burst = config.limits.drawn_burst;
   options.tile_cost = config.limits.tile_cost;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "render/picture/webp.h"
 #include "server/base/content_hash.h"
 #include "server/base/json_text.h"
 #include "server/base/url.h"
@@ -16,15 +17,20 @@
 #include "server/documents/document.h"
 #include "server/documents/identify.h"
 #include "server/documents/legend.h"
+#include "server/documents/map_picture.h"
 #include "server/documents/ogc_api.h"
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
+#include "server/documents/tile_matrix_set.h"
+#include "server/documents/wms.h"
+#include "server/documents/wms_exception.h"
 #include "server/documents/wmts.h"
 #include "server/documents/wmts_request.h"
 #include "server/http/content_encoding.h"
 #include "server/service/metrics.h"
 #include "server/styles/style_document.h"
 #include "server/tiles/drawing_cost.h"
+#include "server/tiles/map_window.h"
 #include "server/tiles/paint_stages.h"
 
 namespace trapeze {
@@ -39,7 +45,8 @@ constexpr std::string_view kDocumentCaching = "no-cache";
 
 constexpr std::uint64_t kDocumentCost = 500'000;  // as drawing_cost() counts: 20 ms
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
-constexpr int kClientGone = 499;  // as nginx logs it; there is nobody to read it
+constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture that tells what is wrong
+constexpr int kClientGone = 499;                    // as nginx logs it; there is nobody to read it
 
 // An address may post an eighth of the styles that are kept, and as much again each hour: so others
 // keep theirs.
@@ -57,7 +64,7 @@ Problem too_large_style(std::size_t length, const SiteOptions& options) {
 
 Problem too_dear(std::uint64_t most) {
   return {400,
-          fmt::format("This tile takes more drawing than the {} units that one may take here. "
+          fmt::format("This picture takes more drawing than the {} units that one may take here. "
                       "Ask for a coarser simplify, a smaller scale, fewer layers or no outlines.",
                       most)};
 }
@@ -78,9 +85,9 @@ HttpResponse not_ready(const Json& state) {
 
 void allow_every_origin(HttpResponse& response) {
   response.headers.emplace_back("Access-Control-Allow-Origin", "*");
-  response.headers.emplace_back(
-      "Access-Control-Expose-Headers",
-      "ETag, OATiles-hint, Retry-After, Server-Timing, X-Cache, X-Tile-Cost");
+  response.headers.emplace_back("Access-Control-Expose-Headers",
+                                "Content-Bbox, Content-Crs, ETag, OATiles-hint, Retry-After, "
+                                "Server-Timing, X-Cache, X-Tile-Cost");
   response.headers.emplace_back("Timing-Allow-Origin", "*");
 }
 
@@ -198,13 +205,33 @@ HttpResponse answered_response(const TileAnswer& answer, const std::string& if_n
 
 /// What is wrong, as clients of WMTS expect to be told. By key-value pairs nothing is "not found":
 /// the address is always the same.
-HttpResponse in_words_of_wmts(HttpResponse response, std::string_view path) {
+HttpResponse in_words_of_wmts(HttpResponse response, std::string_view target) {
   if (response.problem == nullptr) return response;
+  const auto split = split_target(target);
+  const std::string_view path = split ? split->path : std::string_view();
   if (response.status == 404 && is_wmts_key_value_path(path)) response.status = 400;
   for (auto& [name, value] : response.headers) {
     if (name == "Content-Type") value = "application/xml";
   }
   response.body = std::make_shared<const std::string>(exception_report(*response.problem));
+  return response;
+}
+
+/// What is wrong, as clients of WMS ask to be told. A picture that tells of it is shown by them
+/// only if all seems well.
+HttpResponse in_words_of_wms(HttpResponse response, std::string_view target, const Fonts& fonts,
+                             std::uint64_t most_pixels) {
+  if (response.problem == nullptr) return response;
+  const auto split = split_target(target);
+  const auto query = decode_query(split ? split->query : std::string_view());
+  Document told = wms_exception(*response.problem, query.value_or(std::vector<QueryPair>()), fonts,
+                                std::min(most_pixels, kMostToldPixels));
+  if (response.status == 404) response.status = 400;  // the address is always the same
+  if (told.content_type.starts_with("image/")) response.status = 200;
+  for (auto& [name, value] : response.headers) {
+    if (name == "Content-Type") value = told.content_type;
+  }
+  response.body = std::make_shared<const std::string>(std::move(told.bytes));
   return response;
 }
 
@@ -219,6 +246,26 @@ HttpResponse undrawn_response(TileOutcome outcome) {
     default:
       return problem_response({500, "The tile could not be drawn."});
   }
+}
+
+/// All that there is below /map are pictures.
+std::optional<Result<PictureRequest>> find_map_picture(const DocumentRequest& request) {
+  auto window = parse_map_picture(request);
+  if (!window) return Result<PictureRequest>(std::move(window).problem());
+  return Result<PictureRequest>(*std::move(window));
+}
+
+/// Of a picture, in metres: west, south, east, north.
+std::string bounds_text(const View& view) {
+  const auto x = static_cast<double>(view.origin_x);
+  const auto y = static_cast<double>(view.origin_y);
+  const GridPosition from = metres_from_grid(x, y + view.height * view.cells_per_row());
+  const GridPosition to = metres_from_grid(x + view.width * view.cells_per_pixel, y);
+  return fmt::format("{:.3f},{:.3f},{:.3f},{:.3f}", from.x, from.y, to.x, to.y);
+}
+
+std::uint64_t pixels_of(const View& view) {
+  return static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
 }
 
 std::vector<std::size_t> layers_of(const TilePlan& plan) {
@@ -248,14 +295,18 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
 void Site::handle(const HttpRequest& request, Respond respond) const {
   const auto target = split_target(request.target);
   const std::string_view path = target ? target->path : std::string_view();
-  const bool is_wmts = area_of(path) == Area::wmts;
-  const auto respond_to_all = [respond = std::move(respond), is_wmts,
-                               path = is_wmts ? std::string(path)
-                                              : std::string()](HttpResponse response) {
-    if (is_wmts) response = in_words_of_wmts(std::move(response), path);
-    allow_every_origin(response);
-    respond(std::move(response));
-  };
+  const Area area = area_of(path);
+  const bool has_own_words = area == Area::wmts || area == Area::wms;
+  // The last answers come while the service ends, when this site may be gone.
+  const auto respond_to_all =
+      [respond = std::move(respond), area, fonts = options_.fonts, most = options_.map_pixels,
+       target = has_own_words ? request.target : std::string()](HttpResponse response) {
+        if (area == Area::wmts) response = in_words_of_wmts(std::move(response), target);
+        if (area == Area::wms)
+          response = in_words_of_wms(std::move(response), target, *fonts, most);
+        allow_every_origin(response);
+        respond(std::move(response));
+      };
   if (request.method == "OPTIONS") return respond_to_all(answer_options(path));
   if (!understands(path, request.method)) {
     return respond_to_all(refuse_method(request.method, path));
@@ -278,7 +329,11 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
     case Area::values:
       return handle_document({values_document}, target, request, respond);
     case Area::ogc:
-      return handle_document({ogc_document, parse_ogc_tile}, target, request, respond);
+      return handle_document({ogc_document, parse_ogc_picture}, target, request, respond);
+    case Area::map:
+      return handle_document({nullptr, find_map_picture}, target, request, respond);
+    case Area::wms:
+      return handle_document({wms_document, parse_wms_map}, target, request, respond);
     case Area::wmts:
       return handle_document({wmts_document, parse_wmts_tile}, target, request, respond);
     case Area::styles:
@@ -459,13 +514,13 @@ HttpResponse Site::answer_file(const Target& target, const HttpRequest& request)
 void Site::handle_tiles(const Target& target, const HttpRequest& request,
                         const Respond& respond) const {
   if (answer_known(request, respond)) return;
-  const auto parsed = parse_tiles_target(target, *styles_);
+  auto parsed = parse_tiles_target(target, *styles_);
   if (!parsed) return respond(problem_response(parsed.problem()));
-  const auto& tiles = *parsed;
+  auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
     return send_json(request, tile_json_of(*tile_json, request), respond);
   }
-  handle_tile(std::get<TileRequest>(tiles), request, respond);
+  handle_picture(std::get<TileRequest>(std::move(tiles)), request, respond);
 }
 
 /// False if the target is not known, or the tile has to be drawn.
@@ -504,11 +559,12 @@ void Site::handle_document(const Documents& documents, const Target& target,
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
   std::string key = fmt::format("{} {}", *base, request.target);
-  const DocumentRequest asked{*dataset,         *styles_,         *options_.fonts,
-                              *std::move(base), std::move(*path), *std::move(query)};
-  if (const auto tile = documents.find_tile ? documents.find_tile(asked) : std::nullopt) {
-    const Result<TileRequest>& found = *tile;
-    return found ? handle_tile(*found, request, respond)
+  const DocumentRequest asked{*dataset,           *styles_,         *options_.fonts,
+                              *std::move(base),   std::move(*path), *std::move(query),
+                              options_.map_pixels};
+  if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
+    Result<PictureRequest>& found = *picture;
+    return found ? handle_picture(*std::move(found), request, respond)
                  : respond(problem_response(found.problem()));
   }
   if (const auto kept = documents_->find(dataset, key)) {
@@ -551,20 +607,62 @@ std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",
                    fmt::format("{}x", tile.scale), fmt::format("1x to {}x", options_.max_scale)};
   }
-  if (tile.layers.size() > options_.max_layers) {
-    return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers),
-                   "layers", fmt::format("{} layers", tile.layers.size()),
-                   fmt::format("at most {} layers", options_.max_layers)};
-  }
-  return std::nullopt;
+  return find_excess(tile.layers);
 }
 
-void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
-                       const Respond& respond) const {
-  if (const auto excess = find_excess(tile)) return respond(problem_response(*excess));
+std::optional<Problem> Site::find_excess(std::span<const std::string> layers) const {
+  if (layers.size() <= options_.max_layers) return std::nullopt;
+  return Problem{400, fmt::format("A tile shows at most {} layers.", options_.max_layers), "layers",
+                 fmt::format("{} layers", layers.size()),
+                 fmt::format("at most {} layers", options_.max_layers)};
+}
+
+std::optional<Problem> Site::find_excess(const WindowRequest& window) const {
+  const View& view = window.view;
+  const std::string size = fmt::format("{} x {}", view.width, view.height);
+  if (pixels_of(view) > options_.map_pixels) {
+    return Problem{400, fmt::format("A picture has at most {} pixels here.", options_.map_pixels),
+                   "width", size,
+                   fmt::format("width times height of at most {}", options_.map_pixels)};
+  }
+  if (window.format == TileFormat::webp && std::max(view.width, view.height) > kMaxWebpPixels) {
+    return Problem{400, fmt::format("WebP is at most {} pixels wide and high.", kMaxWebpPixels),
+                   "width", size, fmt::format("1 to {}", kMaxWebpPixels)};
+  }
+  const double zoom = zoom_of(view, window.scale);
+  if (zoom > options_.max_zoom) {
+    return Problem{400,
+                   fmt::format("The pixels are smaller than those of zoom {}, which is the last.",
+                               options_.max_zoom),
+                   "bbox", fmt::format("zoom {:.2f}", zoom),
+                   fmt::format("a window of zoom 0 to {}", options_.max_zoom)};
+  }
+  return find_excess(window.layers);
+}
+
+void Site::handle_picture(PictureRequest asked, const HttpRequest& request,
+                          const Respond& respond) const {
+  const auto excess =
+      std::visit([this](const auto& picture) { return find_excess(picture); }, asked);
+  if (excess) return respond(problem_response(*excess));
+  if (auto* tile = std::get_if<TileRequest>(&asked)) {
+    return handle_window(window_of(std::move(*tile)), request, respond);
+  }
+  const auto& window = std::get<WindowRequest>(asked);
+  handle_window(window, request, [respond, bounds = bounds_text(window.view)](HttpResponse answer) {
+    if (answer.problem == nullptr) {
+      answer.headers.emplace_back("Content-Bbox", bounds);
+      answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", kTileCrsUri));
+    }
+    respond(std::move(answer));
+  });
+}
+
+void Site::handle_window(const WindowRequest& window, const HttpRequest& request,
+                         const Respond& respond) const {
   auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
-  auto planned = plan_tile(tile, std::move(dataset));
+  auto planned = plan_window(window, std::move(dataset));
   if (!planned) {
     return respond(problem_response(planned.problem()));
   }
@@ -575,7 +673,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   TileService::Order order;
   order.key = plan.key();
   if (std::string fingerprint = known_fingerprints_->find(order.key); !fingerprint.empty()) {
-    KnownTarget known{std::move(fingerprint), tile.format, layers_of(plan)};
+    KnownTarget known{std::move(fingerprint), window.format, layers_of(plan)};
     if (auto held = find_held(request, known)) {
       if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
         known_targets_->insert(plan.dataset, request.target, std::move(known));
@@ -591,7 +689,7 @@ void Site::handle_tile(const TileRequest& tile, const HttpRequest& request,
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
   // The last answers come while the service ends, when this site may be gone.
   auto answer_with = [&cache = cache_, fingerprints = known_fingerprints_, key = order.key, respond,
-                      head = TileHead{tile.format, options_.cache_control},
+                      head = TileHead{window.format, options_.cache_control},
                       if_none_match = request.if_none_match, cost](const TileAnswer& answer) {
     if (!answer.is_known()) return respond(undrawn_response(answer.outcome));
     fingerprints->insert(key, answer.tile.fingerprint);

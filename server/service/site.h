@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,7 @@
 #include "server/styles/style_book.h"
 #include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_service.h"
+#include "server/tiles/window_request.h"
 
 namespace trapeze {
 
@@ -42,6 +44,7 @@ struct SiteOptions {
   std::size_t max_layers = kMaxLayersPerTile;  // of one tile
   int max_scale = kMaxScale;
   int max_zoom = kMaxZoom;
+  std::uint64_t map_pixels = defaults::kMapPixels;  // of a picture of a window
   /// Tiles that one address may have drawn, as RateLimit takes them; 0: as many as it likes.
   double drawn_per_second = 0;
   double drawn_burst = 1;
@@ -77,10 +80,10 @@ class Site {
   void handle(const HttpRequest& request, Respond respond) const;
 
  private:
-  /// What makes documents, and perhaps finds that a tile is asked for.
+  /// What makes documents, and perhaps finds that a picture of the map is asked for.
   struct Documents {
     Result<Document> (*make)(const DocumentRequest& request);
-    std::optional<Result<TileRequest>> (*find_tile)(const DocumentRequest& request) = nullptr;
+    std::optional<Result<PictureRequest>> (*find_picture)(const DocumentRequest& request) = nullptr;
   };
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
@@ -102,14 +105,18 @@ class Site {
                        const Respond& respond) const;
   bool answer_known(const HttpRequest& request, const Respond& respond) const;
   std::optional<HttpResponse> find_held(const HttpRequest& request, const KnownTarget& tile) const;
-  void handle_tile(const TileRequest& tile, const HttpRequest& request,
-                   const Respond& respond) const;
+  void handle_picture(PictureRequest asked, const HttpRequest& request,
+                      const Respond& respond) const;
+  void handle_window(const WindowRequest& window, const HttpRequest& request,
+                     const Respond& respond) const;
   HttpResponse answer_metrics() const;
   /// The response to a client that has asked for too much lately; null if it has not. Counts what
   /// it asks for now.
   std::optional<HttpResponse> find_impatience(const HttpRequest& request, std::uint64_t cost) const;
-  /// What of a tile is beyond the limits of this site.
+  /// What of a picture is beyond the limits of this site.
   std::optional<Problem> find_excess(const TileRequest& tile) const;
+  std::optional<Problem> find_excess(const WindowRequest& window) const;
+  std::optional<Problem> find_excess(std::span<const std::string> layers) const;
   /// How the client reached this server, as the beginning of a URL; nothing if it does not say, or
   /// says nonsense.
   Result<std::string> base_url(const HttpRequest& request) const;

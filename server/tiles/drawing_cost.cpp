@@ -5,6 +5,7 @@
 
 #include "core/mesh/visible_parts.h"
 #include "server/tiles/layer_drawing.h"
+#include "server/tiles/map_window.h"
 
 namespace trapeze {
 namespace {
@@ -14,7 +15,7 @@ std::uint64_t pixels_of(const View& view) {
 }
 
 std::uint64_t cost_of_outlines(std::uint64_t edges, const Stroke& stroke, const View& view,
-                               int scale) {
+                               double scale) {
   const std::uint64_t sides = stroke.is_dashed() ? kSidesPerDashedEdge : kSidesPerOutlineEdge;
   return edges * sides + stroke.most_values(edges, view, scale) / kPixelsPerSide;
 }
@@ -70,10 +71,9 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
 }  // namespace
 
 std::uint64_t drawing_cost(const TilePlan& plan) {
-  const View view = View::of_tile(plan.tile, plan.scale);
-  std::uint64_t cost = pixels_of(view) / kPixelsPerSide;
-  for (const LayerPaint& paint : plan.layers) {
-    cost += cost_of_layer(plan, paint, view);
+  std::uint64_t cost = pixels_of(plan.view) / kPixelsPerSide;
+  for (const View& copy : views_of_copies(plan.view)) {
+    for (const LayerPaint& paint : plan.layers) cost += cost_of_layer(plan, paint, copy);
   }
   return cost;
 }

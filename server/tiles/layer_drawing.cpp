@@ -59,8 +59,9 @@ bool is_on_frame(Point a, Point b) {
   return (a.x == b.x && is_antimeridian(a)) || (is_pole(a) && is_pole(b));
 }
 
-InkOfLoops ink_of_loops(const Stroke& stroke, const View& view, int scale) {
-  const double cells = view.cells_per_pixel * scale;  // of a pixel of scale 1
+InkOfLoops ink_of_loops(const Stroke& stroke, const View& view, double scale) {
+  // Of the side of a square as large as a pixel of scale 1.
+  const double cells = view.cells_per_pixel * std::sqrt(view.stretch) * scale;
   InkOfLoops ink;
   for (int size = 0; size < kLoopSizes; ++size) {
     ink[static_cast<std::size_t>(size)] =
@@ -164,7 +165,7 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
 
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Stroke& stroke = paint.style.stroke;
-  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) * view.longer_side() : 0;
   // Dust that many features share has no class.
   const bool has_classes = !paint.style.classing.is_plain();
   return {with_margin(view.box(), reach), paint.level, plan.pixel_level(),
@@ -179,6 +180,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
                           const FeatureClasses* classes, DrawingTools& tools) {
   paint_ = &paint;
   layer_ = &plan.layer_of(paint);
+  view_ = view;
   class_count_ = 0;
   line_count_ = 0;
   by_number_.assign(style().paints.size(), nullptr);
@@ -190,9 +192,9 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   layer_->select(selection, tools.ranges);
   check();
   part_by_class(classes, selection, tools);
-  add_places(selection, view, classes, tools);
+  add_places(selection, classes, tools);
   check();
-  for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, view, classes_[i]);
+  for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
   if (has_lines()) {
     collect_edges(selection, ink_of_loops(style().stroke, view, plan.scale), classes, tools);
     leave_out_empty_lines();
@@ -374,21 +376,21 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
 }
 
 // There are no more of them, in one class, than pixels.
-void LayerDrawing::add_places(const Layer::Selection& selection, const View& view,
-                              const FeatureClasses* classes, DrawingTools& tools) {
+void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureClasses* classes,
+                              DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
-  const auto pixel = static_cast<std::int64_t>(std::ceil(view.cells_per_pixel));
+  const auto pixel = static_cast<std::int64_t>(std::ceil(view_.shorter_side()));
   // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
   // picture.
   Layer::Selection around = selection;
-  around.box = with_margin(selection.box, 2 * view.cells_per_pixel);
+  around.box = with_margin(selection.box, 2 * view_.longer_side());
   if (classes == nullptr && is_kept) {
     layer_->small_polygons(around, tools.places);
     for (const Box& place : tools.places) class_drawing(0).add_place(widened(place, pixel), false);
   }
   const GrainIndex::Births births = births_of_dust(*paint_, selection);
   if (births.is_empty()) return;
-  tools.dust.gather(layer_->grains(), {around.box, births, view.cells_per_pixel},
+  tools.dust.gather(layer_->grains(), {around.box, births, view_.shorter_side()},
                     classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
   for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
@@ -401,11 +403,10 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const View& vie
   }
 }
 
-void LayerDrawing::finish_class(const Layer::Selection& selection, const View& view,
-                                ClassDrawing& drawing) {
+void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing& drawing) {
   const bool has_made = !drawing.made_trapezoids.empty();
   if (drawing.alpha == 0 && !has_pattern()) return;
-  drawing.is_full = !has_made && layer_->fill_box(selection, drawing.ranges);
+  drawing.is_full = !has_made && view_.is_on_world() && layer_->fill_box(selection, drawing.ranges);
   if (drawing.is_full) return;
   if (!drawing.ranges.empty()) drawing.parts.push_back({layer_->mesh(), drawing.ranges});
   if (has_made) {
@@ -414,8 +415,8 @@ void LayerDrawing::finish_class(const Layer::Selection& selection, const View& v
     drawing.all_made = {0, static_cast<std::uint32_t>(drawing.made_trapezoids.size())};
     drawing.parts.push_back({mesh, {&drawing.all_made, 1}});
   }
-  drawing.digest = mask_digest(drawing.parts, view);
-  drawing.is_full = drawing.digest == whole_mask_digest(view);
+  drawing.digest = mask_digest(drawing.parts, view_);
+  drawing.is_full = drawing.digest == whole_mask_digest(view_);
   drawing.is_drawn = !drawing.is_full && drawing.digest != Digest();
   if (!drawing.is_drawn) drawing.digest = {};
 }
@@ -492,10 +493,15 @@ bool LayerDrawing::take_edge(std::uint32_t edge, Point from, Point to, const Box
   return true;
 }
 
-LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
+LayerDrawing::Lines* LayerDrawing::find_lines(Rgba colour) {
   for (std::size_t i = 0; i < line_count_; ++i) {
-    if (lines_[i].colour == colour) return lines_[i];
+    if (lines_[i].colour == colour) return &lines_[i];
   }
+  return nullptr;
+}
+
+LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
+  if (Lines* found = find_lines(colour)) return *found;
   if (line_count_ == lines_.size()) lines_.emplace_back();
   Lines& lines = lines_[line_count_++];
   lines.colour = colour;
@@ -552,19 +558,18 @@ bool LayerDrawing::is_constant() const {
   return only != nullptr && only->is_full && line_count_ == 0 && !has_pattern();
 }
 
-void LayerDrawing::add_tasks(const View& view, const Cancellation* cancellation,
-                             std::vector<MaskTask>& tasks) {
+void LayerDrawing::add_tasks(const Cancellation* cancellation, std::vector<MaskTask>& tasks) {
   for (std::size_t i = 0; i < class_count_; ++i) {
     ClassDrawing& drawing = classes_[i];
-    if (drawing.is_drawn) tasks.push_back({drawing.parts, view, &drawing.mask, cancellation});
+    if (drawing.is_drawn) tasks.push_back({drawing.parts, view_, &drawing.mask, cancellation});
   }
 }
 
-void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools) {
-  if (has_pattern()) pattern_.place(style().pattern, view, scale);
+void LayerDrawing::draw_details(const View& picture, double scale, DrawingTools& tools) {
+  if (has_pattern()) pattern_.place(style().pattern, picture, scale);
   for (std::size_t i = 0; i < line_count_; ++i) {
     Lines& lines = lines_[i];
-    tools.stroker.begin(view, scale);
+    tools.stroker.begin(view_, scale);
     const auto draw = [&](std::span<const Point> points, std::span<const OutlineEdge> edges) {
       tools.stroker.draw(points, edges, style().stroke, tools.cancellation);
     };
@@ -577,6 +582,26 @@ void LayerDrawing::draw_details(const View& view, int scale, DrawingTools& tools
 void LayerDrawing::forget_made(MaskRenderer& renderer) {
   for (std::size_t i = 0; i < class_count_; ++i) {
     if (classes_[i].all_made.count > 0) renderer.forget(classes_[i].parts.back().mesh.id);
+  }
+}
+
+// A pixel on the seam shows a part of each copy; a line that ends there is drawn beyond it in both.
+void LayerDrawing::take_over(LayerDrawing& copy) {
+  const auto take = [](Mask& from, bool is_first, Mask& to, const auto& combine) {
+    to = is_first ? std::move(from) : combine(to, from);
+  };
+  for (std::size_t i = 0; i < copy.class_count_; ++i) {
+    ClassDrawing& theirs = copy.classes_[i];
+    if (!theirs.is_drawn) continue;
+    ClassDrawing& ours = theirs.is_beneath ? drawing_beneath(theirs.number, theirs.alpha)
+                                           : class_drawing(theirs.number);
+    take(theirs.mask, !ours.is_drawn, ours.mask, sum_of);
+    ours.is_drawn = true;
+  }
+  for (std::size_t i = 0; i < copy.line_count_; ++i) {
+    Lines& theirs = copy.lines_[i];
+    const bool is_first = find_lines(theirs.colour) == nullptr;
+    take(theirs.mask, is_first, lines_of(theirs.colour).mask, greater_of);
   }
 }
 
@@ -614,30 +639,31 @@ PaintedLayer LayerDrawing::painted() {
           painted_lines_, style().opacity};
 }
 
-void LayerDrawing::add_to(ContentHash& hash, const View& view) const {
+void LayerDrawing::add_to(ContentHash& hash, const View& picture) const {
   hash.add(std::bit_cast<std::uint64_t>(style().opacity));
   for_each_painted([&](const ClassDrawing& drawing) {
     hash.add(to_hex(colour_of(drawing)));
     hash.add(drawing.is_full ? "full" : drawing.is_beneath ? "beneath" : "beside");
     add(drawing.digest, hash);
   });
-  if (has_pattern()) add_pattern_to(hash, view);
-  if (line_count_ > 0) add_lines_to(hash, view);
+  if (has_pattern()) add_pattern_to(hash, picture);
+  if (line_count_ > 0) add_lines_to(hash);
 }
 
 // Patterns are fixed to the ground.
-void LayerDrawing::add_pattern_to(ContentHash& hash, const View& view) const {
+void LayerDrawing::add_pattern_to(ContentHash& hash, const View& picture) const {
   const Pattern& pattern = style().pattern;
   hash.add(kPatternNames.name_of(pattern.kind));
   hash.add(to_hex(pattern.colour));
-  for (const double length : {pattern.size, pattern.angle, pattern.width, view.cells_per_pixel}) {
+  for (const double length :
+       {pattern.size, pattern.angle, pattern.width, picture.cells_per_pixel}) {
     hash.add(std::bit_cast<std::uint64_t>(length));
   }
-  hash.add(static_cast<std::uint64_t>(view.origin_x));
-  hash.add(static_cast<std::uint64_t>(view.origin_y));
+  hash.add(static_cast<std::uint64_t>(picture.origin_x));
+  hash.add(static_cast<std::uint64_t>(picture.origin_y));
 }
 
-void LayerDrawing::add_lines_to(ContentHash& hash, const View& view) const {
+void LayerDrawing::add_lines_to(ContentHash& hash) const {
   const Stroke& stroke = style().stroke;
   hash.add(kLineJoinNames.name_of(stroke.join));
   hash.add(std::bit_cast<std::uint64_t>(stroke.width));
@@ -646,13 +672,13 @@ void LayerDrawing::add_lines_to(ContentHash& hash, const View& view) const {
   for (std::size_t i = 0; i < line_count_; ++i) {
     const Lines& lines = lines_[i];
     hash.add(to_hex(lines.colour));
-    add(outline_digest(layer_->mesh().vertices, lines.edges, stroke, view), hash);
-    add(outline_digest(lines.seen_points, lines.seen_edges, stroke, view), hash);
+    add(outline_digest(layer_->mesh().vertices, lines.edges, stroke, view_), hash);
+    add(outline_digest(lines.seen_points, lines.seen_edges, stroke, view_), hash);
   }
 }
 
-double LayerDrawing::tolerance(const View& view) const {
-  return epsilon_of_level(paint_->level) / view.cells_per_pixel;
+double LayerDrawing::tolerance() const {
+  return epsilon_of_level(paint_->level) / view_.shorter_side();
 }
 
 bool LayerDrawing::is_empty() const {

@@ -51,9 +51,10 @@ bool is_plain(const LayerStyle& style);
 
 class LayerDrawing {
  public:
-  /// Selects what is to be drawn. `classes` has the class of every feature; null if the style is
-  /// plain. False if nothing of the layer is seen here; the drawing must then not be used. Throws
-  /// Cancelled.
+  /// Selects what is to be drawn of the world where it lies in the view, of which the drawing takes
+  /// a copy; of other copies of the world see views_of_copies(). `classes` has the class of every
+  /// feature; null if the style is plain. False if nothing of the layer is seen here; the drawing
+  /// must then not be used. Throws Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
               const FeatureClasses* classes, DrawingTools& tools);
 
@@ -63,20 +64,26 @@ class LayerDrawing {
   bool is_constant() const;
 
   /// Adds all that decides what painted() will be: drawings that add the same are painted alike in
-  /// views of the same size, however their layers are numbered.
-  void add_to(ContentHash& hash, const View& view) const;
+  /// pictures of the same size, however their layers are numbered. `picture` is where the pattern
+  /// is placed, here and below: the same for all copies of the world.
+  void add_to(ContentHash& hash, const View& picture) const;
 
   /// Appends the masks that have to be drawn; they look at memory of the drawing.
-  void add_tasks(const View& view, const Cancellation* cancellation, std::vector<MaskTask>& tasks);
+  void add_tasks(const Cancellation* cancellation, std::vector<MaskTask>& tasks);
   /// Places the pattern and draws outlines, for a picture of that scale. Throws Cancelled.
-  void draw_details(const View& view, int scale, DrawingTools& tools);
+  void draw_details(const View& picture, double scale, DrawingTools& tools);
   /// Releases what was made for this picture only.
   void forget_made(MaskRenderer& renderer);
 
+  /// Whether they are of one layer, in two copies of the world.
+  bool is_of_same_layer(const LayerDrawing& other) const { return paint_ == other.paint_; }
+  /// Takes over what has been drawn of the same layer in another copy of the world.
+  void take_over(LayerDrawing& copy);
+
   /// As it goes into the picture, once all has been drawn; looks at memory of the drawing.
   PaintedLayer painted();
-  /// How far its boundary may be from the true one, in pixels of the view.
-  double tolerance(const View& view) const;
+  /// How far its boundary may be from the true one, in pixels.
+  double tolerance() const;
 
   /// Of what was drawn: whether nothing of it is to be seen, and whether it covers all alike.
   bool is_empty() const;
@@ -155,17 +162,18 @@ class LayerDrawing {
                       std::span<const TrapezoidPart> parts);
   bool take_edge(std::uint32_t edge, Point from, Point to, const Box& box, const InkOfLoops& ink,
                  OutlineEdge& line) const;
-  void add_places(const Layer::Selection& selection, const View& view,
-                  const FeatureClasses* classes, DrawingTools& tools);
-  void finish_class(const Layer::Selection& selection, const View& view, ClassDrawing& drawing);
+  void add_places(const Layer::Selection& selection, const FeatureClasses* classes,
+                  DrawingTools& tools);
+  void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);
   void leave_out_empty_lines();
   template <typename Visit>
   void for_each_painted(const Visit& visit) const;
   Rgba colour_of(const ClassDrawing& drawing) const;
-  void add_pattern_to(ContentHash& hash, const View& view) const;
-  void add_lines_to(ContentHash& hash, const View& view) const;
+  void add_pattern_to(ContentHash& hash, const View& picture) const;
+  void add_lines_to(ContentHash& hash) const;
   void collect_edges(const Layer::Selection& selection, const InkOfLoops& ink,
                      const FeatureClasses* classes, DrawingTools& tools);
+  Lines* find_lines(Rgba colour);
   Lines& lines_of(Rgba colour);
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
   void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
@@ -174,6 +182,7 @@ class LayerDrawing {
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;
+  View view_;
   bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them
   std::size_t class_count_ = 0;

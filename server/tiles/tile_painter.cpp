@@ -13,6 +13,7 @@
 #include "render/text/label.h"
 #include "server/base/build_id.h"
 #include "server/base/content_hash.h"
+#include "server/tiles/map_window.h"
 
 namespace trapeze {
 namespace {
@@ -25,20 +26,30 @@ constexpr Rgba kJunctionColour{0x10, 0x18, 0x30, 255};
 constexpr Rgba kBorderColour{0x70, 0x20, 0x90, 255};
 constexpr int kLabelSize = 13;
 
+constexpr int kBandRows = 256;
+constexpr std::int64_t kPixelsOfLargePicture = std::int64_t{1} << 20;
+
 View with_margin(const View& view) {
   constexpr int kPixels = 4;
-  const auto cells = static_cast<std::int64_t>(std::ceil(kPixels * view.cells_per_pixel));
-  return {view.origin_x - cells, view.origin_y - cells, view.cells_per_pixel,
-          view.width + 2 * kPixels, view.height + 2 * kPixels};
+  View around = view;
+  around.origin_x -= static_cast<std::int64_t>(std::ceil(kPixels * view.cells_per_pixel));
+  around.origin_y -= static_cast<std::int64_t>(std::ceil(kPixels * view.cells_per_row()));
+  around.width += 2 * kPixels;
+  around.height += 2 * kPixels;
+  return around;
 }
 
-/// That view of it. Its place is exact: sides of tiles are powers of two.
 View band_of(const TilePlan& plan, int band) {
-  View view = View::of_tile(plan.tile, plan.scale);
-  const int bands = TilePainter::bands_of(plan);
-  view.origin_y += plan.tile.side() / bands * band;
-  view.height /= bands;
-  return view;
+  const int first = band * kBandRows;
+  return plan.view.band(first, std::min(kBandRows, plan.view.height - first));
+}
+
+/// What tiles do not have. Off the world, places in a copy of it are like those in another.
+void add_unusual(const View& view, ContentHash& hash) {
+  if (view.stretch != 1) hash.add(std::bit_cast<std::uint64_t>(view.stretch));
+  if (view.is_on_world()) return;
+  hash.add(static_cast<std::uint64_t>(view.origin_x));
+  hash.add(static_cast<std::uint64_t>(view.origin_y));
 }
 
 /// Of a band to those of its tile.
@@ -68,7 +79,7 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
   drawing_count_ = 0;
   std::vector<Sketch> sketches;
   for (const Job& job : jobs) {
-    sketches.push_back(sketch(job, View::of_tile(job.plan->tile, job.plan->scale)));
+    sketches.push_back(sketch(job, job.plan->view));
     Sketch& last = sketches.back();
     if (last.is_cancelled) continue;
     const Stopwatch stopwatch(last.times.select_ms);
@@ -99,7 +110,7 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
 
 std::string TilePainter::identify(const Job& job) {
   drawing_count_ = 0;
-  const Sketch sketch = this->sketch(job, View::of_tile(job.plan->tile, job.plan->scale));
+  const Sketch sketch = this->sketch(job, job.plan->view);
   if (sketch.is_cancelled) throw Cancelled();
   return fingerprint_of(*job.plan, sketch);
 }
@@ -130,11 +141,12 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
   if (is_drawn) {
     hash.add(renderer_identity_);
     hash.add(std::bit_cast<std::uint64_t>(view.cells_per_pixel));
+    add_unusual(view, hash);
   }
   for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
     // Where layers meet is looked for as far as their boundaries may be from the true ones.
     if (is_drawn && drawings > 1) {
-      hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance(view)));
+      hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance()));
     }
     drawings_[k].add_to(hash, view);
   }
@@ -142,10 +154,9 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
 }
 
 int TilePainter::bands_of(const TilePlan& plan) {
-  constexpr int kLeastScale = 4;
-  constexpr int kBands = 4;
-  const bool is_large = plan.scale >= kLeastScale && plan.tile.side() >= kBands;
-  return is_large && !plan.debug.any() ? kBands : 1;
+  const View& view = plan.view;
+  const bool is_large = std::int64_t{view.width} * view.height >= kPixelsOfLargePicture;
+  return is_large && !plan.debug.any() ? (view.height + kBandRows - 1) / kBandRows : 1;
 }
 
 std::optional<PaintedBand> TilePainter::paint_band(const Job& job, int band) {
@@ -224,14 +235,17 @@ void TilePainter::release_memory() {
 // From the top down: what lies under an opaque layer that covers everything is not looked at.
 void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const Stopwatch stopwatch(sketch.times.select_ms);
+  const std::vector<View> copies = views_of_copies(sketch.view);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
     if (!paint->style.is_visible()) continue;  // here for its marks only
-    if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
-    LayerDrawing& drawing = drawings_[drawing_count_];
     const auto classes = classes_for(plan, *paint);
-    if (!drawing.select(plan, *paint, sketch.view, classes.get(), tools_)) continue;
-    ++drawing_count_;
-    if (drawing.hides_all()) break;
+    const std::size_t first = drawing_count_;
+    for (const View& copy : copies) {
+      if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
+      LayerDrawing& drawing = drawings_[drawing_count_];
+      if (drawing.select(plan, *paint, copy, classes.get(), tools_)) ++drawing_count_;
+    }
+    if (drawing_count_ > first && drawings_[first].hides_all()) break;
   }
 }
 
@@ -269,7 +283,7 @@ void TilePainter::draw_details(const Job& job, Sketch& sketch) {
   try {
     const Stopwatch stopwatch(sketch.times.draw_ms);
     for (std::size_t k = sketch.first_drawing; k < sketch.end_drawing; ++k) {
-      drawings_[k].add_tasks(view, job.cancellation, tasks_);
+      drawings_[k].add_tasks(job.cancellation, tasks_);
       drawings_[k].draw_details(view, job.plan->scale, tools_);
     }
   } catch (const Cancelled&) {
@@ -292,7 +306,7 @@ PaintedTile TilePainter::finish(const TilePlan& plan, Sketch& sketch) {
   const Stopwatch stopwatch(tile.times.encode_ms);
   if (picture_.colours.size() == 1 && !plan.debug.any()) tile.hint = hint_of(sketch);
   tile.has_palette = picture_.colours.size() <= kPaletteColours;
-  tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, plan.format)
+  tile.bytes = is_constant ? constant(picture_.at(0, 0), view.width, view.height, plan.format)
                            : std::make_shared<const std::string>(encode(plan.format));
   return tile;
 }
@@ -304,8 +318,12 @@ bool TilePainter::compose(const TilePlan& plan, Sketch& sketch) {
   painted_.clear();
   tolerances_.clear();
   for (std::size_t k = sketch.end_drawing; k-- > sketch.first_drawing;) {
+    if (k > sketch.first_drawing && drawings_[k - 1].is_of_same_layer(drawings_[k])) {
+      drawings_[k - 1].take_over(drawings_[k]);
+      continue;
+    }
     painted_.push_back(drawings_[k].painted());
-    tolerances_.push_back(drawings_[k].tolerance(view));
+    tolerances_.push_back(drawings_[k].tolerance());
   }
   if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
   composer_.compose(painted_, is_constant ? 1 : view.width, is_constant ? 1 : view.height,
@@ -330,10 +348,11 @@ std::string TilePainter::encode(TileFormat format) {
   return format == TileFormat::webp ? encode_webp(picture_) : encoder_.encode(picture_);
 }
 
-std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, TileFormat format) {
-  auto& bytes = constants_[{to_hex(colour), side, format}];
+std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int width, int height,
+                                                         TileFormat format) {
+  auto& bytes = constants_[{to_hex(colour), width, height, format}];
   if (bytes != nullptr) return bytes;
-  composer_.compose({}, side, side, colour, Quality::exact, picture_);
+  composer_.compose({}, width, height, colour, Quality::exact, picture_);
   auto made = std::make_shared<const std::string>(encode(format));
   bytes = made;
   if (constants_.size() > kMaxConstants) constants_.clear();
@@ -341,6 +360,13 @@ std::shared_ptr<const std::string> TilePainter::constant(Rgba colour, int side, 
 }
 
 void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture) {
+  for (const View& copy : views_of_copies(view)) mark_layers(plan, copy, picture);
+  if (!plan.debug.tile) return;
+  mark_border(kBorderColour, picture);
+  draw_label(plan.caption, 3, 3, {kLabelSize, kBorderColour}, *fonts_, picture);
+}
+
+void TilePainter::mark_layers(const TilePlan& plan, const View& view, Picture& picture) {
   const View around = with_margin(view);  // of marks that reach into the picture
   for (const LayerPaint& paint : plan.layers) {
     const Layer& layer = plan.layer_of(paint);
@@ -357,11 +383,6 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
                      picture);
     }
   }
-  if (!plan.debug.tile) return;
-  std::string text = fmt::format("{}/{}/{}", plan.tile.z, plan.tile.x, plan.tile.y);
-  if (plan.scale > 1) text += fmt::format(" {}x", plan.scale);
-  mark_border(kBorderColour, picture);
-  draw_label(text, 3, 3, {kLabelSize, kBorderColour}, *fonts_, picture);
 }
 
 }  // namespace trapeze

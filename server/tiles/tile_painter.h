@@ -95,8 +95,8 @@ class TilePainter {
   /// The fingerprint that paint() would find.
   std::string identify(const Job& job);
 
-  /// How many bands of equal height a tile is painted in: 1, or if it is large, several, which
-  /// painters may do at the same time. That depends on nothing but the plan, and so do its bytes.
+  /// How many bands a picture is painted in: 1, or if it is large, several, which painters may do
+  /// at the same time. That depends on nothing but the plan, and so do its bytes.
   static int bands_of(const TilePlan& plan);
   /// Paints one of them, the northernmost being 0. As paint().
   std::optional<PaintedBand> paint_band(const Job& job, int band);
@@ -135,8 +135,10 @@ class TilePainter {
   bool compose(const TilePlan& plan, Sketch& sketch);
   TileHint hint_of(const Sketch& sketch) const;
   std::string encode(TileFormat format);
-  std::shared_ptr<const std::string> constant(Rgba colour, int side, TileFormat format);
+  std::shared_ptr<const std::string> constant(Rgba colour, int width, int height,
+                                              TileFormat format);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
+  static void mark_layers(const TilePlan& plan, const View& view, Picture& picture);
 
   std::unique_ptr<MaskRenderer> renderer_;
   std::string renderer_identity_;
@@ -144,7 +146,7 @@ class TilePainter {
   std::shared_ptr<const Fonts> fonts_;
   Composer composer_;
   PngEncoder encoder_;
-  using ConstantKey = std::tuple<std::string, int, TileFormat>;  // colour, side
+  using ConstantKey = std::tuple<std::string, int, int, TileFormat>;  // colour, width, height
   std::map<ConstantKey, std::shared_ptr<const std::string>> constants_;
   // Kept from tile to tile only for their memory.
   std::deque<LayerDrawing> drawings_;  // tasks point into them

@@ -2,8 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "render/mask/mask.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "server/data/layer_summary.h"
+#include "server/tiles/map_window.h"
 
 namespace trapeze {
 namespace {
@@ -11,14 +15,9 @@ namespace {
 // Default tolerance, in output pixels: too small to be seen.
 constexpr double kTolerancePixels = 0.25;
 
-double cells_per_pixel(const TileId& tile, int scale) {
-  return static_cast<double>(tile.side()) / (static_cast<double>(kTilePixels) * scale);
-}
-
-Level level_of_layer(const TileRequest& request, const StyleQuery& query,
-                     const std::string& layer) {
-  return nearest_level(tolerance_in_pixels(query, layer) *
-                       cells_per_pixel(request.tile, request.scale));
+/// Of pixels that are not square, the shorter side decides.
+Level level_of_layer(const View& view, const StyleQuery& query, const std::string& layer) {
+  return nearest_level(tolerance_in_pixels(query, layer) * view.shorter_side());
 }
 
 Topology topology_of_layer(const StyleQuery& query, const std::string& layer) {
@@ -48,6 +47,11 @@ Quality quality_of(const StyleQuery& query) {
   return value ? kQualityNames.find(std::get<std::string>(*value)).value() : Quality::bounded;
 }
 
+/// Where all the world is smaller than a tile, that is as at zoom 0.
+bool is_drawn_at(const LayerConfig& config, double zoom) {
+  return std::max(zoom, 0.0) >= config.min_zoom && std::floor(zoom) <= config.max_zoom;
+}
+
 Problem no_fast_topology(const std::string& layer) {
   return {400,
           fmt::format("The layer \"{}\" is not served with topology=fast: its configuration does "
@@ -71,12 +75,13 @@ const ServedLayer* TilePlan::damaged_layer() const {
 }
 
 Level TilePlan::pixel_level() const {
-  return nearest_level(cells_per_pixel(tile, scale) / 4);
+  return nearest_level(view.shorter_side() / 4);
 }
 
 std::string TilePlan::key() const {
-  std::string key =
-      fmt::format("{}/{}/{}@{} {}", tile.z, tile.x, tile.y, scale, to_hex(background));
+  std::string key = fmt::format("{},{} {:a}", view.origin_x, view.origin_y, view.cells_per_pixel);
+  if (view.stretch != 1) key += fmt::format("*{:a}", view.stretch);
+  key += fmt::format(" {}x{}@{} {}", view.width, view.height, scale, to_hex(background));
   for (const LayerPaint& paint : layers) {
     const ServedLayer& layer = dataset->layers()[paint.layer];
     key += fmt::format(" {}:{:016x}={}/{}/{} {}", layer.config.name, layer.revision, paint.level,
@@ -96,19 +101,25 @@ double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {
   return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
-Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset) {
+Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> dataset) {
+  return plan_window(window_of(std::move(request)), std::move(dataset));
+}
+
+Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const Dataset> dataset) {
   TilePlan plan{std::move(dataset),
-                request.tile,
+                request.view,
                 request.scale,
                 kTransparent,
                 {},
                 debug_marks(request.style),
                 request.format,
-                quality_of(request.style)};
+                quality_of(request.style),
+                request.caption};
   if (const auto background = request.style.value_for({}, ParameterId::background)) {
     const Rgba colour = std::get<Rgba>(*background);
     if (colour.a > 0) plan.background = colour;
   }
+  const double zoom = zoom_of(request.view, request.scale);
   for (const std::string& name : request.layers) {
     const auto layer = plan.dataset->find(name);
     if (!layer) return unknown_layer(name, *plan.dataset);
@@ -118,11 +129,11 @@ Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dat
     if (!query) return query.problem();
     auto style = layer_style(*query, served, *layer);
     if (!style) return std::move(style).problem();
-    if (request.tile.z < config.min_zoom || request.tile.z > config.max_zoom) continue;
+    if (!is_drawn_at(config, zoom)) continue;
     if (!style->is_visible() && !plan.debug.any()) continue;
     const Topology topology = topology_of_layer(*query, name);
     if (served.layer_for(topology) == nullptr) return no_fast_topology(name);
-    plan.layers.push_back({*layer, *std::move(style), level_of_layer(request, *query, name),
+    plan.layers.push_back({*layer, *std::move(style), level_of_layer(plan.view, *query, name),
                            topology, small_of_layer(*query, name)});
   }
   return plan;

@@ -1,4 +1,5 @@
-// What is to be drawn for one tile, with names resolved and defaults filled in.
+// What is to be drawn for one picture, a tile or a window of the map, with names resolved and
+// defaults filled in.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 
 #include "core/graph/topological_consistency.h"
 #include "core/grid/tolerance.h"
-#include "core/grid/web_mercator.h"
 #include "core/layer/layer.h"
+#include "render/mask/mask.h"
 #include "render/picture/colour.h"
 #include "render/picture/reduce_colours.h"
 #include "server/base/result.h"
@@ -18,6 +19,7 @@
 #include "server/styles/debug_marks.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_request.h"
+#include "server/tiles/window_request.h"
 
 namespace trapeze {
 
@@ -34,13 +36,14 @@ struct LayerPaint {
 /// Layers that cannot be seen, being transparent or outside of their zooms, are left out.
 struct TilePlan {
   std::shared_ptr<const Dataset> dataset;
-  TileId tile;
-  int scale = 1;
+  View view;
+  double scale = 1;  // of lines and patterns
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
   DebugMarks debug = {};
   TileFormat format = TileFormat::png;
   Quality quality = Quality::bounded;
+  std::string caption = {};  // for debug=tile
 
   /// What the paint is for, made with or without the topological consistency test as it says.
   const Layer& layer_of(const LayerPaint& paint) const;
@@ -56,7 +59,9 @@ struct TilePlan {
 
 /// The problem is 404 for a layer that is not in the dataset, 400 for a style that does not fit its
 /// layer.
-Result<TilePlan> plan_tile(const TileRequest& request, std::shared_ptr<const Dataset> dataset);
+Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const Dataset> dataset);
+/// The same of the window that is a tile.
+Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> dataset);
 
 /// How far the drawn boundary of the layer may be from the true one. `style` is
 /// complete, see complete_style().

@@ -87,19 +87,6 @@ bool has_style(std::span<const std::string> path) {
   return path.size() == 7 || (path.size() == 4 && path[3].ends_with(kJson));
 }
 
-/// From /tiles/{layers}/s/{style}/{z}/{x}/{y}.png, and from /tiles/{layers}/s/{style}.json, to the
-/// same without it.
-void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
-  std::string& style = path[3];
-  if (path.size() == 4) {
-    const std::size_t end = std::min(style.find('@'), style.size() - kJson.size());
-    path[1] += style.substr(end);
-    style.resize(end);
-  }
-  query.emplace_back("style", std::move(style));
-  path.erase(path.begin() + 2, path.begin() + 4);
-}
-
 }  // namespace
 
 std::string_view content_type_of(TileFormat format) {
@@ -140,6 +127,17 @@ Result<PictureName> parse_picture_name(std::string_view name) {
   auto stem = parse_scale(name);
   if (!stem) return std::move(stem).problem();
   return PictureName{stem->stem, stem->scale, format};
+}
+
+void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query) {
+  std::string& style = path[3];
+  if (path.size() == 4) {
+    const std::size_t end = std::min({style.find('@'), style.rfind('.'), style.size()});
+    path[1] += style.substr(end);
+    style.resize(end);
+  }
+  query.emplace_back("style", std::move(style));
+  path.erase(path.begin() + 2, path.begin() + 4);
 }
 
 std::string scale_suffix(int scale) {

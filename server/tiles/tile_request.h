@@ -63,6 +63,11 @@ struct PictureName {
 };
 Result<PictureName> parse_picture_name(std::string_view name);
 
+/// From a path with /s/{style} after its second segment to the same without it, and the name of the
+/// style to the query: from {...}/{layers}/s/{style}/{...}, and from
+/// {...}/{layers}/s/{style}.{...}, the ending of which the layers get.
+void take_style(std::vector<std::string>& path, std::vector<QueryPair>& query);
+
 /// "@2x" of the scale 2; nothing of the scale 1.
 std::string scale_suffix(int scale);
 

@@ -1,4 +1,4 @@
-"""QGIS, without a window, shows our tiles and tells features by WMTS."""
+"""QGIS, without a window, shows our tiles and maps, and tells features by WMTS and WMS."""
 
 import os
 import sys
@@ -92,6 +92,40 @@ def check_features(layer):
     print("QGIS tells the feature under a place")
 
 
+def check_print(base):
+    """On paper, at twice the dots to an inch, lines are as wide: twice as many pixels."""
+    layer = QgsRasterLayer("IgnoreReportedLayerExtents=1&contextualWMSLegend=0&crs=EPSG:3857&dpiMode=7&format=image/png&layers=land"
+                           f"&styles=default&url={base}wms?stroke%3D000%26stroke-width%3D4",
+                           "print", "wms")
+    settings = QgsMapSettings()
+    settings.setLayers([layer])
+    settings.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
+    settings.setOutputSize(QSize(2 * SIZE, 2 * SIZE))
+    settings.setOutputDpi(192)
+    settings.setExtent(EXTENT)
+    settings.setBackgroundColor(QColor(Qt.white))
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    assert not job.errors(), [error.message for error in job.errors()]
+    shown = bytes_of(job.renderedImage().convertToFormat(QImage.Format_RGB32))
+    box = ",".join(str(number) for number in (EXTENT.xMinimum(), EXTENT.yMinimum(),
+                                              EXTENT.xMaximum(), EXTENT.yMaximum()))
+    picture = QImage(2 * SIZE, 2 * SIZE, QImage.Format_RGB32)
+    picture.fill(Qt.white)
+    painter = QPainter(picture)
+    painter.drawImage(0, 0, QImage.fromData(get(
+        f"{base}map/land@2x.png?bbox={box}&crs=EPSG:3857&width={SIZE}&height={SIZE}"
+        "&stroke=000&stroke-width=4")))
+    painter.end()
+    own = bytes_of(picture)
+    differing = sum(
+        any(abs(a - b) > TOLERANCE for a, b in zip(shown[i:i + 3], own[i:i + 3]))
+        for i in range(0, len(own), 4))
+    assert differing <= MOST_DIFFERING * 4 * SIZE * SIZE, f"in print, {differing} pixels differ"
+    print(f"QGIS prints lines as wide as on the screen; {differing} pixels differ")
+
+
 application = QgsApplication([], False)
 application.initQgis()
 try:
@@ -106,6 +140,14 @@ try:
             check(f"WMTS in the style {style}", layer,
                   base + f"tiles/land/s/{style}/{{z}}/{{x}}/{{y}}.png", MOST_DIFFERING_OF_WMTS)
         check_features(layer)
+        for style in ("default", "night"):
+            wms = ("IgnoreReportedLayerExtents=1&contextualWMSLegend=0&crs=EPSG:3857&dpiMode=7&format=image/png&layers=land"
+                   f"&styles={style}&url={base}wms")
+            layer = QgsRasterLayer(wms, style, "wms")
+            check(f"WMS in the style {style}", layer,
+                  base + f"tiles/land/s/{style}/{{z}}/{{x}}/{{y}}.png", MOST_DIFFERING)
+        check_features(layer)
+        check_print(base)
     status = 0
 finally:
     QgsProject.instance().clear()

@@ -60,6 +60,7 @@ class FuzzedSite {
     SiteOptions options;
     options.metrics = [] { return std::string("up 1\n"); };
     options.max_scale = 2;
+    options.map_pixels = 1 << 16;
     options.styles.emplace(
         "night", *parse_style_document(
                      R"({"background": "black", "fill": "navy", "water.pattern": "hatch"})"));
@@ -93,8 +94,9 @@ HttpRequest request_from(std::string_view text) {
 void check_problem(const HttpResponse& response) {
   require(response.body != nullptr, "a problem has no words");
   require(response.header("Cache-Control") == "no-store", "a problem may be kept");
-  if (response.header("Content-Type").find("xml") != std::string_view::npos) {  // of WMTS
-    return require(response.body->find("<ows:Exception exceptionCode=") != std::string::npos,
+  if (response.header("Content-Type").find("xml") != std::string_view::npos) {  // of WMTS or WMS
+    return require(response.body->find("<ows:Exception exceptionCode=") != std::string::npos ||
+                       response.body->find("<ServiceException") != std::string::npos,
                    "a report of exceptions without any");
   }
   require(response.header("Content-Type") == "application/problem+json", "a problem has no type");

@@ -99,6 +99,21 @@ TEST_P(GlRendererTest, DrawsLikeTheReferenceAtEveryZoom) {
   }
 }
 
+TEST_P(GlRendererTest, DrawsBandsOfStretchedPicturesLikeTheReference) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  for (const double stretch : {0.1, 0.9, 1.0, 1.7, 10.0}) {
+    View view{-300'000'000, 200'000'000, 100'000.0 / 3, 700, 333};
+    view.stretch = stretch;
+    const SampleMesh strips = random_strips(random, view.box(), 2000);
+    for (const int first : {0, 1, 200}) {
+      expect_like_reference(strips, view.band(first, 133),
+                            "stretched by " + std::to_string(stretch));
+    }
+  }
+}
+
 TEST_P(GlRendererTest, TakesAreaAwayLikeTheReferenceWhereEdgesHaveChangedPlaces) {
   const View view = View::of_tile({12, 2047, 2047});
   const Box box = view.box();

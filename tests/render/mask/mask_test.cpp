@@ -38,6 +38,46 @@ TEST(ViewTest, BoxIsCutToTheGridAndEmptyOffTheWorld) {
   EXPECT_TRUE(off.box().is_empty());
 }
 
+TEST(ViewTest, BoxOfABandIsThatOfItsRows) {
+  View view{100, 200, 1.5, 10, 20};
+  view.stretch = 2;
+  EXPECT_EQ(view.box(), (Box{100, 200, 115, 260}));
+  EXPECT_EQ(view.band(5, 3).box(), (Box{100, 215, 115, 224}));
+  EXPECT_EQ(view.band(5, 10).band(1, 1).box(), (Box{100, 218, 115, 221}));
+}
+
+TEST(ViewTest, IsOnTheWorldOnlyAsAWhole) {
+  EXPECT_TRUE(View::of_tile({0, 0, 0}).is_on_world());
+  EXPECT_TRUE(View::of_tile({kMaxZoom, 0, 0}, 4).is_on_world());
+  for (const View& off : {View{kGridMin - std::int64_t{1}, 0, 1, 10, 10},
+                          View{kGridMax - std::int64_t{9}, 0, 1, 10, 10},
+                          View{0, kGridMin - std::int64_t{1}, 1, 10, 10},
+                          View{0, kGridMax - std::int64_t{9}, 1, 10, 10}}) {
+    EXPECT_FALSE(off.is_on_world());
+  }
+}
+
+TEST(MaskTest, IsJoinedWithAnotherByTheSumOrTheGreaterValue) {
+  Mask a(4, 2, 200);
+  Mask b;
+  b.begin(4, 2);
+  b.append(1, 0);
+  b.append(4, 100);
+  b.end_row();
+  b.append(4, 10);
+  b.end_row();
+  const auto row_of = [](const Mask& mask, int row) {
+    std::vector<int> values;
+    for (int column = 0; column < mask.width(); ++column) values.push_back(mask.at(column, row));
+    return values;
+  };
+  EXPECT_EQ(row_of(sum_of(a, b), 0), (std::vector{200, 255, 255, 255}));
+  EXPECT_EQ(row_of(sum_of(a, b), 1), (std::vector{210, 210, 210, 210}));
+  EXPECT_EQ(sum_of(b, a), sum_of(a, b));
+  EXPECT_TRUE(greater_of(a, b).is_all(200));
+  EXPECT_EQ(greater_of(b, Mask(4, 2, 0)), b);
+}
+
 TEST(ViewTest, RefusesWhatCannotBeDrawn) {
   const View fine{0, 0, 1, 10, 10};
   EXPECT_NO_THROW(fine.check());

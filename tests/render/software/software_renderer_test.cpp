@@ -112,6 +112,43 @@ TEST(SoftwareRendererTest, HalvesThePixelsOnADiagonal) {
   }
 }
 
+TEST(SoftwareRendererTest, StretchedPixelsShowWhatIsOnTheirGround) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const SampleMesh mesh = testing::random_strips(random, {0, 0, 4096, 4096}, 50);
+  View view{0, 0, 64, 64, 32};
+  view.stretch = 2;
+  const Mask stretched = draw(mesh, view);
+  const Mask fine = draw(mesh, {0, 0, 64, 64, 64});
+  for (int row = 0; row < 32; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      EXPECT_NEAR(stretched.at(column, row),
+                  (fine.at(column, 2 * row) + fine.at(column, 2 * row + 1)) / 2.0, 1.01);
+    }
+  }
+}
+
+TEST(SoftwareRendererTest, ABandHasTheRowsOfTheWhole) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  const SampleMesh mesh = testing::random_strips(random, {0, 0, 10'000, 10'000}, 500);
+  View view{-123, 77, 100.0 / 3, 300, 290};
+  view.stretch = 0.9;
+  const Mask whole = draw(mesh, view);
+  for (const int first : {0, 1, 100, 289}) {
+    const int rows = std::min(64, view.height - first);
+    const Mask band = draw(mesh, view.band(first, rows));
+    ASSERT_EQ(band.height(), rows);
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < view.width; ++column) {
+        EXPECT_NEAR(band.at(column, row), whole.at(column, first + row), 1);
+      }
+    }
+  }
+}
+
 TEST(SoftwareRendererTest, LeavesThePictureEmptyWhereNothingIsDrawn) {
   EXPECT_TRUE(draw(SampleMesh(), square_view(0, 1, 7)).is_all(0));
   SampleMesh around;

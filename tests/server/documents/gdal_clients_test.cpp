@@ -120,6 +120,31 @@ TEST_F(GdalClientsTest, TheWmtsClientReadsOurTiles) {
       0);
 }
 
+TEST_F(GdalClientsTest, TheWmsClientReadsOurMaps) {
+  for (const char* version : {"1.1.1", "1.3.0"}) {
+    const std::string system = version == std::string("1.1.1") ? "SRS" : "CRS";
+    const std::string file = folder_ + "/wms" + version + ".xml";
+    std::ofstream(file) << "<GDAL_WMS><Service name=\"WMS\"><Version>" << version
+                        << "</Version><ServerUrl>" << url_ << "/wms?</ServerUrl><" << system
+                        << ">EPSG:3857</" << system
+                        << "><ImageFormat>image/png</ImageFormat><Transparent>TRUE</Transparent>"
+                           "<Layers>rings</Layers></Service><DataWindow>"
+                           "<UpperLeftX>-20037508.342789244</UpperLeftX>"
+                           "<UpperLeftY>20037508.342789244</UpperLeftY>"
+                           "<LowerRightX>20037508.342789244</LowerRightX>"
+                           "<LowerRightY>-20037508.342789244</LowerRightY>"
+                           "<SizeX>512</SizeX><SizeY>512</SizeY></DataWindow>"
+                           "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY>"
+                           "<Projection>EPSG:3857</Projection><BandsCount>4</BandsCount>"
+                           "</GDAL_WMS>";
+    EXPECT_EQ(differences(world(file), "rings"), 0) << version;
+  }
+  const CommandResult listed = run_command("no_proxy=127.0.0.1 gdalinfo 'WMS:" + url_ +
+                                           "/wms?service=WMS&request=GetCapabilities'");
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_THAT(listed.output, ::testing::HasSubstr("LAYERS=rings&SRS=EPSG:3857&BBOX=-10018754.1"));
+}
+
 TEST_F(GdalClientsTest, TheOgcApiClientReadsOurTiles) {
   // GDAL 3.6 takes the bounds of a collection for metres, so it is told those of the world.
   const std::string options =

@@ -51,7 +51,8 @@ TEST(RoutesTest, SegmentsFindTheirRoute) {
   EXPECT_EQ(id_of("/styles"), "/styles");
   EXPECT_EQ(id_of("/ogc/map/tiles"), "/ogc/map/tiles");
   EXPECT_EQ(id_of("/ogc/map/tiles/a"), "/ogc/map/tiles/{tileMatrixSetId}");
-  EXPECT_EQ(id_of("/ogc/map"), "nothing");
+  EXPECT_EQ(id_of("/ogc/map"), "/ogc/map");
+  EXPECT_EQ(id_of("/ogc/maps"), "nothing");
   EXPECT_EQ(id_of("/ogc/conformance/more"), "nothing");
 }
 
@@ -72,6 +73,8 @@ std::string filled_in(std::string path) {
                                                      {"y", "0"},
                                                      {"style", "default"},
                                                      {"place", "10,10"},
+                                                     {"centre", "10,10,3"},
+                                                     {"size", "64x48"},
                                                      {"layer", "rings"},
                                                      {"attribute", "rank"},
                                                      {"collectionId", "rings"},
@@ -106,6 +109,8 @@ TEST_F(AllRoutesTest, AreAnsweredWithWhatTheyPromise) {
     std::string target = filled_in(std::string(route.path));
     if (route.id == RouteId::style) target = "/styles/night";
     if (route.id == RouteId::wmts_key_values) target += "?service=WMTS&request=GetCapabilities";
+    if (route.id == RouteId::wms) target += "?service=WMS&request=GetCapabilities";
+    if (route.id == RouteId::map_window) target += "?bbox=-10,-10,20,10&width=64";
     const HttpResponse response = site_.get(target);
     EXPECT_EQ(response.status, 200) << target << ": " << *response.body;
     EXPECT_THAT(std::string(response.header("Content-Type")),

@@ -31,7 +31,7 @@ TEST_F(DrawingCostTest, IsNeverLessForMore) {
 TEST_F(DrawingCostTest, IsThatOfTheSidesAndThePixelsOfAPlainTile) {
   const TilePlan tile = plan("rings/0/0/0.png");
   const LayerPaint& paint = tile.layers.front();
-  const View view = View::of_tile(tile.tile, tile.scale);
+  const View view = tile.view;
   const std::uint64_t sides =
       2 * tile.layer_of(paint).estimate_trapezoids(selection_of(tile, paint, view));
   EXPECT_GT(sides, 0u);

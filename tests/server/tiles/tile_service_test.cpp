@@ -69,7 +69,7 @@ class TileServiceTest : public ::testing::Test {
   TilePlan plan(int shade) const {
     LayerPaint paint;
     paint.style.paints = {{{static_cast<std::uint8_t>(shade), 0, 0, 255}, {}}};
-    return {dataset_, {}, 1, kTransparent, {paint}};
+    return {dataset_, View::of_tile({}), 1, kTransparent, {paint}};
   }
 
   std::future<TileAnswer> submit(int shade, TileService::Cost cost = TileService::Cost::cheap) {

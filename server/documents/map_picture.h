@@ -1,0 +1,39 @@
+// Pictures of windows of the map:
+//
+//   /map/{layers}[@{1-4}x].{png,webp}?bbox=W,S,E,N[&width=][&height=][&crs=EPSG:3857]
+//   /map/{layers}/{lon},{lat},{zoom}/{width}x{height}[@{1-4}x].{png,webp}
+//
+// with /s/{style} after the layers for a style that has a name, as tiles have it.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "server/base/result.h"
+#include "server/documents/document.h"
+#include "server/tiles/map_window.h"
+#include "server/tiles/window_request.h"
+
+namespace trapeze {
+
+/// The picture that is asked for. Width and height are in pixels of scale 1: a picture @2x has
+/// twice as many. Where one of them is missing, it follows from the sides of the window; without
+/// both, the longer side has 1024 pixels. The problem is 400 for what is malformed, 404 for another
+/// path or a style in the path that there is not.
+Result<WindowRequest> parse_map_picture(const DocumentRequest& request);
+
+/// The picture of the window, with `width` and `height` of the query or what follows from the
+/// sides, as parse_map_picture() has it.
+Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale = 1);
+
+/// "west,south,east,north" in degrees. Where the west is east of the east, the window goes over the
+/// antimeridian; latitudes beyond the ends of the map are taken for these. Nothing if it is not
+/// four numbers, or if the window has no width or no height.
+std::optional<WindowSides> parse_window_in_degrees(std::string_view text);
+/// The same in metres of EPSG:3857, as they are.
+std::optional<WindowSides> parse_window_in_metres(std::string_view text);
+
+/// A length in pixels of a picture, from 1 to kMaxPicturePixels.
+std::optional<int> parse_pixels(std::string_view text);
+
+}  // namespace trapeze

@@ -1,0 +1,78 @@
+#include "server/tiles/map_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace trapeze {
+namespace {
+
+// What rounding may take from a zoom.
+constexpr double kZoomError = 1e-9;
+
+/// The number of the copy that a place is in: 0 is the world itself.
+std::int64_t copy_at(double x) {
+  return static_cast<std::int64_t>(std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
+}
+
+View moved_by_worlds(View view, std::int64_t worlds) {
+  view.origin_x += worlds * kGridSize;
+  return view;
+}
+
+/// So that its west is in the world itself.
+View brought_home(const View& view) {
+  return moved_by_worlds(view, -copy_at(static_cast<double>(view.origin_x)));
+}
+
+}  // namespace
+
+std::optional<View> view_of_window(const WindowSides& sides, int width, int height) {
+  constexpr double kMost = static_cast<double>(kMostWorlds) * kGridSize;
+  for (const double side : {sides.west, sides.north, sides.east, sides.south}) {
+    if (!(std::abs(side) <= kMost)) return std::nullopt;  // written so that NaN fails
+  }
+  const auto cell = [](double place) { return static_cast<std::int64_t>(std::llround(place)); };
+  const std::int64_t columns = cell(sides.east) - cell(sides.west);
+  const std::int64_t rows = cell(sides.south) - cell(sides.north);
+  if (columns < 1 || rows < 1) return std::nullopt;
+  View view;
+  view.origin_x = cell(sides.west);
+  view.origin_y = cell(sides.north);
+  view.cells_per_pixel = static_cast<double>(columns) / width;
+  view.stretch = static_cast<double>(rows) / height / view.cells_per_pixel;
+  view.width = width;
+  view.height = height;
+  return brought_home(view);
+}
+
+View view_around(GridPosition centre, double zoom, int width, int height, int scale) {
+  View view;
+  view.cells_per_pixel = static_cast<double>(kGridSize) / std::exp2(zoom) / (kTilePixels * scale);
+  view.width = width;
+  view.height = height;
+  view.origin_x = std::llround(centre.x - view.cells_per_pixel * width / 2);
+  view.origin_y = std::llround(centre.y - view.cells_per_pixel * height / 2);
+  return brought_home(view);
+}
+
+double zoom_of(const View& view, double scale) {
+  const double cells = view.shorter_side() * scale * kTilePixels;
+  const double zoom = std::log2(static_cast<double>(kGridSize) / cells);
+  const double whole = std::round(zoom);
+  return std::abs(zoom - whole) < kZoomError ? whole : zoom;
+}
+
+std::vector<View> views_of_copies(const View& view) {
+  const auto west = static_cast<double>(view.origin_x);
+  const double east = west + view.width * view.cells_per_pixel;
+  const auto last =
+      static_cast<std::int64_t>(std::ceil((east - kGridMin) / static_cast<double>(kGridSize)) - 1);
+  std::vector<View> views;
+  for (std::int64_t copy = copy_at(west); copy <= last; ++copy) {
+    views.push_back(moved_by_worlds(view, -copy));
+  }
+  return views;
+}
+
+}  // namespace trapeze

@@ -1,0 +1,30 @@
+// What a picture of a window of the map is to show, as types.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "render/mask/mask.h"
+#include "server/styles/style_parameters.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze {
+
+/// A picture of any place and size.
+struct WindowRequest {
+  std::vector<std::string> layers;  // valid names, each once, bottom first
+  View view;
+  double scale = 1;  // > 0, of lines and patterns
+  StyleQuery style;
+  TileFormat format = TileFormat::png;
+  std::string caption = {};  // for debug=tile
+};
+
+/// The window that is a tile.
+WindowRequest window_of(TileRequest tile);
+
+/// A picture that is asked for.
+using PictureRequest = std::variant<TileRequest, WindowRequest>;
+
+}  // namespace trapeze
