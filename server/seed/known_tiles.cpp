@@ -111,7 +111,7 @@ LevelSpanSelection KnownTiles::selection_of(const Drawn& drawn, const TileId& ti
     const LayerPaint* paint = drawn.paints[static_cast<std::size_t>(zoom)];
     if (paint == nullptr) continue;
     const TilePlan& plan = plan_.at(zoom);
-    const View view = View::of_tile({zoom, 0, 0}, plan.scale);
+    const View& view = plan.view;
     const Layer::Selection of_zoom = trapeze::selection_of(plan, *paint, view);
     const Stroke& stroke = paint->style.stroke;
     const double lines = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
@@ -202,7 +202,7 @@ KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span
   const LayerPaint& paint = *drawn.paints[static_cast<std::size_t>(zoom)];
   const TilePlan& plan = plan_.at(zoom);
   const Layer& layer = plan.layer_of(paint);
-  const View view = View::of_tile({zoom, 0, 0}, plan.scale);
+  const View& view = plan.view;
   if (has_dust_or_edges(layer, span, trapeze::selection_of(plan, paint, view), paint)) {
     return Seen::something;
   }

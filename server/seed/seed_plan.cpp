@@ -25,6 +25,7 @@ Result<SeedPlan> SeedPlan::make(const SeedRequest& request,
                                 const std::shared_ptr<const Dataset>& dataset) {
   SeedPlan plan;
   plan.zooms_ = request.zooms;
+  plan.scale_ = request.tile.scale;
   const auto [west, south, east, north] = request.bbox.value_or(kWorldBounds);
   const GridPosition north_west = grid_from_lonlat({west, north});
   const GridPosition south_east = grid_from_lonlat({east, south});
@@ -43,7 +44,12 @@ Result<SeedPlan> SeedPlan::make(const SeedRequest& request,
 
 TilePlan SeedPlan::plan_of(const TileId& tile) const {
   TilePlan plan = at(tile.z);
-  plan.tile = tile;
+  TileRequest request;
+  request.tile = tile;
+  request.scale = scale_;
+  WindowRequest window = window_of(std::move(request));
+  plan.view = window.view;
+  plan.caption = std::move(window.caption);
   return plan;
 }
 

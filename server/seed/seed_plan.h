@@ -60,6 +60,7 @@ class SeedPlan {
   const Columns& columns(int zoom) const { return columns_[static_cast<std::size_t>(zoom)]; }
 
   ZoomRange zooms_;
+  int scale_ = 1;
   std::vector<TilePlan> plans_;   // by zoom, from the first
   std::vector<Columns> columns_;  // by zoom, from 0 on
 };

@@ -38,8 +38,8 @@ class Reloader {
  public:
   /// The time between looks at what may change.
   struct Pace {
-    std::chrono::milliseconds watch{0};  // at the files; 0: none
-    std::chrono::milliseconds live{0};   // at the databases of layers that have a live_query
+    std::chrono::milliseconds watch{0};   // at the files; 0: none
+    std::chrono::milliseconds live{250};  // at the databases of layers that have a live_query
   };
 
   /// Does nothing until start(). A change of files is taken up when two looks in a row see the

@@ -104,7 +104,7 @@ class ScarceResourcesTest : public ::testing::Test {
   Metrics metrics_;
   TileService tiles_{{}, make_renderers({RendererKind::software, {}}, 1).renderers};
   Reloader reloader_{{[this] { return layers_of_files({file_}); }, ""},
-                     0ms,
+                     {0ms},
                      data_,
                      tiles_,
                      metrics_,

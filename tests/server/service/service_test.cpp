@@ -431,7 +431,7 @@ TEST(ReloaderTest, TheRendererForgetsMeshesThatAreNotServedAnyMore) {
   // Nothing but being told to reload wakes it: those who ask often must not keep it from tidying
   // up.
   Reloader reloader(
-      {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
+      {layers, ""}, {1h}, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
   reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto draw = [&](const char* query) {
@@ -470,7 +470,7 @@ TEST(ReloaderTest, TheRendererKeepsMeshesOfLayersThatAreServedOn) {
   TileService tiles({}, std::move(renderers));
   {
     Reloader reloader(
-        {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
+        {layers, ""}, {1h}, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
     reloader.start();
     ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
     const std::uint64_t mesh = data.get()->layers()[0].layer->mesh().id;
@@ -512,7 +512,7 @@ TEST(ReloaderTest, ALayerThatLostMostOfItsFeaturesIsNotTakenUnlessItMayShrink) {
   Metrics metrics;
   TileService tiles({}, make_renderers({RendererKind::software, {}}, 1).renderers);
   Reloader reloader(
-      {layers, ""}, 1h, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
+      {layers, ""}, {1h}, data, tiles, metrics, nullptr, [] { FAIL(); }, [] {});
   reloader.start();
   ASSERT_TRUE(holds_within(10s, [&] { return data.get() != nullptr; }));
   const auto bands_served = [&data] { return data.get()->layers()[0].report.loaded; };
@@ -538,7 +538,7 @@ TEST(ReloaderTest, GivesUpIfTheLayersCannotBeReadTheFirstTime) {
     throw std::runtime_error("there is no map");
   };
   Reloader reloader(
-      {layers, ""}, 0ms, data, tiles, metrics, nullptr, [&] { has_given_up = true; },
+      {layers, ""}, {0ms}, data, tiles, metrics, nullptr, [&] { has_given_up = true; },
       [] { FAIL() << "nothing is loaded"; });
   reloader.start();
   EXPECT_TRUE(holds_within(5s, [&] { return has_given_up.load(); }));
