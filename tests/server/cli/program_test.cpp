@@ -296,7 +296,7 @@ TEST(ProgramTest, NamesTheConfigurationThatHasNoLayer) {
   Program program({"serve", "--config", path});
   EXPECT_EQ(program.wait(), 2);
   EXPECT_THAT(program.output(),
-              HasSubstr("nothing to serve: name files, or a [[layer]] in " + path));
+              HasSubstr("there are no layers: name files, or a [[layer]] in " + path));
   std::filesystem::remove(path);
 }
 
@@ -608,7 +608,7 @@ TEST(ProgramTest, APortInUseIsAnErrorThatNamesIt) {
 
 TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"serve"}, "nothing to serve"},
+      {{"serve"}, "there are no layers"},
       {{"serve", "--renderer", "vulkan", fixture("rings.geojson")}, "--renderer: takes \"auto\""},
       {{"serve", "--port", "70000", fixture("rings.geojson")}, "--port: takes an integer from 0"},
       {{"serve", "--set", "limits.scale=9", fixture("rings.geojson")}, "from 1 to 4"},
