@@ -1,6 +1,7 @@
 #include "core/layer/layer_patcher.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -10,6 +11,7 @@
 #include "core/grid/shared_array.h"
 #include "core/layer/dust.h"
 #include "core/layer/layer_contents.h"
+#include "core/layer/overlaps.h"
 #include "core/mesh/mesh_index.h"
 
 namespace trapeze {
@@ -17,6 +19,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr Lifespan kNever{0, 0};
+constexpr double kTouch = 8;  // cells: borders that are nearer to each other run along each other
 
 using Owners = std::vector<std::shared_ptr<const void>>;
 
@@ -29,12 +32,15 @@ RingRange rings_of(const LayerContents& layer, std::uint32_t row) {
   return {row == 0 ? 0 : layer.outline_ends[row - 1], layer.outline_ends[row]};
 }
 
-/// Around features of the layer as they were built.
-Box box_of_features(const Layer& layer, std::span<const std::uint32_t> rows) {
-  Rings rings;
-  for (const std::uint32_t row : rows) layer.append_outline(row, rings);
+/// Around a feature of the layer as it was built.
+Box box_of_feature(const LayerContents& layer, std::uint32_t row) {
+  const RingRange rings = rings_of(layer, row);
   Box box;
-  for (const Point p : rings.points) box.include(p);
+  for (std::uint32_t i = rings.begin; i < rings.end; ++i) {
+    for (std::uint32_t p = i == 0 ? 0 : layer.ring_ends[i - 1]; p < layer.ring_ends[i]; ++p) {
+      box.include(layer.outline_points[p]);
+    }
+  }
   return box;
 }
 
@@ -75,21 +81,313 @@ BuiltUnitsView units_of(const LayerContents& layer) {
           {layer.group_overlaps.data(), layer.group_overlaps.size()}};
 }
 
+void leave_one_of_each(std::vector<std::uint32_t>& items) {
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
 std::invalid_argument several_of(std::int64_t id) {
   return std::invalid_argument("there are several features of the id " + std::to_string(id));
 }
 
-/// Which rows are to be replaced, and which of them may be others than before.
-struct RowMarks {
-  std::vector<std::uint8_t> is_replaced;  // by row
-  std::vector<std::uint8_t> is_changed;   // by row
+/// Trapezoids at full detail of features of two kinds, each of which may lie over those of the
+/// other.
+class CrossOverlaps {
+ public:
+  enum Kind : std::uint32_t { kept, fresh };
 
-  /// Whether what is known of a pair of features holds no longer.
-  bool ends(const FeatureOverlap& pair) const {
-    return (is_replaced[pair.row] != 0 && is_replaced[pair.other] != 0) ||
-           is_changed[pair.row] != 0 || is_changed[pair.other] != 0;
+  explicit CrossOverlaps(const LayerContents& layer) : layer_(layer) {}
+
+  void add(std::uint32_t trapezoid, Kind kind) {
+    kinds_.emplace(layer_.feature_of[trapezoid], kind);
+    trapezoids_.push_back(trapezoid);
   }
+
+  FeatureOverlaps find() const {
+    // In order of rows, as one way to look at two features differs from the other in roundings.
+    std::vector<std::uint32_t> rows;
+    std::vector<std::uint32_t> kinds;
+    std::vector<Box> boxes;
+    for (const auto& [row, kind] : kinds_) {
+      rows.push_back(row);
+      kinds.push_back(kind);
+      boxes.push_back(box_of_feature(layer_, row));
+    }
+    std::vector<MeshTrapezoid> trapezoids;
+    std::vector<std::uint32_t> feature_of;
+    for (const std::uint32_t i : trapezoids_) {
+      trapezoids.push_back(layer_.trapezoids[i]);
+      const auto row = std::ranges::lower_bound(rows, layer_.feature_of[i]);
+      feature_of.push_back(static_cast<std::uint32_t>(row - rows.begin()));
+    }
+    const MeshView mesh{0, layer_.vertices, layer_.edges, trapezoids};
+    const std::vector<Lifespan> lifespans(trapezoids.size());
+    FeatureOverlaps overlaps = find_overlaps({mesh, lifespans, feature_of, kinds, boxes});
+    for (FeatureOverlap& pair : overlaps.pairs) {
+      pair.row = rows[pair.row];
+      pair.other = rows[pair.other];
+    }
+    return overlaps;
+  }
+
+ private:
+  const LayerContents& layer_;
+  std::map<std::uint32_t, std::uint32_t> kinds_;  // by row
+  std::vector<std::uint32_t> trapezoids_;
 };
+
+/// The motes as squares, in order for the index.
+struct Squares {
+  std::vector<Point> vertices;
+  std::vector<MeshEdge> edges;
+  std::vector<MeshTrapezoid> trapezoids;
+  std::vector<Lifespan> lifespans;
+};
+
+Squares squares_of(std::vector<Mote>& motes) {
+  const auto key_of = [](const Mote& mote) {
+    const Point p{static_cast<std::int32_t>(mote.x), static_cast<std::int32_t>(mote.y)};
+    return order_key(Box{p.x, p.y, p.x, p.y}, mote.lifespan);
+  };
+  std::ranges::stable_sort(motes, {}, key_of);
+  Squares squares;
+  for (const Mote& mote : motes) {
+    append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), squares.vertices, squares.edges,
+               squares.trapezoids);
+    MeshTrapezoid& t = squares.trapezoids.back();
+    if (mote.area < 0) std::swap(t.left, t.right);
+    squares.lifespans.push_back(mote.lifespan);
+  }
+  return squares;
+}
+
+/// One patch while it is made.
+class Patching {
+ public:
+  Patching(const Layer& now, const LayerPatcher::Patch& patch,
+           const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id)
+      : now_(now), from_(patch.features), features_(now.features().copy()) {
+    number_rows(row_of_id);
+    mark(patch, row_of_id);
+    lifespans_.assign(now.contents().lifespans.begin(), now.contents().lifespans.end());
+  }
+
+  std::uint32_t row_of(std::uint32_t patch_row) const { return rows_[patch_row]; }
+  std::span<const std::uint32_t> rows() const { return rows_; }
+  std::span<const std::uint32_t> replaced() const { return replaced_; }
+
+  /// Of all that is replaced, which are features of `units`, the trapezoids and the dust.
+  void end_lives(std::span<const Box> units, int most_motes) {
+    for (const Box& unit : units) end_trapezoids(unit);
+    for (const FeatureGrain& grain : now_.grains().grains()) {
+      if (is_replaced_[grain.row] == 0 || grain.is_covered != 0) continue;
+      const Grain gone = grain_of(grain);
+      const int motes = count_of_motes(gone.axis, pixel_of_level(gone.born), most_motes);
+      lay_out(gone.axis, gone.area, motes, [&](double x, double y, double area) {
+        end_mote({x, y, area, {gone.born, kNeverDies}});
+      });
+    }
+  }
+
+  std::vector<Mote>& makeup() { return makeup_; }
+  /// Of all trapezoids: of those that were there before, up to `end`, and of what is new.
+  std::vector<Lifespan> take_lifespans(std::uint32_t end, const LayerContents& from,
+                                       const Squares& makeup) {
+    lifespans_.resize(end, kNever);
+    lifespans_.insert(lifespans_.end(), from.lifespans.begin(), from.lifespans.end());
+    lifespans_.insert(lifespans_.end(), makeup.lifespans.begin(), makeup.lifespans.end());
+    return std::move(lifespans_);
+  }
+  FeatureTable take_features() { return std::move(features_); }
+
+  std::vector<FeatureGrain> grains() const {
+    std::vector<FeatureGrain> fresh(from_.grains().grains().begin(), from_.grains().grains().end());
+    for (FeatureGrain& grain : fresh) grain.row = rows_[grain.row];
+    std::vector<FeatureGrain> kept;
+    kept.reserve(now_.grains().grains().size() + fresh.size());
+    for (const FeatureGrain& grain : now_.grains().grains()) {
+      if (is_replaced_[grain.row] == 0) kept.push_back(grain);
+    }
+    // Both are in order, as they are of layers.
+    std::vector<std::size_t> places;
+    std::size_t last = 0;
+    for (const FeatureGrain& grain : fresh) {
+      const auto place = std::upper_bound(
+          kept.begin() + static_cast<std::ptrdiff_t>(last), kept.end(), order_key(grain),
+          [](std::uint64_t key, const FeatureGrain& other) { return key < order_key(other); });
+      last = static_cast<std::size_t>(place - kept.begin());
+      places.push_back(last);
+    }
+    std::vector<FeatureGrain> all;
+    all.reserve(kept.size() + fresh.size());
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      all.insert(all.end(), kept.begin() + static_cast<std::ptrdiff_t>(done),
+                 kept.begin() + static_cast<std::ptrdiff_t>(places[i]));
+      done = places[i];
+      all.push_back(fresh[i]);
+    }
+    all.insert(all.end(), kept.begin() + static_cast<std::ptrdiff_t>(done), kept.end());
+    return all;
+  }
+
+  /// Of all features of the next state, of whose segments those from `first_fresh` on are new.
+  FeatureOverlaps overlaps(const LayerContents& next, std::size_t first_fresh) const {
+    FeatureOverlaps all = overlaps_with_kept(next, first_fresh);
+    for (const FeatureOverlap& pair : now_.overlaps().pairs()) {
+      const bool is_kept = is_replaced_[pair.row] == 0 && is_replaced_[pair.other] == 0;
+      if (is_kept) all.pairs.push_back(pair);
+    }
+    for (FeatureOverlap pair : from_.overlaps().pairs()) {
+      pair.row = rows_[pair.row];
+      pair.other = rows_[pair.other];
+      all.pairs.push_back(pair);
+    }
+    std::ranges::sort(all.pairs, {},
+                      [](const FeatureOverlap& p) { return std::pair(p.row, p.other); });
+    return all;
+  }
+
+  /// By row.
+  std::vector<bool> removed(std::size_t rows) const {
+    std::vector<bool> is_removed = now_.contents().is_removed;
+    is_removed.resize(rows, false);
+    for (const std::uint32_t row : replaced_) is_removed[row] = true;
+    for (const std::uint32_t row : rows_) is_removed[row] = false;
+    return is_removed;
+  }
+
+  Box bounds() const {
+    Box bounds = now_.bounds();
+    bounds.include(from_.bounds());
+    return bounds;
+  }
+
+ private:
+  /// Of what is new with what stays.
+  FeatureOverlaps overlaps_with_kept(const LayerContents& next, std::size_t first_fresh) const {
+    CrossOverlaps search(next);
+    std::vector<TrapezoidRange> ranges;
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t row = 0; row < rows_.size(); ++row) {
+      const Box around = box_of_feature(from_.contents(), row);
+      if (around.is_empty()) continue;
+      const Box box = with_margin(around, kTouch);
+      ranges.clear();
+      for (std::size_t i = 0; i < first_fresh; ++i) {
+        next.segments[i]->polygons.select(box, 0, 0, next.lifespans, ranges);
+      }
+      for_each_trapezoid(ranges, [&near](std::uint32_t i) { near.push_back(i); });
+    }
+    leave_one_of_each(near);
+    for (const std::uint32_t i : near) search.add(i, CrossOverlaps::kept);
+    for (std::size_t k = first_fresh; k < next.segments.size(); ++k) {
+      const TrapezoidRange range = next.segments[k]->polygons.range();
+      for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        if (next.lifespans[i].contains(0)) search.add(i, CrossOverlaps::fresh);
+      }
+    }
+    return search.find();
+  }
+
+  void number_rows(const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id) {
+    const FeatureTable& table = from_.features();
+    const auto is_same = [](const Field& a, const Field& b) {
+      return a.name == b.name && a.type == b.type;
+    };
+    if (!std::ranges::equal(table.fields(), features_.fields(), is_same)) {
+      throw std::invalid_argument("the attributes are others than those of the layer");
+    }
+    std::unordered_set<std::int64_t> ids;
+    std::vector<Value> values(table.fields().size());
+    for (std::uint32_t i = 0; i < table.size(); ++i) {
+      if (!ids.insert(table.id(i)).second) throw several_of(table.id(i));
+      for (std::size_t field = 0; field < values.size(); ++field) {
+        values[field] = table.value(i, static_cast<int>(field));
+      }
+      const auto known = row_of_id.find(table.id(i));
+      if (known == row_of_id.end()) {
+        rows_.push_back(features_.append(table.id(i), values));
+      } else {
+        rows_.push_back(known->second);
+        features_.replace(known->second, values);
+      }
+    }
+  }
+
+  void mark(const LayerPatcher::Patch& patch,
+            const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id) {
+    is_replaced_.assign(features_.size(), 0);
+    for (const std::int64_t id : patch.ids) {
+      const auto row = row_of_id.find(id);
+      if (row == row_of_id.end()) continue;
+      if (is_replaced_[row->second]++ == 0) replaced_.push_back(row->second);
+    }
+  }
+
+  void end_trapezoids(const Box& box) {
+    if (box.is_empty()) return;
+    ranges_.clear();
+    for (const auto& segment : now_.contents().segments) {
+      segment->polygons.select(box, kLastLevel, 0, lifespans_, ranges_);
+      segment->horizontal_edges.select(box, kLastLevel, 0, lifespans_, ranges_);
+    }
+    for_each_trapezoid(ranges_, [&](std::uint32_t i) {
+      if (is_replaced_[now_.feature_of(i)] != 0) lifespans_[i] = kNever;
+    });
+  }
+
+  /// Ends what stands for it alone; of what stands for others as well, notes what makes up for it.
+  void end_mote(const Mote& mote) {
+    Level from = mote.lifespan.born;
+    const Box box = box_of_mote(mote.x, mote.y, std::abs(mote.area));
+    ranges_.clear();
+    for (const auto& segment : now_.contents().segments) {
+      segment->motes.select(box, kLastLevel, 0, lifespans_, ranges_);
+    }
+    const MeshView& mesh = now_.mesh();
+    bool is_found = false;
+    for_each_trapezoid(ranges_, [&](std::uint32_t i) {
+      const MeshTrapezoid& t = mesh.trapezoids[i];
+      const bool is_hole =
+          mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
+      const bool is_it = !is_found && lifespans_[i].born == from && is_hole == (mote.area < 0) &&
+                         box_of(mesh, t) == box;
+      if (!is_it) return;
+      from = std::exchange(lifespans_[i], kNever).dies;
+      is_found = true;
+    });
+    if (from <= kLastLevel && std::abs(mote.area) >= kSmallestMote) {
+      makeup_.push_back({mote.x, mote.y, -mote.area, {from, kNeverDies}, true});
+    }
+  }
+
+  const Layer& now_;
+  const Layer& from_;
+  FeatureTable features_;
+  std::vector<std::uint32_t> rows_;        // by row of the patch
+  std::vector<std::uint32_t> replaced_;    // rows
+  std::vector<std::uint8_t> is_replaced_;  // by row
+  std::vector<Lifespan> lifespans_;
+  std::vector<Mote> makeup_;
+  std::vector<TrapezoidRange> ranges_;
+};
+
+/// How much there is of what a patch refers to by number.
+struct Ends {
+  std::uint32_t vertices = 0;
+  std::uint32_t edges = 0;
+  std::uint32_t trapezoids = 0;
+  std::uint32_t milestones = 0;
+  std::uint32_t rings = 0;
+};
+
+void append_ends(std::span<const std::uint32_t> ends, std::size_t by,
+                 SharedArray<std::uint32_t>& to) {
+  std::vector<std::uint32_t> shifted(ends.begin(), ends.end());
+  for (std::uint32_t& end : shifted) end += static_cast<std::uint32_t>(by);
+  to.append(shifted);
+}
 
 }  // namespace
 
@@ -125,8 +423,6 @@ struct LayerPatcher::State {
         milestone_levels(whole.milestone_levels),
         outline_points(whole.outline_points),
         ring_ends(whole.ring_ends) {}
-
-  const LayerContents& contents() const { return now->contents(); }
 
   /// Throws as the constructor of LayerPatcher does.
   void number_first() {
@@ -169,8 +465,10 @@ struct LayerPatcher::State {
     for (const std::uint32_t row : rows) {
       const std::uint32_t group = group_of[row];
       if (group != kNone && !done.insert(group).second) continue;
-      boxes.push_back(group == kNone ? box_of_features(*now, {&row, 1})
-                                     : box_of_features(*now, groups[group]));
+      Box& box = boxes.emplace_back();
+      const std::span<const std::uint32_t> unit =
+          group == kNone ? std::span(&row, 1) : std::span<const std::uint32_t>(groups[group]);
+      for (const std::uint32_t member : unit) box.include(box_of_feature(now->contents(), member));
     }
     return boxes;
   }
@@ -221,221 +519,128 @@ struct LayerPatcher::State {
     contents->features = whole.features.copy();
     first = std::make_shared<const Layer>(std::move(contents));
   }
-};
 
-namespace {
-
-/// One patch while it is made.
-class Patching {
- public:
-  Patching(const Layer& now, const LayerPatcher::Patch& patch,
-           const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id)
-      : now_(now), from_(patch.features), features_(now.features().copy()) {
-    number_rows(row_of_id);
-    mark(patch, row_of_id);
-    lifespans_.assign(now.contents().lifespans.begin(), now.contents().lifespans.end());
+  Ends ends() const {
+    return {static_cast<std::uint32_t>(vertices.size()), static_cast<std::uint32_t>(edges.size()),
+            static_cast<std::uint32_t>(trapezoids.size()),
+            static_cast<std::uint32_t>(milestones.size()),
+            static_cast<std::uint32_t>(ring_ends.size())};
   }
 
-  std::uint32_t row_of(std::uint32_t patch_row) const { return rows_[patch_row]; }
-  std::span<const std::uint32_t> rows() const { return rows_; }
-  std::span<const std::uint32_t> replaced() const { return replaced_; }
-
-  /// Of all that is replaced, which are features of `units`, the trapezoids and the dust.
-  void end_lives(std::span<const Box> units, int most_motes) {
-    for (const Box& unit : units) end_trapezoids(unit);
-    for (const FeatureGrain& grain : now_.grains().grains()) {
-      if (marks_.is_replaced[grain.row] == 0 || grain.is_covered != 0) continue;
-      const Grain gone = grain_of(grain);
-      const int motes = count_of_motes(gone.axis, pixel_of_level(gone.born), most_motes);
-      lay_out(gone.axis, gone.area, motes, [&](double x, double y, double area) {
-        end_mote({x, y, area, {gone.born, kNeverDies}});
-      });
-    }
+  void check_room(const LayerContents& from, const Squares& makeup) const {
+    require_countable(vertices.size() + from.vertices.size() + makeup.vertices.size(), "vertices");
+    require_countable(edges.size() + from.edges.size() + makeup.edges.size(), "versions of edges");
+    require_countable(trapezoids.size() + from.trapezoids.size() + makeup.trapezoids.size(),
+                      "versions of trapezoids");
+    require_countable(milestones.size() + from.milestones.size(), "milestones");
+    require_countable(outline_points.size() + from.outline_points.size(), "vertices of rings");
   }
 
-  std::vector<Mote>& makeup() { return makeup_; }
-  std::vector<Lifespan>& lifespans() { return lifespans_; }
-  FeatureTable take_features() { return std::move(features_); }
-
-  std::vector<FeatureGrain> grains() const {
-    std::vector<FeatureGrain> fresh(from_.grains().grains().begin(), from_.grains().grains().end());
-    for (FeatureGrain& grain : fresh) grain.row = rows_[grain.row];
-    std::vector<FeatureGrain> kept;
-    kept.reserve(now_.grains().grains().size() + fresh.size());
-    for (const FeatureGrain& grain : now_.grains().grains()) {
-      if (marks_.is_replaced[grain.row] == 0) kept.push_back(grain);
-    }
-    // Both are in order, as they are of layers.
-    std::vector<std::size_t> places;
-    std::size_t last = 0;
-    for (const FeatureGrain& grain : fresh) {
-      const auto place = std::upper_bound(
-          kept.begin() + static_cast<std::ptrdiff_t>(last), kept.end(), order_key(grain),
-          [](std::uint64_t key, const FeatureGrain& other) { return key < order_key(other); });
-      last = static_cast<std::size_t>(place - kept.begin());
-      places.push_back(last);
-    }
-    std::vector<FeatureGrain> all;
-    all.reserve(kept.size() + fresh.size());
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < fresh.size(); ++i) {
-      all.insert(all.end(), kept.begin() + static_cast<std::ptrdiff_t>(done),
-                 kept.begin() + static_cast<std::ptrdiff_t>(places[i]));
-      done = places[i];
-      all.push_back(fresh[i]);
-    }
-    all.insert(all.end(), kept.begin() + static_cast<std::ptrdiff_t>(done), kept.end());
-    return all;
+  void append_mesh(const LayerContents& from, const Squares& makeup) {
+    append(from.vertices, from.edges, from.trapezoids);
+    append(makeup.vertices, makeup.edges, makeup.trapezoids);
   }
 
-  std::vector<FeatureOverlap> overlaps() const {
-    std::vector<FeatureOverlap> pairs;
-    for (const FeatureOverlap& pair : now_.overlaps().pairs()) {
-      if (!marks_.ends(pair)) pairs.push_back(pair);
+  void append(std::span<const Point> points, std::span<const MeshEdge> their_edges,
+              std::span<const MeshTrapezoid> their_trapezoids) {
+    const Ends by = ends();
+    std::vector<MeshEdge> shifted_edges(their_edges.begin(), their_edges.end());
+    for (MeshEdge& edge : shifted_edges) {
+      edge.upper += by.vertices;
+      edge.lower += by.vertices;
     }
-    for (FeatureOverlap pair : from_.overlaps().pairs()) {
-      pair.row = rows_[pair.row];
-      pair.other = rows_[pair.other];
-      pairs.push_back(pair);
+    std::vector<MeshTrapezoid> shifted(their_trapezoids.begin(), their_trapezoids.end());
+    for (MeshTrapezoid& trapezoid : shifted) {
+      trapezoid.top += by.vertices;
+      trapezoid.bottom += by.vertices;
+      trapezoid.left += by.edges;
+      trapezoid.right += by.edges;
     }
-    std::ranges::sort(pairs, {}, [](const FeatureOverlap& p) { return std::pair(p.row, p.other); });
-    return pairs;
+    vertices.append(points);
+    edges.append(shifted_edges);
+    trapezoids.append(shifted);
   }
 
-  /// By row.
-  std::vector<bool> removed(std::size_t rows) const {
-    std::vector<bool> is_removed = now_.contents().is_removed;
-    is_removed.resize(rows, false);
-    for (const std::uint32_t row : replaced_) is_removed[row] = true;
-    for (const std::uint32_t row : rows_) is_removed[row] = false;
-    return is_removed;
+  // Here and below, arrays that end before dust does are padded first.
+  void append_features(const LayerContents& from, const Ends& before, const Patching& patching) {
+    std::vector<std::uint32_t> rows(from.feature_of.begin(), from.feature_of.end());
+    for (std::uint32_t& row : rows) {
+      if (row != Layer::kNoFeature) row = patching.row_of(row);
+    }
+    feature_of.append(before.trapezoids - feature_of.size(), Layer::kNoFeature);
+    feature_of.append(rows);
+    loop_sizes.append(before.edges - loop_sizes.size(), LoopSize{kLoopSizes - 1});
+    loop_sizes.append(from.loop_sizes);
   }
 
-  Box bounds() const {
-    Box bounds = now_.bounds();
-    bounds.include(from_.bounds());
-    return bounds;
+  void append_milestones(const LayerContents& from, const Ends& before) {
+    milestone_ends.append(before.vertices - milestone_ends.size(), before.milestones);
+    append_ends(from.milestone_ends, before.milestones, milestone_ends);
+    milestones.append(from.milestones);
+    milestone_levels.append(from.milestone_levels);
   }
 
- private:
-  void number_rows(const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id) {
-    const FeatureTable& table = from_.features();
-    const auto is_same = [](const Field& a, const Field& b) {
-      return a.name == b.name && a.type == b.type;
+  void append_outlines(const LayerContents& from) {
+    append_ends(from.ring_ends, outline_points.size(), ring_ends);
+    outline_points.append(from.outline_points);
+  }
+
+  /// What has been appended from `before` on is there, and what it replaces is not.
+  std::shared_ptr<const Layer> next(const LayerContents& from, const Squares& makeup,
+                                    const Ends& before, Patching& patching) const {
+    const LayerContents& old = now->contents();
+    auto next = new_contents({first});
+    next->lifespans = patching.take_lifespans(before.trapezoids, from, makeup);
+    next->moved_outlines = old.moved_outlines;
+    for (std::uint32_t row = 0; row < from.features.size(); ++row) {
+      const RingRange range = rings_of(from, row);
+      next->moved_outlines[patching.row_of(row)] = {before.rings + range.begin,
+                                                    before.rings + range.end};
+    }
+    next->outline_ends = StoredArray<std::uint32_t>::looking_at(first->contents().outline_ends);
+    next->features = patching.take_features();
+    next->is_removed = patching.removed(next->features.size());
+    next->grains = GrainIndex(patching.grains());
+    next->size = {old.size.vertices + from.size.vertices,
+                  old.size.trapezoids + from.size.trapezoids, old.size.edges + from.size.edges,
+                  old.size.motes + from.size.motes + makeup.trapezoids.size()};
+    next->options = old.options;
+    next->bounds = patching.bounds();
+    next->segments = old.segments;
+    append_segments(from, makeup, before.trapezoids, *next);
+    FeatureOverlaps overlaps = patching.overlaps(*next, old.segments.size());
+    next->has_all_overlaps = old.has_all_overlaps && from.has_all_overlaps && overlaps.is_complete;
+    next->overlaps = OverlapTable(std::move(overlaps.pairs), next->features.size());
+    return std::make_shared<const Layer>(std::move(next));
+  }
+
+  static void append_segments(const LayerContents& from, const Squares& makeup,
+                              std::uint32_t trapezoids, LayerContents& next) {
+    const auto index = [&](TrapezoidRange range) {
+      return MeshIndex(next.view, {trapezoids + range.first, range.count}, next.lifespans);
     };
-    if (!std::ranges::equal(table.fields(), features_.fields(), is_same)) {
-      throw std::invalid_argument("the attributes are others than those of the layer");
-    }
-    std::unordered_set<std::int64_t> ids;
-    std::vector<Value> values(table.fields().size());
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-      if (!ids.insert(table.id(i)).second) throw several_of(table.id(i));
-      for (std::size_t field = 0; field < values.size(); ++field) {
-        values[field] = table.value(i, static_cast<int>(field));
-      }
-      const auto known = row_of_id.find(table.id(i));
-      if (known == row_of_id.end()) {
-        rows_.push_back(features_.append(table.id(i), values));
-      } else {
-        rows_.push_back(known->second);
-        features_.replace(known->second, values);
-      }
-    }
+    const MeshSegment& segment = from.first_segment();
+    next.segments.push_back(std::make_shared<const MeshSegment>(
+        MeshSegment{index(segment.polygons.range()), index(segment.horizontal_edges.range()),
+                    index(segment.motes.range()), index(segment.merged_motes.range())}));
+    if (makeup.trapezoids.empty()) return;
+    next.segments.push_back(std::make_shared<const MeshSegment>(
+        MeshSegment{{},
+                    {},
+                    {},
+                    index({static_cast<std::uint32_t>(from.trapezoids.size()),
+                           static_cast<std::uint32_t>(makeup.trapezoids.size())})}));
   }
 
-  void mark(const LayerPatcher::Patch& patch,
-            const std::unordered_map<std::int64_t, std::uint32_t>& row_of_id) {
-    marks_.is_replaced.assign(features_.size(), 0);
-    marks_.is_changed.assign(features_.size(), 0);
-    for (const std::int64_t id : patch.ids) {
-      const auto row = row_of_id.find(id);
-      if (row == row_of_id.end()) continue;
-      if (marks_.is_replaced[row->second]++ == 0) replaced_.push_back(row->second);
-    }
-    for (const std::int64_t id : patch.changed) {
-      const auto row = row_of_id.find(id);
-      if (row != row_of_id.end()) marks_.is_changed[row->second] = 1;
+  void note_rows(const LayerContents& from, const Patching& patching) {
+    for (const std::uint32_t row : patching.replaced()) group_of[row] = kNone;
+    group_of.resize(now->features().size(), kNone);
+    note_groups(from, [&patching](std::uint32_t row) { return patching.row_of(row); });
+    for (std::uint32_t row = 0; row < from.features.size(); ++row) {
+      row_of_id.emplace(from.features.id(row), patching.row_of(row));
     }
   }
-
-  void end_trapezoids(const Box& box) {
-    if (box.is_empty()) return;
-    ranges_.clear();
-    for (const auto& segment : now_.contents().segments) {
-      segment->polygons.select(box, kLastLevel, 0, lifespans_, ranges_);
-      segment->horizontal_edges.select(box, kLastLevel, 0, lifespans_, ranges_);
-    }
-    for_each_trapezoid(ranges_, [&](std::uint32_t i) {
-      if (marks_.is_replaced[now_.feature_of(i)] != 0) lifespans_[i] = kNever;
-    });
-  }
-
-  /// Ends what stands for it alone; of what stands for others as well, notes what makes up for it.
-  void end_mote(const Mote& mote) {
-    Level from = mote.lifespan.born;
-    const Box box = box_of_mote(mote.x, mote.y, std::abs(mote.area));
-    ranges_.clear();
-    for (const auto& segment : now_.contents().segments) {
-      segment->motes.select(box, kLastLevel, 0, lifespans_, ranges_);
-    }
-    const MeshView& mesh = now_.mesh();
-    bool is_found = false;
-    for_each_trapezoid(ranges_, [&](std::uint32_t i) {
-      const MeshTrapezoid& t = mesh.trapezoids[i];
-      const bool is_hole =
-          mesh.vertices[mesh.edges[t.left].upper].x > mesh.vertices[mesh.edges[t.right].upper].x;
-      const bool is_it = !is_found && lifespans_[i].born == from && is_hole == (mote.area < 0) &&
-                         box_of(mesh, t) == box;
-      if (!is_it) return;
-      from = std::exchange(lifespans_[i], kNever).dies;
-      is_found = true;
-    });
-    if (from <= kLastLevel && std::abs(mote.area) >= kSmallestMote) {
-      makeup_.push_back({mote.x, mote.y, -mote.area, {from, kNeverDies}, true});
-    }
-  }
-
-  const Layer& now_;
-  const Layer& from_;
-  FeatureTable features_;
-  std::vector<std::uint32_t> rows_;      // by row of the patch
-  std::vector<std::uint32_t> replaced_;  // rows
-  RowMarks marks_;
-  std::vector<Lifespan> lifespans_;
-  std::vector<Mote> makeup_;
-  std::vector<TrapezoidRange> ranges_;
 };
-
-/// The motes as squares, in order for the index.
-struct Squares {
-  std::vector<Point> vertices;
-  std::vector<MeshEdge> edges;
-  std::vector<MeshTrapezoid> trapezoids;
-  std::vector<Lifespan> lifespans;
-};
-
-Squares squares_of(std::vector<Mote>& motes) {
-  const auto key_of = [](const Mote& mote) {
-    const Point p{static_cast<std::int32_t>(mote.x), static_cast<std::int32_t>(mote.y)};
-    return order_key(Box{p.x, p.y, p.x, p.y}, mote.lifespan);
-  };
-  std::ranges::stable_sort(motes, {}, key_of);
-  Squares squares;
-  for (const Mote& mote : motes) {
-    append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), squares.vertices, squares.edges,
-               squares.trapezoids);
-    MeshTrapezoid& t = squares.trapezoids.back();
-    if (mote.area < 0) std::swap(t.left, t.right);
-    squares.lifespans.push_back(mote.lifespan);
-  }
-  return squares;
-}
-
-TrapezoidRange moved(TrapezoidRange range, std::size_t by) {
-  return {static_cast<std::uint32_t>(range.first + by), range.count};
-}
-
-}  // namespace
 
 LayerPatcher::LayerPatcher(const Layer& whole) : state_(std::make_unique<State>(whole.contents())) {
   const LayerContents& contents = whole.contents();
@@ -490,10 +695,6 @@ std::vector<std::int64_t> LayerPatcher::ids_to_build(std::span<const std::int64_
       }
     });
   }
-  const auto leave_one_of_each = [](std::vector<std::uint32_t>& items) {
-    std::ranges::sort(items);
-    items.erase(std::unique(items.begin(), items.end()), items.end());
-  };
   leave_one_of_each(near);
   for (const std::uint32_t row : near) add_unit(row);
   leave_one_of_each(rows);
@@ -509,119 +710,20 @@ void LayerPatcher::start_over() {
 
 LayerChanges LayerPatcher::apply(const Patch& patch) {
   State& state = *state_;
-  const LayerContents& before = state.contents();
   const LayerContents& from = patch.features.contents();
   Patching patching(*state.now, patch, state.row_of_id);
   std::vector<Box> places = state.boxes_of_units(patching.replaced());
   patching.end_lives(places, state.most_motes);
   const Squares makeup = squares_of(patching.makeup());
-
-  // What follows goes behind whatever there is, and pads what is shorter: arrays that end before
-  // dust does, and those of a patch that failed.
-  const std::size_t v = state.vertices.size();
-  const std::size_t e = state.edges.size();
-  const std::size_t t = state.trapezoids.size();
-  require_countable(v + from.vertices.size() + makeup.vertices.size(), "vertices");
-  require_countable(e + from.edges.size() + makeup.edges.size(), "versions of edges");
-  require_countable(t + from.trapezoids.size() + makeup.trapezoids.size(),
-                    "versions of trapezoids");
-  require_countable(state.milestones.size() + from.milestones.size(), "milestones");
-  require_countable(state.outline_points.size() + from.outline_points.size(), "vertices of rings");
-  const auto append_edges = [&state](std::span<const MeshEdge> edges, std::size_t by) {
-    std::vector<MeshEdge> shifted(edges.begin(), edges.end());
-    for (MeshEdge& edge : shifted) {
-      edge.upper += static_cast<std::uint32_t>(by);
-      edge.lower += static_cast<std::uint32_t>(by);
-    }
-    state.edges.append(shifted);
-  };
-  const auto append_trapezoids = [&state](std::span<const MeshTrapezoid> trapezoids,
-                                          std::size_t vertices, std::size_t edges) {
-    std::vector<MeshTrapezoid> shifted(trapezoids.begin(), trapezoids.end());
-    for (MeshTrapezoid& trapezoid : shifted) {
-      trapezoid.top += static_cast<std::uint32_t>(vertices);
-      trapezoid.bottom += static_cast<std::uint32_t>(vertices);
-      trapezoid.left += static_cast<std::uint32_t>(edges);
-      trapezoid.right += static_cast<std::uint32_t>(edges);
-    }
-    state.trapezoids.append(shifted);
-  };
-  const auto append_ends = [](std::span<const std::uint32_t> ends, std::size_t by,
-                              SharedArray<std::uint32_t>& to) {
-    std::vector<std::uint32_t> shifted(ends.begin(), ends.end());
-    for (std::uint32_t& end : shifted) end += static_cast<std::uint32_t>(by);
-    to.append(shifted);
-  };
-  state.vertices.append(from.vertices);
-  append_edges(from.edges, v);
-  append_trapezoids(from.trapezoids, v, e);
-  append_edges(makeup.edges, state.vertices.size());
-  append_trapezoids(makeup.trapezoids, state.vertices.size(), e + from.edges.size());
-  state.vertices.append(makeup.vertices);
-
-  std::vector<Lifespan>& lifespans = patching.lifespans();
-  lifespans.resize(t, kNever);
-  lifespans.insert(lifespans.end(), from.lifespans.begin(), from.lifespans.end());
-  lifespans.insert(lifespans.end(), makeup.lifespans.begin(), makeup.lifespans.end());
-
-  std::vector<std::uint32_t> rows(from.feature_of.begin(), from.feature_of.end());
-  for (std::uint32_t& row : rows) row = row == Layer::kNoFeature ? row : patching.row_of(row);
-  state.feature_of.append(t - state.feature_of.size(), Layer::kNoFeature);
-  state.feature_of.append(rows);
-
-  state.loop_sizes.append(e - state.loop_sizes.size(), LoopSize{kLoopSizes - 1});
-  state.loop_sizes.append(from.loop_sizes);
-  const auto milestones = static_cast<std::uint32_t>(state.milestones.size());
-  state.milestone_ends.append(v - state.milestone_ends.size(), milestones);
-  append_ends(from.milestone_ends, milestones, state.milestone_ends);
-  state.milestones.append(from.milestones);
-  state.milestone_levels.append(milestones - state.milestone_levels.size(), Level{0});
-  state.milestone_levels.append(from.milestone_levels);
-
-  const auto rings = static_cast<std::uint32_t>(state.ring_ends.size());
-  append_ends(from.ring_ends, state.outline_points.size(), state.ring_ends);
-  state.outline_points.append(from.outline_points);
-
-  auto next = state.new_contents({state.first});
-  next->moved_outlines = before.moved_outlines;
-  for (std::uint32_t row = 0; row < from.features.size(); ++row) {
-    const RingRange range = rings_of(from, row);
-    next->moved_outlines[patching.row_of(row)] = {rings + range.begin, rings + range.end};
-  }
-  next->outline_ends = StoredArray<std::uint32_t>::looking_at(state.first->contents().outline_ends);
-  next->features = patching.take_features();
-  next->is_removed = patching.removed(next->features.size());
-  next->grains = GrainIndex(patching.grains());
-  next->overlaps = OverlapTable(patching.overlaps(), next->features.size());
-  next->has_all_overlaps = before.has_all_overlaps && from.has_all_overlaps;
-  next->size = {before.size.vertices + from.size.vertices,
-                before.size.trapezoids + from.size.trapezoids, before.size.edges + from.size.edges,
-                before.size.motes + from.size.motes + makeup.trapezoids.size()};
-  next->options = before.options;
-  next->bounds = patching.bounds();
-  next->segments = before.segments;
-  const auto index = [&](TrapezoidRange range, std::size_t by) {
-    return MeshIndex(next->view, moved(range, by), lifespans);
-  };
-  const MeshSegment& segment = from.first_segment();
-  next->segments.push_back(std::make_shared<const MeshSegment>(
-      MeshSegment{index(segment.polygons.range(), t), index(segment.horizontal_edges.range(), t),
-                  index(segment.motes.range(), t), index(segment.merged_motes.range(), t)}));
-  const TrapezoidRange rest{0, static_cast<std::uint32_t>(makeup.trapezoids.size())};
-  if (rest.count > 0) {
-    next->segments.push_back(std::make_shared<const MeshSegment>(
-        MeshSegment{{}, {}, {}, index(rest, t + from.trapezoids.size())}));
-  }
-  next->lifespans = std::move(lifespans);
-
-  for (const std::uint32_t row : patching.replaced()) state.group_of[row] = kNone;
-  state.group_of.resize(next->features.size(), kNone);
-  state.note_groups(from, [&patching](std::uint32_t row) { return patching.row_of(row); });
-  for (std::uint32_t row = 0; row < from.features.size(); ++row) {
-    state.row_of_id.emplace(from.features.id(row), patching.row_of(row));
-  }
+  state.check_room(from, makeup);
+  const Ends ends = state.ends();
+  state.append_mesh(from, makeup);
+  state.append_features(from, ends, patching);
+  state.append_milestones(from, ends);
+  state.append_outlines(from);
+  state.now = state.next(from, makeup, ends, patching);
+  state.note_rows(from, patching);
   ++state.patches;
-  state.now = std::make_shared<const Layer>(std::move(next));
   const std::vector<Box> fresh = state.boxes_of_units(patching.rows());
   places.insert(places.end(), fresh.begin(), fresh.end());
   LayerChanges changes;

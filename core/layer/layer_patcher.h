@@ -50,16 +50,15 @@ class LayerPatcher {
   struct Patch {
     /// As ids_to_build() said.
     std::span<const std::int64_t> ids;
-    /// Those of them that may be others than before.
-    std::span<const std::int64_t> changed;
     /// All of them that there are now, with their attributes, in that order, built as the whole
     /// layer was. The fields are those of the layer.
     const Layer& features;
   };
   /// Makes the next state, and returns where it may look different. A feature that was there before
   /// keeps its row; new ones come after all others. Throws std::length_error, and changes nothing,
-  /// if there are more of anything than 32 bits count; std::invalid_argument if the fields are
-  /// others.
+  /// if there are more of anything than 32 bits count; std::invalid_argument, likewise, if the
+  /// fields are others or two features have one id; std::bad_alloc, after which nothing more can
+  /// be applied.
   LayerChanges apply(const Patch& patch);
 
   /// Goes back to the first state, as if nothing had been applied. What has been appended stays

@@ -76,10 +76,11 @@ std::optional<ServedLayer> LiveLayer::next() {
 std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   const auto start = std::chrono::steady_clock::now();
   const std::optional<Reading> reading = read_changes(ids);
-  is_worn_ = !reading;
-  if (is_worn_) return std::nullopt;
+  is_worn_ = true;  // so it is if there is too much, or if it cannot be applied
+  if (!reading) return std::nullopt;
   const Layer& features = *reading->features.layer;
-  LayerChanges changes = patcher_->apply({reading->ids, ids, features});
+  LayerChanges changes = patcher_->apply({reading->ids, features});
+  is_worn_ = false;
   changed_.insert(ids.begin(), ids.end());
   take_step(std::move(changes), revision_of(features));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -99,7 +100,7 @@ std::optional<ServedLayer> LiveLayer::join_patches() {
   patcher_->start_over();
   const std::optional<Reading> reading = read_changes(changed);
   if (!reading) return std::nullopt;
-  patcher_->apply({reading->ids, changed, *reading->features.layer});
+  patcher_->apply({reading->ids, *reading->features.layer});
   is_worn_ = false;
   take_step({}, changed.size());
   return served_;

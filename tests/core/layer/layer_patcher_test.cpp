@@ -1,9 +1,11 @@
 #include "core/layer/layer_patcher.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <random>
@@ -164,10 +166,17 @@ void expect_found(const Layer& layer, Level level, const std::vector<TrapezoidRa
   });
 }
 
+template <typename Set>
+std::vector<typename Set::value_type> difference(const Set& one, const Set& other) {
+  std::vector<typename Set::value_type> items;
+  std::ranges::set_symmetric_difference(one, other, std::back_inserter(items));
+  return items;
+}
+
 void expect_same(const Layer& patched, const Layer& whole) {
   EXPECT_EQ(features_of(patched), features_of(whole));
-  EXPECT_EQ(grains_of(patched), grains_of(whole));
-  EXPECT_EQ(overlaps_of(patched), overlaps_of(whole));
+  EXPECT_THAT(difference(grains_of(patched), grains_of(whole)), ::testing::IsEmpty());
+  EXPECT_THAT(difference(overlaps_of(patched), overlaps_of(whole)), ::testing::IsEmpty());
   for (int level = 0; level <= kLastLevel; level += 9) {
     SCOPED_TRACE("level " + std::to_string(level));
     const auto at = static_cast<Level>(level);
@@ -175,11 +184,13 @@ void expect_same(const Layer& patched, const Layer& whole) {
     std::vector<TrapezoidRange> other;
     patched.select({kEverywhere, at, at, SmallPolygons::drop}, one);
     whole.select({kEverywhere, at, at, SmallPolygons::drop}, other);
-    EXPECT_EQ(drawn_of(patched, at, one), drawn_of(whole, at, other));
+    EXPECT_THAT(difference(drawn_of(patched, at, one), drawn_of(whole, at, other)),
+                ::testing::IsEmpty());
     expect_found(patched, at, one, {-3000, -3000, 5000, 4000});
     patched.select_horizontal_edges(kEverywhere, at, one);
     whole.select_horizontal_edges(kEverywhere, at, other);
-    EXPECT_EQ(drawn_of(patched, at, one), drawn_of(whole, at, other));
+    EXPECT_THAT(difference(drawn_of(patched, at, one), drawn_of(whole, at, other)),
+                ::testing::IsEmpty());
     const DustSum dust = dust_of(patched, at);
     const DustSum expected = dust_of(whole, at);
     EXPECT_NEAR(dust.area, expected.area, 2 * (dust.roundings + expected.roundings));
@@ -191,6 +202,7 @@ class Edited {
  public:
   Edited(unsigned seed, const LayerOptions& options) : random_(seed), options_(options) {
     for (Rings& rings : sample_map(seed)) features_.push_back({next_id_++, rings, name()});
+    first_features_ = features_;
     patcher_ = std::make_unique<LayerPatcher>(*build(features_, options));
   }
 
@@ -214,13 +226,18 @@ class Edited {
       const auto feature = std::ranges::find(features_, id, &Feature::id);
       if (feature != features_.end()) features.push_back(*feature);
     }
-    return patcher_->apply({to_build, ids, *build(features, options_)});
+    return patcher_->apply({to_build, *build(features, options_)});
+  }
+
+  /// The features, too, are those of the first state.
+  void start_over() {
+    patcher_->start_over();
+    features_ = first_features_;
   }
 
   const Layer& patched() const { return *patcher_->now(); }
   const LayerPatcher& patcher() const { return *patcher_; }
   std::unique_ptr<Layer> whole() const { return build(features_, options_); }
-  std::size_t size() const { return features_.size(); }
 
  private:
   std::size_t below(std::size_t end) {
@@ -258,6 +275,7 @@ class Edited {
   std::mt19937 random_;
   const LayerOptions options_;
   std::int64_t next_id_ = 100;
+  Features first_features_;
   Features features_;  // new ones come last, as in the layer
   std::unique_ptr<LayerPatcher> patcher_;
 };
@@ -280,6 +298,61 @@ TEST(LayerPatcherTest, APatchedLayerIsTheOneBuiltAnew) {
       }
     }
   }
+}
+
+TEST(LayerPatcherTest, StatesThatAreInUseStayAsTheyWere) {
+  Edited map(3, {});
+  const std::shared_ptr<const Layer> first = map.patcher().now();
+  const std::unique_ptr<Layer> whole = map.whole();
+  for (int step = 0; step < 5; ++step) map.edit(3);
+  expect_same(*first, *whole);
+}
+
+TEST(LayerPatcherTest, StartsOverFromTheFirstState) {
+  Edited map(5, {});
+  const std::unique_ptr<Layer> whole = map.whole();
+  for (int step = 0; step < 4; ++step) map.edit(2);
+  EXPECT_EQ(map.patcher().patches(), 4u);
+  map.start_over();
+  EXPECT_EQ(map.patcher().patches(), 0u);
+  expect_same(map.patched(), *whole);
+  for (int step = 0; step < 4; ++step) {
+    map.edit(2);
+    expect_same(map.patched(), *map.whole());
+  }
+}
+
+TEST(LayerPatcherTest, ChangesAreWhereSomethingLooksDifferent) {
+  Edited map(7, {});
+  for (int step = 0; step < 10; ++step) {
+    const std::shared_ptr<const Layer> before = map.patcher().now();
+    const LayerChanges told = map.edit(1);
+    Box all;
+    for (const LayerChanges::Place& place : told.places) all.include(place.box);
+    for (const LayerChanges::Side& side :
+         changes_between(*before, map.patched(), Ids::do_not_matter).sides) {
+      Box box;
+      box.include(side.upper);
+      box.include(side.lower);
+      EXPECT_TRUE(all.intersects(box));
+    }
+  }
+}
+
+TEST(LayerPatcherTest, RefusesFeaturesOfOneIdAndOtherAttributes) {
+  const Features twice = {{1, random_shape(1), "a"}, {1, random_shape(2), "b"}};
+  EXPECT_THROW(LayerPatcher(*build(twice, {})), std::invalid_argument);
+  const Features once = {{1, random_shape(1), "a"}};
+  LayerPatcher patcher(*build(once, {}));
+  const std::vector<std::int64_t> ids = {1};
+  EXPECT_THROW(patcher.apply({ids, *build(twice, {})}), std::invalid_argument);
+  std::vector<LayerBuilder> builders;
+  builders.emplace_back(LayerOptions());
+  FeatureTable other(std::vector<Field>{{"height", FieldType::real}});
+  other.append(1, std::vector<Value>{2.5});
+  const auto layer = LayerBuilder::join(builders, std::move(other));
+  EXPECT_THROW(patcher.apply({ids, *layer}), std::invalid_argument);
+  EXPECT_EQ(patcher.now(), patcher.first());
 }
 
 }  // namespace
