@@ -699,6 +699,7 @@ std::vector<std::int64_t> LayerPatcher::ids_to_build(std::span<const std::int64_
   for (const std::uint32_t row : near) add_unit(row);
   leave_one_of_each(rows);
   std::vector<std::int64_t> all;
+  all.reserve(rows.size() + fresh.size());
   for (const std::uint32_t row : rows) all.push_back(now.features().id(row));
   all.insert(all.end(), fresh.begin(), fresh.end());
   return all;

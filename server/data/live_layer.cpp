@@ -31,6 +31,18 @@ double reach_of(const LayerConfig& config) {
   return kTouch + 12 * kCellsPerMetre * config.close_gaps.value_or(0);
 }
 
+/// Around each of its features.
+std::vector<Box> places_of(const Layer& features) {
+  std::vector<Box> places;
+  for (std::uint32_t row = 0; row < features.features().size(); ++row) {
+    Rings rings;
+    features.append_outline(row, rings);
+    Box& box = places.emplace_back();
+    for (const Point p : rings.points) box.include(p);
+  }
+  return places;
+}
+
 /// How many there are.
 std::size_t features_of(const Layer& layer) {
   std::size_t features = 0;
@@ -133,17 +145,6 @@ std::optional<LiveLayer::Reading> LiveLayer::read_changes(
   if (is_much(ids.size())) return std::nullopt;
   if (!std::ranges::equal(ids, changed)) features = read(ids);
   return Reading{std::move(ids), std::move(features)};
-}
-
-std::vector<Box> LiveLayer::places_of(const Layer& features) const {
-  std::vector<Box> places;
-  for (std::uint32_t row = 0; row < features.features().size(); ++row) {
-    Rings rings;
-    features.append_outline(row, rings);
-    Box& box = places.emplace_back();
-    for (const Point p : rings.points) box.include(p);
-  }
-  return places;
 }
 
 LoadedLayer LiveLayer::read(std::span<const std::int64_t> ids) const {

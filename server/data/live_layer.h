@@ -45,7 +45,6 @@ class LiveLayer {
   std::optional<Reading> read_changes(std::span<const std::int64_t> changed) const;
   std::optional<ServedLayer> join_patches();
   void take_step(LayerChanges changes, std::uint64_t what);
-  std::vector<Box> places_of(const Layer& features) const;
   LoadedLayer read(std::span<const std::int64_t> ids) const;
 
   LayerConfig config_;
