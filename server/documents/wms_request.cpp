@@ -134,7 +134,8 @@ bool is_set(std::span<const QueryPair> query, std::string_view name, std::string
 void add_style_of(const std::string& layer, const StyleQuery& style,
                   std::vector<QueryPair>& query) {
   const std::vector<QueryPair> own = query;
-  for (const StyleSetting& setting : StyleQuery().over(style, {&layer, 1}).settings()) {
+  const StyleQuery of_layer = StyleQuery().over(style, {&layer, 1});
+  for (const StyleSetting& setting : of_layer.settings()) {
     const StyleParameter& parameter = style_parameter(setting.parameter);
     if (is_set(own, parameter.name, layer)) continue;
     const ParameterValue* value = style.find(layer, setting.parameter);  // its own comes first

@@ -81,7 +81,7 @@ class Reloader {
   std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers) const;
   bool wait_for_a_reason();
   bool has_settled_change();
-  void publish(std::shared_ptr<const Dataset> dataset);
+  void publish(std::shared_ptr<const Dataset> loaded);
   void begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded);
   /// Takes up what has changed in databases. False if a layer has to be read whole again.
   bool follow_live();
