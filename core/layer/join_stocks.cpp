@@ -14,6 +14,7 @@
 #include "core/grid/radix_sort.h"
 #include "core/layer/dust.h"
 #include "core/layer/layer_contents.h"
+#include "core/layer/motes_of_grains.h"
 #include "core/layer/overlaps.h"
 
 namespace trapeze {
@@ -298,31 +299,11 @@ void take_shared(const TakenOver& taken, std::vector<FeatureOverlap>& shared) {
   }
 }
 
-/// Vertices of the graphs that a layer is built of.
-std::size_t count_vertices(const LayerContents& layer) {
-  std::size_t vertices = 0;
-  for (const FeatureUnit& unit : layer.feature_units) vertices += unit.vertices;
-  for (const GroupUnit& unit : layer.group_units) vertices += unit.vertices;
-  return vertices;
-}
-
 /// The dust of a layer.
 struct Dust {
   std::vector<FeatureGrain> grains;  // in order for the index
   std::vector<Mote> motes;
 };
-
-/// What small loops left behind where features are not told apart: a place that others cover is as
-/// it was.
-std::vector<Grain> uncovered(const std::vector<FeatureGrain>& grains) {
-  std::vector<Grain> result;
-  result.reserve(grains.size());
-  for (const FeatureGrain& grain : grains) {
-    if (grain.is_covered != 0) continue;
-    result.push_back({{grain.from, grain.to}, grain.area(), grain.born, grain.row});
-  }
-  return result;
-}
 
 /// The order of `count` items by key; of equal keys, by index.
 template <typename KeyOf>
@@ -570,15 +551,6 @@ void order_milestones(GrowingLayer& layer, LayerContents& to) {
   to.milestone_levels = std::move(levels);
 }
 
-/// The square of a mote as a trapezoid; one of negative area has its edges swapped.
-void append_mote(const Mote& mote, GrowingLayer& layer) {
-  append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), layer.vertices, layer.edges,
-             layer.mesh.trapezoids);
-  if (mote.area < 0)
-    std::swap(layer.mesh.trapezoids.back().left, layer.mesh.trapezoids.back().right);
-  layer.mesh.lifespans.push_back(mote.lifespan);
-}
-
 /// Single motes first, then merged ones; returns the number of single ones.
 std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
   require_countable(layer.vertices.size() + 4 * motes.size(), "vertices");
@@ -587,15 +559,13 @@ std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
   using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
   std::vector<Key> keys;
   for (std::size_t i = 0; i < motes.size(); ++i) {
-    const Point p{static_cast<std::int32_t>(std::lround(motes[i].x)),
-                  static_cast<std::int32_t>(std::lround(motes[i].y))};
-    keys.emplace_back(motes[i].is_merged, order_key(Box{p.x, p.y, p.x, p.y}, motes[i].lifespan),
-                      static_cast<std::uint32_t>(i));
+    keys.emplace_back(motes[i].is_merged, order_key(motes[i]), static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   std::uint32_t singles = 0;
   for (const auto& [is_merged, key, i] : keys) {
-    append_mote(motes[i], layer);
+    append_mote(motes[i], layer.vertices, layer.edges, layer.mesh.trapezoids);
+    layer.mesh.lifespans.push_back(motes[i].lifespan);
     singles += !is_merged;
   }
   return singles;
@@ -683,7 +653,7 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   const auto launch = threads > 1 ? std::launch::async : std::launch::deferred;
   // In the order of the grains, so that sums do not depend on who built what.
   std::future<Dust> settling = std::async(launch, [&, grains = take_grains(stocks, parts),
-                                                   vertices = count_vertices(*layer)]() mutable {
+                                                   vertices = layer->count_vertices()]() mutable {
     order_grains(taken, arrays.graph_of, grains);
     std::vector<Mote> motes = settle(uncovered(grains), vertices);
     return Dust{std::move(grains), std::move(motes)};

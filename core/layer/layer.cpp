@@ -152,12 +152,7 @@ void Layer::small_polygons(const Selection& selection, std::vector<Box>& places)
 
 void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   const LayerContents& c = *contents_;
-  RingRange range;
-  if (const auto moved = c.moved_outlines.find(row); moved != c.moved_outlines.end()) {
-    range = moved->second;
-  } else if (row < c.outline_ends.size()) {
-    range = {row == 0 ? 0 : c.outline_ends[row - 1], c.outline_ends[row]};
-  }
+  const RingRange range = c.rings_of(row);
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
     const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
     // Of a file that is cut off while it is mapped, ends may read as zero.

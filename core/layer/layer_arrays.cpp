@@ -155,10 +155,7 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
-  arrays.units = {{c.feature_units.data(), c.feature_units.size()},
-                  {c.group_units.data(), c.group_units.size()},
-                  {c.group_members.data(), c.group_members.size()},
-                  {c.group_overlaps.data(), c.group_overlaps.size()}};
+  arrays.units = c.units();
   arrays.cells = c.features.cells();
   arrays.fields.assign(c.features.fields().begin(), c.features.fields().end());
   arrays.horizontal_edges = segment.horizontal_edges.range().count;

@@ -36,6 +36,11 @@ struct LayerContents {
   const MeshSegment& first_segment() const { return *segments.front(); }
   /// Whether there is no more than what was built whole.
   bool is_whole() const { return segments.size() == 1; }
+  /// Of the feature, as it was built; none if there are none.
+  RingRange rings_of(std::uint32_t row) const;
+  BuiltUnitsView units() const;
+  /// Of the graphs that the layer is built of.
+  std::size_t count_vertices() const;
 
   std::shared_ptr<const void> mapping;  // owns the memory of the arrays that are views
   StoredArray<Point> vertices;

@@ -11,6 +11,7 @@
 #include "core/grid/shared_array.h"
 #include "core/layer/dust.h"
 #include "core/layer/layer_contents.h"
+#include "core/layer/motes_of_grains.h"
 #include "core/layer/overlaps.h"
 #include "core/mesh/mesh_index.h"
 
@@ -23,18 +24,9 @@ constexpr double kTouch = 8;  // cells: borders that are nearer to each other ru
 
 using Owners = std::vector<std::shared_ptr<const void>>;
 
-/// The rings of a feature as they are numbered in its layer.
-RingRange rings_of(const LayerContents& layer, std::uint32_t row) {
-  if (const auto moved = layer.moved_outlines.find(row); moved != layer.moved_outlines.end()) {
-    return moved->second;
-  }
-  if (row >= layer.outline_ends.size()) return {};
-  return {row == 0 ? 0 : layer.outline_ends[row - 1], layer.outline_ends[row]};
-}
-
 /// Around a feature of the layer as it was built.
 Box box_of_feature(const LayerContents& layer, std::uint32_t row) {
-  const RingRange rings = rings_of(layer, row);
+  const RingRange rings = layer.rings_of(row);
   Box box;
   for (std::uint32_t i = rings.begin; i < rings.end; ++i) {
     for (std::uint32_t p = i == 0 ? 0 : layer.ring_ends[i - 1]; p < layer.ring_ends[i]; ++p) {
@@ -52,33 +44,6 @@ Box with_margin(const Box& box, double margin) {
   };
   return {cell(box.min_x - margin), cell(box.min_y - margin), cell(box.max_x + margin),
           cell(box.max_y + margin)};
-}
-
-Grain grain_of(const FeatureGrain& grain) {
-  return {{grain.from, grain.to}, grain.area(), grain.born, grain.row};
-}
-
-/// What small loops left behind that motes stand for.
-std::vector<Grain> uncovered(std::span<const FeatureGrain> grains) {
-  std::vector<Grain> result;
-  for (const FeatureGrain& grain : grains) {
-    if (grain.is_covered == 0) result.push_back(grain_of(grain));
-  }
-  return result;
-}
-
-std::size_t count_vertices(const LayerContents& layer) {
-  std::size_t vertices = 0;
-  for (const FeatureUnit& unit : layer.feature_units) vertices += unit.vertices;
-  for (const GroupUnit& unit : layer.group_units) vertices += unit.vertices;
-  return vertices;
-}
-
-BuiltUnitsView units_of(const LayerContents& layer) {
-  return {{layer.feature_units.data(), layer.feature_units.size()},
-          {layer.group_units.data(), layer.group_units.size()},
-          {layer.group_members.data(), layer.group_members.size()},
-          {layer.group_overlaps.data(), layer.group_overlaps.size()}};
 }
 
 void leave_one_of_each(std::vector<std::uint32_t>& items) {
@@ -145,17 +110,10 @@ struct Squares {
 };
 
 Squares squares_of(std::vector<Mote>& motes) {
-  const auto key_of = [](const Mote& mote) {
-    const Point p{static_cast<std::int32_t>(mote.x), static_cast<std::int32_t>(mote.y)};
-    return order_key(Box{p.x, p.y, p.x, p.y}, mote.lifespan);
-  };
-  std::ranges::stable_sort(motes, {}, key_of);
+  std::ranges::stable_sort(motes, {}, [](const Mote& mote) { return order_key(mote); });
   Squares squares;
   for (const Mote& mote : motes) {
-    append_box(box_of_mote(mote.x, mote.y, std::abs(mote.area)), squares.vertices, squares.edges,
-               squares.trapezoids);
-    MeshTrapezoid& t = squares.trapezoids.back();
-    if (mote.area < 0) std::swap(t.left, t.right);
+    append_mote(mote, squares.vertices, squares.edges, squares.trapezoids);
     squares.lifespans.push_back(mote.lifespan);
   }
   return squares;
@@ -179,12 +137,14 @@ class Patching {
   /// Of all that is replaced, which are features of `units`, the trapezoids and the dust.
   void end_lives(std::span<const Box> units, int most_motes) {
     for (const Box& unit : units) end_trapezoids(unit);
+    std::vector<FeatureGrain> gone;
     for (const FeatureGrain& grain : now_.grains().grains()) {
-      if (is_replaced_[grain.row] == 0 || grain.is_covered != 0) continue;
-      const Grain gone = grain_of(grain);
-      const int motes = count_of_motes(gone.axis, pixel_of_level(gone.born), most_motes);
-      lay_out(gone.axis, gone.area, motes, [&](double x, double y, double area) {
-        end_mote({x, y, area, {gone.born, kNeverDies}});
+      if (is_replaced_[grain.row] != 0) gone.push_back(grain);
+    }
+    for (const Grain& grain : uncovered(gone)) {
+      const int motes = count_of_motes(grain.axis, pixel_of_level(grain.born), most_motes);
+      lay_out(grain.axis, grain.area, motes, [&](double x, double y, double area) {
+        end_mote({x, y, area, {grain.born, kNeverDies}});
       });
     }
   }
@@ -447,7 +407,7 @@ struct LayerPatcher::State {
   /// `row_of` leads from rows of that layer to rows of now.
   template <typename RowOf>
   void note_groups(const LayerContents& layer, const RowOf& row_of) {
-    const BuiltUnitsView units = units_of(layer);
+    const BuiltUnitsView units = layer.units();
     for (std::size_t g = 0; g < units.groups.size(); ++g) {
       std::vector<std::uint32_t>& rows = groups.emplace_back();
       for (const GroupMember& member : units.members_of(g)) {
@@ -593,7 +553,7 @@ struct LayerPatcher::State {
     next->lifespans = patching.take_lifespans(before.trapezoids, from, makeup);
     next->moved_outlines = old.moved_outlines;
     for (std::uint32_t row = 0; row < from.features.size(); ++row) {
-      const RingRange range = rings_of(from, row);
+      const RingRange range = from.rings_of(row);
       next->moved_outlines[patching.row_of(row)] = {before.rings + range.begin,
                                                     before.rings + range.end};
     }
@@ -645,7 +605,8 @@ struct LayerPatcher::State {
 LayerPatcher::LayerPatcher(const Layer& whole) : state_(std::make_unique<State>(whole.contents())) {
   const LayerContents& contents = whole.contents();
   state_->begin_with(contents);
-  state_->most_motes = most_motes_of(uncovered(contents.grains.grains()), count_vertices(contents));
+  state_->most_motes =
+      most_motes_of(uncovered(contents.grains.grains()), contents.count_vertices());
   state_->number_first();
 }
 LayerPatcher::~LayerPatcher() = default;

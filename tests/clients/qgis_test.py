@@ -50,12 +50,12 @@ def tiles_of(pattern):
     return picture
 
 
-def drawn_by_qgis(layer):
+def drawn_by_qgis(layer, scale=1):
     settings = QgsMapSettings()
     settings.setLayers([layer])
     settings.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
-    settings.setOutputSize(QSize(SIZE, SIZE))
-    settings.setOutputDpi(96)
+    settings.setOutputSize(QSize(scale * SIZE, scale * SIZE))
+    settings.setOutputDpi(scale * 96)
     settings.setExtent(EXTENT)
     settings.setBackgroundColor(QColor(Qt.white))
     job = QgsMapRendererParallelJob(settings)
@@ -97,18 +97,7 @@ def check_print(base):
     layer = QgsRasterLayer("IgnoreReportedLayerExtents=1&contextualWMSLegend=0&crs=EPSG:3857&dpiMode=7&format=image/png&layers=land"
                            f"&styles=default&url={base}wms?stroke%3D000%26stroke-width%3D4",
                            "print", "wms")
-    settings = QgsMapSettings()
-    settings.setLayers([layer])
-    settings.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
-    settings.setOutputSize(QSize(2 * SIZE, 2 * SIZE))
-    settings.setOutputDpi(192)
-    settings.setExtent(EXTENT)
-    settings.setBackgroundColor(QColor(Qt.white))
-    job = QgsMapRendererParallelJob(settings)
-    job.start()
-    job.waitForFinished()
-    assert not job.errors(), [error.message for error in job.errors()]
-    shown = bytes_of(job.renderedImage().convertToFormat(QImage.Format_RGB32))
+    shown = bytes_of(drawn_by_qgis(layer, 2))
     box = ",".join(str(number) for number in (EXTENT.xMinimum(), EXTENT.yMinimum(),
                                               EXTENT.xMaximum(), EXTENT.yMaximum()))
     picture = QImage(2 * SIZE, 2 * SIZE, QImage.Format_RGB32)
