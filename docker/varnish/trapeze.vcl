@@ -30,10 +30,28 @@ backend trapeze_2 {
     .first_byte_timeout = 15s;
 }
 
+backend trapeze_3 {
+    .host = "127.0.0.1";
+    .port = "8083";
+    .probe = ready;
+    .connect_timeout = 1s;
+    .first_byte_timeout = 15s;
+}
+
+backend trapeze_4 {
+    .host = "127.0.0.1";
+    .port = "8084";
+    .probe = ready;
+    .connect_timeout = 1s;
+    .first_byte_timeout = 15s;
+}
+
 sub vcl_init {
     new trapeze = directors.shard();
     trapeze.add_backend(trapeze_1);
     trapeze.add_backend(trapeze_2);
+    trapeze.add_backend(trapeze_3);
+    trapeze.add_backend(trapeze_4);
     trapeze.reconfigure();
 }
 
@@ -61,13 +79,17 @@ sub vcl_hash {
 }
 
 sub vcl_backend_fetch {
-    # The second attempt goes to the server that is next for this URL.
+    # Another attempt goes to the server that is next for this URL.
     if (bereq.retries > 0) {
         set bereq.backend = trapeze.backend(by = URL, alt = bereq.retries);
     }
 }
 
 sub vcl_backend_response {
+    # It is busy, or has been started a moment ago.
+    if (beresp.status == 503 && bereq.retries < 2) {
+        return (retry);
+    }
     if (beresp.status >= 500 || beresp.status == 429) {
         set beresp.uncacheable = true;
         return (deliver);
@@ -78,7 +100,7 @@ sub vcl_backend_response {
 }
 
 sub vcl_backend_error {
-    if (bereq.retries < 1) {
+    if (bereq.retries < 2) {
         return (retry);
     }
 }

@@ -111,6 +111,9 @@ struct SeedArguments {
   std::string part;               // I/N; empty: all
   std::string update;             // an archive; may be empty
   std::vector<std::string> join;  // parts, of which an archive is made, and nothing else is done
+  std::string jobs;  // a name of kBatchSystemNames: they are printed, and nothing else is done
+  int parts = 0;     // of these jobs; 0: not said
+  std::vector<std::string> words;  // of the command line, after "seed"
 };
 int run_seed(const SeedArguments& arguments);
 

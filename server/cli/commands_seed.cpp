@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "render/picture/webp.h"
 #include "server/cli/commands.h"
 #include "server/data/layer_summary.h"
+#include "server/seed/batch_jobs.h"
 #include "server/seed/earlier_archive.h"
 #include "server/seed/join.h"
 #include "server/seed/seed_jobs.h"
@@ -109,20 +111,22 @@ TileFormat format_or_throw(const std::string& name) {
   return format;
 }
 
+ZoomRange zooms_or_throw(const std::string& given, int last) {
+  if (given.empty()) throw UsageError("--zooms is missing");
+  const auto zooms = parse_zooms(given);
+  if (zooms && zooms->last <= last) return *zooms;
+  throw UsageError(fmt::format(
+      "--zooms takes a zoom or a range of them such as 0-12, from 0 to {}, given was \"{}\"", last,
+      given));
+}
+
 SeedRequest make_request(const SeedArguments& arguments, const Config& config) {
   SeedRequest request;
   request.tile.layers = layers_of(arguments, config);
   request.tile.scale = arguments.scale;
   request.tile.format = format_or_throw(arguments.format);
   request.tile.style = style_or_throw(arguments.style, request.tile.layers, config.styles);
-  const auto zooms = parse_zooms(arguments.zooms);
-  if (!zooms || zooms->last > config.limits.zoom) {
-    throw UsageError(
-        fmt::format("--zooms takes a zoom or a range of them such as 0-12, from 0 to "
-                    "{}, given was \"{}\"",
-                    config.limits.zoom, arguments.zooms));
-  }
-  request.zooms = *zooms;
+  request.zooms = zooms_or_throw(arguments.zooms, config.limits.zoom);
   if (!arguments.bbox.empty()) {
     request.bbox = parse_bbox(arguments.bbox);
     if (!request.bbox) {
@@ -263,9 +267,35 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
                    : fmt::format("; {} as they were", number_words(last.reused)));
 }
 
+/// Layers and styles are those of the machines that will seed: only what is known without them is
+/// looked at.
+int print_jobs(const SeedArguments& arguments) {
+  const BatchSystem system = word_or_throw("--jobs", arguments.jobs, kBatchSystemNames);
+  if (arguments.parts == 0) throw UsageError("--jobs needs --parts, the number of parts");
+  if (!arguments.part.empty() || !arguments.join.empty()) {
+    throw UsageError("--jobs writes --part and --join itself");
+  }
+  zooms_or_throw(arguments.zooms, kMaxZoom);
+  if (kind_of_archive(arguments.output) == ArchiveKind::folder) {
+    throw UsageError("--jobs needs an --output that ends in .pmtiles or .mbtiles");
+  }
+  constexpr std::array<std::string_view, 3> kNotOfParts{"--jobs", "--parts", "--output"};
+  BatchSeeding seeding{without_options(arguments.words, kNotOfParts), arguments.output,
+                       arguments.parts, arguments.is_sparse};
+  std::erase(seeding.arguments, "--sparse");
+  if (fmt::format("{}{}", fmt::join(seeding.arguments, ""), seeding.output).find('\n') !=
+      std::string::npos) {
+    throw UsageError("--jobs takes no line feed in an argument");
+  }
+  fmt::print("{}", batch_jobs(system, seeding));
+  return 0;
+}
+
 }  // namespace
 
 int run_seed(const SeedArguments& arguments) {
+  if (!arguments.jobs.empty()) return print_jobs(arguments);
+  if (arguments.parts != 0) throw UsageError("--parts goes with --jobs; one part is --part I/N");
   const JoinOptions options{arguments.is_sparse};
   if (arguments.output.empty() && !arguments.is_dry_run) throw UsageError("--output is missing");
   if (!arguments.join.empty()) {
@@ -273,7 +303,6 @@ int run_seed(const SeedArguments& arguments) {
     make_archive(arguments.join, arguments.output, options);
     return 0;
   }
-  if (arguments.zooms.empty()) throw UsageError("--zooms is missing");
   if (!arguments.is_dry_run && arguments.part.empty()) check_place_of_archive(arguments.output);
   const Config config = configure(arguments.serve);
   Work work = prepare_work(arguments, config);

@@ -26,6 +26,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/interruption.h"
 #include "server/config/config_settings.h"
+#include "server/seed/batch_jobs.h"
 #include "server/service/server_log.h"
 #include "server/styles/parameter_table.h"
 #include "server/tiles/tile_request.h"
@@ -95,7 +96,9 @@ constexpr const char* kSeedFooter =
     "    --bbox 14.1,35.7,14.6,36.1 --output malta.mbtiles\n"
     "  trapeze seed --config trapeze.toml --zooms 0-14 --dry-run\n"
     "  trapeze seed --config trapeze.toml --zooms 0-14 --part 3/8 --output world.part3\n"
-    "  trapeze seed --join world.part* --output world.pmtiles\n\n"
+    "  trapeze seed --join world.part* --output world.pmtiles\n"
+    "  trapeze seed --config trapeze.toml --zooms 0-14 --output world.pmtiles --parts 8 \\\n"
+    "    --jobs slurm >seed.sbatch\n\n"
     "Tiles have the bytes that `trapeze serve` with the same options answers with. Where nothing "
     "but\n"
     "one colour is seen they are not drawn, nor looked at one by one. What has been done is kept "
@@ -498,6 +501,15 @@ void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
   seed->add_option("--join", arguments.join,
                    "Make the archive of all these parts, and do nothing else")
       ->type_name("PART ...");
+  seed->add_option("--jobs", arguments.jobs,
+                   fmt::format("Print what seeds the archive in --parts on many machines, and do "
+                               "nothing else: {}",
+                               trapeze::listed(trapeze::kBatchSystemNames.names())))
+      ->type_name("SYSTEM");
+  add_number(*seed, "--parts", "N", "How many parts --jobs divides the work into",
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.parts = trapeze::integer_or_throw(option, text, 1, trapeze::kMostParts);
+             });
 }
 
 /// What follows the name of a benchmark is for the benchmark, --help included.
@@ -652,7 +664,10 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("prepare")) return trapeze::run_prepare(prepare);
   if (app.got_subcommand("diff")) return trapeze::run_diff(diff);
   if (app.got_subcommand("export")) return trapeze::run_export(to_export);
-  if (app.got_subcommand("seed")) return trapeze::run_seed(seed);
+  if (app.got_subcommand("seed")) {
+    seed.words.assign(std::find(argv, argv + argc, std::string_view("seed")) + 1, argv + argc);
+    return trapeze::run_seed(seed);
+  }
   return trapeze::run_render(render);
 }
 

@@ -1,13 +1,14 @@
 // Other people's map clients show our tiles: pages of their own, from another origin than the tiles.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { chmodSync, mkdtempSync, rmSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import test, { after, before } from "node:test";
 
+import { start_nginx } from "./nginx.mjs";
 import {
   HERE, WEB, new_page, save_screenshot, start_browser_and_server,
 } from "./served_viewer.mjs";
@@ -38,17 +39,21 @@ const { browser, server } = await start_browser_and_server(
   ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 );
 let pages;
+let nginx; // nothing where it is not installed
 
 before(async () => {
   execFileSync(process.env.TRAPEZE_BINARY, ["seed", "--config", server.config_file,
     "--layers", "land,lake", "--style", "lake.fill=ff0000", "--zooms", "0-6",
-    "--output", join(FOLDERS["/archives/"], "map.pmtiles")], { stdio: "pipe" });
+    "--output", join(FOLDERS["/archives/"], "world.pmtiles")], { stdio: "pipe" });
+  chmodSync(FOLDERS["/archives/"], 0o755);
+  nginx = await start_nginx(FOLDERS["/archives/"]);
   pages = createServer(answer);
   await new Promise((resolve) => pages.listen(0, "127.0.0.1", resolve));
 });
 
 after(() => {
   pages?.close();
+  nginx?.stop();
   rmSync(FOLDERS["/archives/"], { recursive: true });
 });
 
@@ -155,15 +160,16 @@ const CLIENTS = [
   ["openlayers_xyz", "OpenLayers, by the pattern of addresses", RED, XYZ],
   ["openlayers_wmts", "OpenLayers, from WMTS capabilities", LAKE, WMTS],
   ["maplibre", "MapLibre GL JS, from TileJSON", RED, XYZ],
-  ["leaflet_pmtiles", "Leaflet, from an archive that was seeded", RED, [/map\.pmtiles$/]],
-  ["maplibre_pmtiles", "MapLibre GL JS, from an archive that was seeded", RED, [/map\.pmtiles$/]],
+  ["leaflet_pmtiles", "Leaflet, from an archive that was seeded", RED, [/world\.pmtiles$/]],
+  ["maplibre_pmtiles", "MapLibre GL JS, from an archive that was seeded", RED, [/world\.pmtiles$/]],
 ];
 
 for (const [name, words, lake, middle_tiles] of CLIENTS) {
   test(`${words}: the map is drawn, in place and in its colours`, async () => {
     const { page, seen } = await new_page(browser, { viewport: { width: SIZE, height: SIZE } });
     const site = `http://127.0.0.1:${pages.address().port}/`;
-    await page.goto(`${site}${name}.html?server=${encodeURIComponent(server.base)}`);
+    const archives = nginx?.base ?? `${site}archives/`;
+    await page.goto(`${site}${name}.html?${new URLSearchParams({ server: server.base, archives })}`);
     await page.waitForFunction(() => window.is_drawn, null, { timeout: 60_000 });
     await save_screenshot(page, `client-${name}`);
     assert_map(await pixels_of_screen(page), lake);
@@ -172,7 +178,7 @@ for (const [name, words, lake, middle_tiles] of CLIENTS) {
     assert.deepEqual(seen.answers.filter(({ status }) => status >= 400), []);
     assert.deepEqual(
       seen.requests.filter((url) => /^https?:/.test(url) && !url.startsWith(site) &&
-        !url.startsWith(server.base)), [], "nothing is fetched from elsewhere");
+        !url.startsWith(server.base) && !url.startsWith(archives)), [], "nothing is fetched from elsewhere");
     for (const tile of middle_tiles) {
       assert.ok(seen.answers.some(({ url }) => tile.test(url)), `no ${tile} was asked for`);
     }

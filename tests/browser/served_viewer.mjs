@@ -29,7 +29,7 @@ function load_playwright() {
   }
 }
 
-function free_port() {
+export function free_port() {
   return new Promise((resolve, reject) => {
     const probe = createServer();
     probe.on("error", reject);

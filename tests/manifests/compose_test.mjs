@@ -78,16 +78,35 @@ test('the replicas may do nothing that they need not, and end in time', () => {
   }
 });
 
-test('a replica may take the memory that a reload of the sample does', () => {
-  for (const name of replicas) assert.ok(parseInt(compose.services[name].mem_limit) >= 2, name);
+test('what is prepared is what the replicas serve, once it is there', () => {
+  const { prepare } = compose.services;
+  const [volume] = Object.keys(compose.volumes);
+  const folder = prepare.command[prepare.command.indexOf('--output') + 1];
+  assert.ok(prepare.volumes.includes(`${volume}:${folder}`));
+  const made = prepare.command.flatMap((file) => file.match(/(\w+)\.fgb$/)?.[1] ?? []);
+  for (const name of replicas) {
+    const { volumes, command, depends_on } = compose.services[name];
+    const [source, target] = volumes.find((each) => each.includes('trapeze.toml')).split(':');
+    assert.equal(command[command.indexOf('--config') + 1], target);
+    const [, maps] = volumes.find((each) => each.startsWith(`${volume}:`)).split(':');
+    const served = [...read(source).matchAll(/^prepared = "(.*)"/gm)].map((match) => match[1]);
+    assert.deepEqual(served, made.map((layer) => `${maps}/${layer}.trapeze`));
+    assert.equal(depends_on.prepare.condition, 'service_completed_successfully');
+  }
 });
 
-test('their variables are settings', () => {
+test('a replica may take the memory that reading the prepared sample again does', () => {
+  for (const name of replicas) assert.ok(parseInt(compose.services[name].mem_limit) >= 1, name);
+});
+
+test('the configuration of the replicas takes their variables', () => {
   const defaultsTaken = (value) => value.replace(/\$\{\w+:-([^}]*)\}/g, '$1');
+  const file = path.join(folder, 'kubernetes/replicas/trapeze.toml');
   for (const name of replicas) {
     const { environment } = compose.services[name];
+    assert.deepEqual(Object.keys(environment), [...readFileSync(file, 'utf8').matchAll(/\$\{(\w+)/g)].map(([, key]) => key));
     const values = Object.entries(environment).map(([key, value]) => [key, defaultsTaken(value)]);
-    const printed = printedSettings({ environment: Object.fromEntries(values) });
-    for (const [key] of values) assert.match(printed, new RegExp(`# ${key}$`, 'm'));
+    const printed = printedSettings({ file, environment: Object.fromEntries(values) });
+    for (const [, value] of values) assert.ok(printed.includes(value), value);
   }
 });

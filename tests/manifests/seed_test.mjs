@@ -19,8 +19,8 @@ const binary = path.resolve(process.env.TRAPEZE_BINARY ?? path.join(root, 'build
 
 const yaml = await import('js-yaml').catch(() => process.exit(77));
 const read = (name) => yaml.loadAll(readFileSync(path.join(folder, name), 'utf8'));
-const [claim, seed] = read('seed.yaml');
-const [join] = read('join.yaml');
+const [claim, seed, join] = read('seed.yaml');
+const seeding = ['seed', '--config', 'config/trapeze.toml', '--layers', 'countries,water', '--zooms', '0-12'];
 
 async function validate(manifest) {
   const { apiVersion, kind } = manifest;
@@ -49,8 +49,7 @@ function run(work, command, args, variables) {
 
 /// In one go, for comparison.
 function whole(work) {
-  const args = ['seed', '--config', 'config/trapeze.toml', '--layers', 'countries,water', '--zooms', '0-12'];
-  run(work, 'trapeze', [...args, '--output', 'whole.pmtiles']);
+  run(work, 'trapeze', [...seeding, '--output', 'whole.pmtiles']);
   return readFileSync(path.join(work, 'whole.pmtiles'));
 }
 
@@ -62,6 +61,30 @@ function withWorkplace(action) {
     rmSync(work, { recursive: true });
   }
 }
+
+/// What the program writes.
+const written = (system, ...more) =>
+  execFileSync(binary, [...seeding, '--output', 'world.pmtiles', '--parts', '8', '--jobs', system, ...more], { encoding: 'utf8' });
+
+test('the examples are what the program writes', () => {
+  assert.equal(written('kubernetes'), readFileSync(path.join(folder, 'seed.yaml'), 'utf8'));
+  assert.equal(written('slurm'), readFileSync(script, 'utf8'));
+});
+
+test('styles with quotes and ampersands come through shells and YAML as they were', async () => {
+  const style = "countries.filter=A3='CHE'&fill=teal";
+  for (const text of [written('slurm', '--style', style), written('kubernetes', '--style', style)]) {
+    const shell = text.match(/^ *("\$program"|exec trapeze) seed --config(.*) \\$/m)[2];
+    const words = execFileSync('bash', ['-c', `printf '%s\\n' ${shell}`], { encoding: 'utf8' }).split('\n');
+    assert.equal(words[words.indexOf('--style') + 1], style);
+  }
+  for (const manifest of yaml.loadAll(written('kubernetes', '--style', style))) await validate(manifest);
+});
+
+test('what leaves out empty tiles is who joins', () => {
+  assert.match(written('slurm', '--sparse'), /--join "\$archive"\.part\* --output "\$archive" --sparse\n/);
+  assert.match(written('kubernetes', '--sparse'), /--join \/seed\/world\.pmtiles\.part\* --output \/seed\/world\.pmtiles --sparse\n/);
+});
 
 test('every manifest is as its schema says', async () => {
   assert.deepEqual([claim, seed, join].map(({ kind }) => kind), ['PersistentVolumeClaim', 'Job', 'Job']);
@@ -82,24 +105,26 @@ test('all pods have the volume, which several nodes can write, and the image of 
 });
 
 test('the pods of the Job seed all parts, which become the archive of one process', () => {
-  const [container] = seed.spec.template.spec.containers;
-  const { completions } = seed.spec;
-  const variables = Object.fromEntries(container.env.map(({ name, value }) => [name, value]));
-  assert.equal(Number(variables.PARTS), completions);
+  const { completions, parallelism } = seed.spec;
+  assert.equal(parallelism, completions);
+  assert.ok(join.spec.suspend);
   withWorkplace((work) => {
-    const here = ({ command, args }) => [...command.slice(1), ...args].map((text) => text.replaceAll('/seed/', `${work}/`));
+    const here = ({ spec }) => {
+      const [{ command, args }] = spec.template.spec.containers;
+      return [...command.slice(1), ...args].map((text) => text.replaceAll('/seed/', `${work}/`));
+    };
     for (let index = 0; index < completions; ++index) {
-      run(work, 'sh', here(container), { ...variables, JOB_COMPLETION_INDEX: String(index) });
+      run(work, 'sh', here(seed), { JOB_COMPLETION_INDEX: String(index) });
     }
-    run(work, 'sh', here(join.spec.template.spec.containers[0]));
+    run(work, 'sh', here(join));
     assert.ok(readFileSync(path.join(work, 'world.pmtiles')).equals(whole(work)));
   });
 });
 
 test('the tasks of an array on Slurm seed all parts, which become the archive of one process', () => {
   withWorkplace((work) => {
-    const variables = { SEED_FOLDER: work, SLURM_ARRAY_TASK_COUNT: '3', SLURM_CPUS_PER_TASK: '1' };
-    for (const task of ['1', '2', '3']) run(work, 'bash', [script], { ...variables, SLURM_ARRAY_TASK_ID: task });
+    const variables = { SLURM_CPUS_PER_TASK: '1' };
+    for (let task = 1; task <= 8; ++task) run(work, 'bash', [script], { ...variables, SLURM_ARRAY_TASK_ID: String(task) });
     run(work, 'bash', [script, 'join'], variables);
     assert.ok(readFileSync(path.join(work, 'world.pmtiles')).equals(whole(work)));
   });
