@@ -45,15 +45,16 @@ class Seeding {
  public:
   Seeding(const Options& options, const std::string& layer)
       : dataset_(Dataset::load(layers_of_files({layer}))) {
-    renderer_.kind = options.renderer;
+    const auto kind = kRendererNames.find(options.renderer);
+    if (!kind) throw std::runtime_error("there is no renderer " + options.renderer);
+    renderer_.kind = *kind;
     SeedRequest request;
     request.tile.layers = {dataset_->layers().front().config.name};
     const auto zooms = parse_zooms(options.zooms);
     if (!zooms) throw std::runtime_error("--zooms takes a range such as 10-17");
     request.zooms = *zooms;
-    const LayerSummary summary = summarize_layers(request.tile.layers, *dataset_).value();
-    request.bbox = summary.bounds();
-    plan_.emplace(SeedPlan::make(request, dataset_).value());
+    request.bbox = summarize_layers(request.tile.layers, *dataset_)->bounds();
+    plan_ = *SeedPlan::make(request, dataset_);
     KnownTiles known(*plan_, TilePainter::new_class_cache());
     jobs_ = divide_into_jobs(*plan_, known);
   }
