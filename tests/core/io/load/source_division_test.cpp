@@ -50,7 +50,9 @@ std::vector<Square> random_squares(std::uint32_t seed, std::size_t count, double
   std::mt19937 random(seed);
   std::vector<Square> squares;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto next = [&random](double range) { return range * (random() % 100'000) / 100'000; };
+    const auto next = [&random](double range) {
+      return range * static_cast<double>(random() % 100'000) / 1e5;
+    };
     squares.push_back({next(100'000), next(100'000), 100 + next(most_side)});
   }
   return squares;
