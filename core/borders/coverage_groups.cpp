@@ -7,42 +7,19 @@
 #include <tuple>
 #include <utility>
 
+#include "core/grid/disjoint_sets.h"
 #include "core/sweep/owned_segments.h"
 
 namespace trapeze {
 namespace {
 
-/// Disjoint sets of features (union-find); the smallest number of a set represents it.
-class Ties {
- public:
-  explicit Ties(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  void tie(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-  std::vector<std::vector<std::uint32_t>> groups() {
-    std::vector<std::vector<std::uint32_t>> by_first(parent_.size());
-    for (std::uint32_t i = 0; i < parent_.size(); ++i) by_first[find(i)].push_back(i);
-    std::erase_if(by_first, [](const auto& group) { return group.size() < 2; });
-    return by_first;
-  }
-
- private:
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-
-  std::vector<std::uint32_t> parent_;
-};
+/// The sets of two or more, in order of their first members.
+std::vector<std::vector<std::uint32_t>> groups_of(DisjointSets& ties) {
+  std::vector<std::vector<std::uint32_t>> by_first(ties.size());
+  for (std::uint32_t i = 0; i < ties.size(); ++i) by_first[ties.find(i)].push_back(i);
+  std::erase_if(by_first, [](const auto& group) { return group.size() < 2; });
+  return by_first;
+}
 
 /// The box of a feature.
 struct Place {
@@ -103,7 +80,7 @@ std::vector<Box> common_boxes(std::span<const Rings* const> features) {
   return common;
 }
 
-void tie_by_edges(std::span<const Rings* const> features, unsigned threads, Ties& ties) {
+void tie_by_edges(std::span<const Rings* const> features, unsigned threads, DisjointSets& ties) {
   const std::vector<Box> common = common_boxes(features);
   LargeArray<OwnedSegment> segments;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
@@ -117,7 +94,7 @@ void tie_by_edges(std::span<const Rings* const> features, unsigned threads, Ties
   }
 }
 
-void tie_by_boxes(std::span<const Rings* const> features, Ties& ties) {
+void tie_by_boxes(std::span<const Rings* const> features, DisjointSets& ties) {
   for_each_meeting(places_of(features), std::numeric_limits<std::size_t>::max(),
                    [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
 }
@@ -157,7 +134,7 @@ std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> feature
   return found;
 }
 
-void tie_known(std::span<const std::uint32_t> known, Ties& ties) {
+void tie_known(std::span<const std::uint32_t> known, DisjointSets& ties) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> by_group;
   for (std::uint32_t i = 0; i < known.size(); ++i) {
     if (known[i] != kUnknownGroup) by_group.emplace_back(known[i], i);
@@ -186,22 +163,22 @@ constexpr double kNarrowestOverlap = 32;
 std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* const> features,
                                                        CoverageMode coverage, unsigned threads,
                                                        std::span<const std::uint32_t> known) {
-  Ties ties(features.size());
+  DisjointSets ties(features.size());
   const std::vector<std::uint32_t> open = to_be_looked_at(features, known);
   std::vector<const Rings*> rings;
   rings.reserve(open.size());
   for (const std::uint32_t i : open) rings.push_back(features[i]);
-  Ties found(open.size());
+  DisjointSets found(open.size());
   if (coverage == CoverageMode::on) {
     tie_by_boxes(rings, found);
   } else {
     tie_by_edges(rings, threads, found);
   }
-  for (const auto& group : found.groups()) {
+  for (const auto& group : groups_of(found)) {
     for (const std::uint32_t i : group) ties.tie(open[group.front()], open[i]);
   }
   tie_known(known, ties);
-  return ties.groups();
+  return groups_of(ties);
 }
 
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,

@@ -18,6 +18,11 @@ std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixe
   return std::uint64_t{feature_class} << 56 | number(y) << 28 | number(x);
 }
 
+/// The key distinguishes pixels of more cells than the side of the grid over 2^28.
+double told_apart(double pixel) {
+  return std::max(pixel, static_cast<double>(kGridSize) / (1 << 28));
+}
+
 /// The box, moved so that it lies within a pixel if it is no larger.
 Box within_pixel(const Box& box, double x, double y, double pixel) {
   const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) -> std::int64_t {
@@ -37,12 +42,21 @@ Box within_pixel(const Box& box, double x, double y, double pixel) {
 
 void ClassDust::gather(const GrainIndex& grains, const DustSelection& selection,
                        std::span<const std::uint8_t> classes, ClassShapes& shapes) {
+  begin(shapes);
+  add(grains, selection, classes, shapes);
+  finish(selection.pixel, shapes);
+}
+
+void ClassDust::begin(ClassShapes& shapes) {
   sums_.clear();
   keys_.clear();
   shapes.motes.clear();
   shapes.patches.clear();
-  // The key distinguishes pixels of more cells than the side of the grid over 2^28.
-  const double pixel = std::max(selection.pixel, static_cast<double>(kGridSize) / (1 << 28));
+}
+
+void ClassDust::add(const GrainIndex& grains, const DustSelection& selection,
+                    std::span<const std::uint8_t> classes, ClassShapes& shapes) {
+  const double pixel = told_apart(selection.pixel);
   grains.visit(selection.box, selection.births, [&](const FeatureGrain& grain) {
     const std::uint8_t feature_class = classes.empty() ? std::uint8_t{0} : classes[grain.row];
     if (feature_class == kNotDrawn) return;
@@ -53,6 +67,10 @@ void ClassDust::gather(const GrainIndex& grains, const DustSelection& selection,
       add_motes(grain, feature_class, pixel);
     }
   });
+}
+
+void ClassDust::finish(double pixel_of_selections, ClassShapes& shapes) {
+  const double pixel = told_apart(pixel_of_selections);
   for (const auto& [key, sum] : sums_) keys_.push_back(key);
   std::sort(keys_.begin(), keys_.end());
   for (const std::uint64_t key : keys_) {

@@ -51,6 +51,14 @@ class ClassDust {
   void gather(const GrainIndex& grains, const DustSelection& selection,
               std::span<const std::uint8_t> classes, ClassShapes& shapes);
 
+  /// The same of several layers whose features are drawn as those of one: begin(), add() for each,
+  /// finish().
+  void begin(ClassShapes& shapes);
+  void add(const GrainIndex& grains, const DustSelection& selection,
+           std::span<const std::uint8_t> classes, ClassShapes& shapes);
+  /// `pixel` is that of the selections, all of which had the same.
+  void finish(double pixel, ClassShapes& shapes);
+
  private:
   struct Sum {
     double x = 0;  // of places, weighted

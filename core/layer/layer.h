@@ -112,6 +112,9 @@ class Layer {
   /// filled without being drawn; may be false although they do.
   bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
 
+  /// Whether any of the trapezoids that were selected stands for dust.
+  bool have_dust(std::span<const TrapezoidRange> ranges) const;
+
   /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
   /// in one pixel being merged.
   void small_polygons(const Selection& selection, std::vector<Box>& places) const;
@@ -136,8 +139,6 @@ class Layer {
   const LayerContents& contents() const { return *contents_; }  // used by arrays_of
 
  private:
-  bool have_dust(std::span<const TrapezoidRange> ranges) const;
-
   std::unique_ptr<const LayerContents> contents_;
 };
 

@@ -26,6 +26,47 @@ struct ComparedLayer {
   LayerChanges untested;  // without the test of topology, in the states that have that
 };
 
+/// A layer, or all parts of one; throws if one cannot be opened.
+std::vector<const Layer*> layers_of(const ServedLayer& served) {
+  if (served.parts == nullptr) return {served.layer.get()};
+  std::vector<const Layer*> layers;
+  for (const auto& part : served.parts->parts()) {
+    layers.push_back(part->layer().get());  // which the part keeps
+    if (layers.back() == nullptr) throw std::runtime_error(part->problem());
+  }
+  return layers;
+}
+
+/// Of parts that correspond to each other, only those are looked at that are not the same; what has
+/// come from another part is taken away there, and is no change of both together. Where the layers
+/// are divided otherwise, everything of each is compared with nothing, which comes to the same.
+LayerChanges changes_of_parts(const ServedLayer& old, const ServedLayer& now, Ids ids) {
+  LayerChanges all;
+  const auto add = [&](const Layer& before, const Layer& after) {
+    LayerChanges changes = changes_between(before, after, ids);
+    all.sides.insert(all.sides.end(), changes.sides.begin(), changes.sides.end());
+    all.places.insert(all.places.end(), changes.places.begin(), changes.places.end());
+  };
+  if (old.parts != nullptr && now.parts != nullptr &&
+      old.parts->parts().size() == now.parts->parts().size()) {
+    for (std::size_t i = 0; i < now.parts->parts().size(); ++i) {
+      const PreparedPart& before = *old.parts->parts()[i];
+      const PreparedPart& after = *now.parts->parts()[i];
+      if (before.summary().revision == after.summary().revision) continue;
+      const auto layer_before = before.layer();
+      const auto layer_after = after.layer();
+      if (layer_before == nullptr) throw std::runtime_error(before.problem());
+      if (layer_after == nullptr) throw std::runtime_error(after.problem());
+      add(*layer_before, *layer_after);
+    }
+    return all;
+  }
+  const Layer& nothing = old.parts != nullptr ? *old.layer : *now.layer;
+  for (const Layer* layer : layers_of(old)) add(*layer, nothing);
+  for (const Layer* layer : layers_of(now)) add(nothing, *layer);
+  return all;
+}
+
 class Comparison {
  public:
   Comparison(const ChangeRequest& request, std::shared_ptr<const Dataset> before,
@@ -76,6 +117,8 @@ class Comparison {
     compared.name = name;
     if (now.last_step != nullptr && now.last_step->since == old.revision) {
       compared.changes = now.last_step->changes;
+    } else if (old.parts != nullptr || now.parts != nullptr) {
+      compared.changes = changes_of_parts(old, now, ids);
     } else if (old.layer != now.layer) {
       compared.changes = changes_between(*old.layer, *now.layer, ids);
     }

@@ -51,12 +51,14 @@ int run_check(const CheckArguments& arguments);
 
 struct PrepareArguments {
   std::vector<std::string> files;
-  std::string output;  // a folder, made if it is not there
+  std::string output;  // a folder, made if it is not there; of an overview, perhaps its file
   std::string reuse;   // a prepared file, or a folder of them; empty: nothing is taken over
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
-  SourceSelection selection;  // of each file
-  SkipLimit max_skipped;      // of each file
+  SourceSelection selection;      // of each file
+  SkipLimit max_skipped;          // of each file, or each part of one
+  std::string part;               // I/N, or A-B/N; empty: files are not divided
+  std::vector<std::string> join;  // parts, of which an overview is made, and nothing else is done
 };
 int run_prepare(const PrepareArguments& arguments);
 

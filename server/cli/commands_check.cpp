@@ -5,6 +5,7 @@
 
 #include "core/io/export/list_faults.h"
 #include "core/io/prepared/open_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "server/cli/commands.h"
 #include "server/data/load_progress.h"
 #include "server/service/process_figures.h"
@@ -13,8 +14,7 @@ namespace trapeze {
 namespace {
 
 /// Versions of trapezoids over all tolerances, and the dust that small polygons leave.
-void print_history(const Layer& layer, const LoadReport& report) {
-  const LayerSize size = layer.size();
+void print_history(const LayerSize& size, const LoadReport& report) {
   const double vertices = static_cast<double>(std::max<std::size_t>(report.vertices, 1));
   fmt::print("  trapezoids            {} versions, {:.2f} per vertex\n", size.trapezoids,
              static_cast<double>(size.trapezoids) / vertices);
@@ -50,7 +50,34 @@ void print_notes(const std::vector<FeatureNote>& notes) {
   }
 }
 
-void print_report(const LoadReport& report, const Layer& layer) {
+/// Of a layer in parts, which are looked at one after the other.
+void print_parts(const PreparedParts& parts) {
+  fmt::print("  parts                 {}, {}\n", parts.parts().size(),
+             parts.overview() == nullptr ? "without an overview"
+                                         : "and an overview: " + parts.overview()->path());
+  fmt::print("  files                 {} bytes\n", parts.file_size());
+}
+
+/// What is wrong with the files of a layer in parts; empty if nothing is.
+std::string find_damage(const LoadedLayer& loaded) {
+  if (loaded.parts == nullptr) return {};
+  const auto look_at = [](const PreparedPart& part) -> std::string {
+    try {
+      open_summarized_layer(part.path(), part.summary());
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const auto& part : loaded.parts->parts()) {
+    if (std::string problem = look_at(*part); !problem.empty()) return problem;
+  }
+  const auto& overview = loaded.parts->overview();
+  return overview == nullptr ? std::string() : look_at(*overview);
+}
+
+void print_report(const LoadedLayer& loaded) {
+  const LoadReport& report = loaded.report;
   fmt::print("{} ({})\n", report.path, report.origin());
   fmt::print("  features              {}\n", report.features);
   fmt::print("    loaded              {}\n", report.loaded);
@@ -63,8 +90,12 @@ void print_report(const LoadReport& report, const Layer& layer) {
   fmt::print("  vertices              {} ({} in the source)\n", report.vertices,
              report.source_vertices);
   print_coverage(report.coverage);
-  print_history(layer, report);
-  print_memory(layer, report);
+  print_history(loaded.parts != nullptr ? loaded.parts->size() : loaded.layer->size(), report);
+  if (loaded.parts != nullptr) {
+    print_parts(*loaded.parts);
+  } else {
+    print_memory(*loaded.layer, report);
+  }
   fmt::print("  seconds               {:.2f} ({:.2f} to read)\n", report.total_seconds,
              report.read_seconds);
   for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
@@ -84,7 +115,11 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
     fmt::print(stderr, "trapeze: {}\n", error.what());
     return false;
   }
-  print_report(loaded.report, *loaded.layer);
+  print_report(loaded);
+  if (const std::string damage = find_damage(loaded); !damage.empty()) {
+    fmt::print(stderr, "trapeze: {}\n", damage);
+    return false;
+  }
   const std::string excess = find_excess(loaded.report, max_skipped);
   if (!excess.empty()) fmt::print(stderr, "trapeze: {}\n", excess);
   return excess.empty();

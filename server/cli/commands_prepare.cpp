@@ -1,24 +1,70 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
+#include "core/io/load/source_division.h"
+#include "core/io/prepared/join_parts.h"
 #include "core/io/prepared/prepared_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/source_stamp.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
 #include "server/data/load_progress.h"
+#include "server/seed/seed_jobs.h"
 
 namespace trapeze {
 namespace {
 
 constexpr const char* kExtension = ".trapeze";
+
+/// Which parts of how many are prepared.
+struct PartRange {
+  std::uint32_t first = 1;
+  std::uint32_t last = 1;
+  std::uint32_t count = 1;
+
+  bool is_all() const { return first == 1 && last == count; }
+};
+
+/// "I/N" or "A-B/N".
+PartRange parts_or_throw(const std::string& text) {
+  const auto wrong = [&text] {
+    return UsageError(fmt::format(
+        "--part takes I/N, I being from 1 to N, or A-B/N for several, given was \"{}\"", text));
+  };
+  const std::size_t slash = text.find('/');
+  const std::size_t dash = text.find('-');
+  if (slash == std::string::npos) throw wrong();
+  const bool is_range = dash < slash;
+  const auto first = parse_part(is_range ? text.substr(0, dash) + text.substr(slash) : text);
+  const auto last = is_range ? parse_part(text.substr(dash + 1)) : first;
+  if (!first || !last || first->number > last->number) throw wrong();
+  if (first->count > kMostParts) {
+    throw UsageError(
+        fmt::format("--part takes {} parts at most, given was \"{}\"", kMostParts, text));
+  }
+  return {static_cast<std::uint32_t>(first->number), static_cast<std::uint32_t>(last->number),
+          static_cast<std::uint32_t>(first->count)};
+}
+
+/// "buildings-03-of-12.trapeze".
+std::string name_of_part(const std::string& layer, std::uint32_t part, std::uint32_t count) {
+  const std::string of = std::to_string(count);
+  return fmt::format("{}-{:0{}}-of-{}{}", layer, part, of.size(), of, kExtension);
+}
 
 void make_folder(const std::string& folder) {
   std::error_code error;
@@ -70,13 +116,16 @@ void print_reuse(const std::string& file, const EarlierPrepared& earlier,
              report.loaded, file);
 }
 
-void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skipped,
-             const std::string& output, const std::string& reuse) {
+/// Before the file is read, so that a change from here on is noticed now or later.
+SourceStamp stamp_or_throw(const std::string& file) {
   if (is_prepared_file(file)) {
     throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
   }
-  // Before the file is read, so that a change from here on is noticed now or later.
-  const SourceStamp source = stamp_source(file);
+  return stamp_source(file);
+}
+
+void prepare(const std::string& file, const SourceStamp& source, const LoadOptions& how,
+             SkipLimit max_skipped, const std::string& output, const std::string& reuse) {
   const std::string earlier_name = earlier_file(reuse, output);
   const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization);
   const LoadedLayer loaded = load(file, how, earlier);
@@ -106,20 +155,105 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   }
 }
 
+std::shared_ptr<const SourceDivision> divide(const std::string& file, const LoadOptions& how,
+                                             std::uint32_t count) {
+  std::shared_ptr<const SourceDivision> division;
+  {
+    LoadProgress progress(file);
+    division = SourceDivision::of(file, how.selection, how.generalization, count,
+                                  [&progress](double share) { progress.show(share); });
+  }
+  std::uint64_t vertices = 0;
+  std::uint64_t most = 0;
+  std::size_t features = 0;
+  for (const SourceDivision::Part& part : division->parts()) {
+    vertices += part.vertices;
+    most = std::max(most, part.vertices);
+    features += part.features;
+  }
+  fmt::print("{}: {} features with {} vertices in {} parts, of which the largest has {}\n", file,
+             features, vertices, count, most);
+  if (most > 2 * (vertices / count) && division->largest_group() > most / 2) {
+    fmt::print(
+        "  warning: {} of these vertices are of features that come near each other, so that "
+        "they cannot be divided\n",
+        division->largest_group());
+  }
+  return division;
+}
+
+/// The overview of these parts, in that file.
+void join(const std::vector<std::string>& files, const std::string& output) {
+  const auto parts = find_prepared_parts(files, {});
+  LoadedLayer overview;
+  {
+    LoadProgress progress(output);
+    overview = overview_of(parts, [&progress](double share) { progress.show(share); });
+  }
+  save_prepared_layer(output, overview, revision_of(*overview.layer),
+                      parts.front()->summary().source);
+  fmt::print("{}: the overview of {} parts, {} features, {} motes, {:.1f} MB\n", output,
+             parts.size(), overview.report.loaded, overview.layer->size().motes,
+             static_cast<double>(std::filesystem::file_size(output)) / 1e6);
+}
+
+/// Some of the parts of a file, with an overview if they are all of them.
+void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartRange& range,
+                   const PrepareArguments& arguments) {
+  const SourceStamp source = stamp_or_throw(layer.file);
+  LoadOptions of_part = how;
+  of_part.division = divide(layer.file, how, range.count);
+  const std::filesystem::path folder = arguments.output;
+  std::vector<std::string> files;
+  for (of_part.part = range.first; of_part.part <= range.last; ++of_part.part) {
+    files.push_back((folder / name_of_part(layer.name, of_part.part, range.count)).string());
+    prepare(layer.file, source, of_part, arguments.max_skipped, files.back(), arguments.reuse);
+  }
+  if (range.is_all()) join(files, (folder / (layer.name + "-overview" + kExtension)).string());
+}
+
+int run_join(const PrepareArguments& arguments) {
+  if (!arguments.files.empty()) throw UsageError("--join takes parts, and no FILE beside them");
+  if (!arguments.part.empty()) throw UsageError("--join and --part exclude each other");
+  std::filesystem::path output = arguments.output;
+  if (output.extension() != kExtension) {
+    make_folder(arguments.output);
+    output /= std::string("overview") + kExtension;
+  }
+  std::vector<std::string> files;
+  for (const std::string& name : arguments.join) {
+    for (const std::string& file :
+         is_pattern_of_files(name) ? files_of_pattern(name) : std::vector<std::string>{name}) {
+      files.push_back(file);
+    }
+  }
+  join(files, output.string());
+  return 0;
+}
+
 }  // namespace
 
 int run_prepare(const PrepareArguments& arguments) {
+  if (!arguments.join.empty()) return run_join(arguments);
+  if (arguments.files.empty()) throw UsageError("prepare needs a FILE, or parts to --join");
   LoadOptions how;
   how.generalization.weights = word_or_throw("--weights", arguments.weights, kWeightNames);
   apply(arguments.coverage, how.generalization);
   how.selection = arguments.selection;
+  std::optional<PartRange> parts;
+  if (!arguments.part.empty()) parts = parts_or_throw(arguments.part);
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
     try {
-      prepare(layer.file, how, arguments.max_skipped, output.string(), arguments.reuse);
+      if (parts) {
+        prepare_parts(layer, how, *parts, arguments);
+      } else {
+        prepare(layer.file, stamp_or_throw(layer.file), how, arguments.max_skipped, output.string(),
+                arguments.reuse);
+      }
     } catch (const std::exception& error) {
       // Reported here and not by main, so that the files after this one are prepared too.
       fmt::print(stderr, "trapeze: {}\n", error.what());

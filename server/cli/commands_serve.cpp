@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/io/prepared/prepared_parts.h"
 #include "server/base/build_id.h"
 #include "server/cli/commands.h"
 #include "server/config/config_settings.h"
@@ -72,7 +73,9 @@ void check_files_exist(const std::vector<LayerConfig>& layers) {
   for (const LayerConfig& layer : layers) {
     const std::string& file = layer.file_to_open();
     std::error_code error;
-    if (is_file_path(file) && !std::filesystem::exists(file, error)) {
+    if (is_pattern_of_files(file)) {
+      files_of_pattern(file);  // throws if there is none
+    } else if (is_file_path(file) && !std::filesystem::exists(file, error)) {
       throw std::runtime_error(fmt::format("layer \"{}\": there is no file {}", layer.name, file));
     }
   }

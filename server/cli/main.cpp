@@ -111,14 +111,24 @@ constexpr const char* kPrepareFooter =
     "\nExamples:\n"
     "  trapeze prepare buildings.gpkg water.fgb --output prepared\n"
     "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n"
-    "  trapeze prepare buildings.gpkg --output prepared --reuse prepared\n\n"
+    "  trapeze prepare buildings.gpkg --output prepared --reuse prepared\n"
+    "  trapeze prepare country.fgb --part 1-64/64 --output parts\n"
+    "  trapeze prepare country.fgb --part $SLURM_ARRAY_TASK_ID/64 --output parts\n"
+    "  trapeze prepare --join 'parts/*.trapeze' --output parts\n"
+    "  trapeze serve 'parts/*.trapeze'\n\n"
     "A prepared file holds a layer as it is served: it is mapped and not built again, servers on\n"
     "one machine share its memory, and tiles and their ETags are those of FILE. It is refused if "
     "it\n"
     "is damaged, if FILE has changed since, or if this version of Trapeze builds layers "
     "otherwise:\n"
     "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
-    "under a running server without harm; write into it by no other means.";
+    "under a running server without harm; write into it by no other means.\n"
+    "\n"
+    "--part builds a layer part by part, on one machine or on many, in the memory that a part "
+    "takes:\n"
+    "each looks at all of FILE first, and divides it by place in the same way. Features that come\n"
+    "near each other are in one part. All parts together are served as one layer. --join makes an\n"
+    "overview of them, which low zooms need; --part 1-N/N makes it too.";
 
 constexpr const char* kDiffFooter =
     "\nExamples:\n"
@@ -253,7 +263,8 @@ std::string coverage_of_files() {
 void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
   command.add_option("FILE", arguments.files,
                      "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
-                     "a layer named after it. Instead of the layers of the configuration.");
+                     "a layer named after it, as do the parts of a layer together that have such "
+                     "a name as 'parts/*.trapeze'. Instead of the layers of the configuration.");
   command
       .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
@@ -326,8 +337,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   CLI::App* prepare =
       app.add_subcommand("prepare", "Save layers in files that are served without building them");
   prepare->footer(kPrepareFooter);
-  prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads")
-      ->required();
+  prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads");
   prepare
       ->add_option("--weights", arguments.weights,
                    fmt::format("What decides which vertices go: {}; {} if not set",
@@ -350,9 +360,19 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   add_max_skipped(*prepare, arguments.max_skipped, "100%");
   prepare
       ->add_option("--output", arguments.output,
-                   "The folder to write into; each file is named after FILE, and ends in .trapeze")
+                   "The folder to write into; each file is named after FILE, and ends in .trapeze. "
+                   "An overview can be given a name that ends so")
       ->required()
       ->type_name("DIR");
+  prepare
+      ->add_option("--part", arguments.part,
+                   "Prepare the I-th of N parts with about as many vertices each, or those from "
+                   "the A-th to the B-th one after the other")
+      ->type_name("I/N");
+  prepare
+      ->add_option("--join", arguments.join,
+                   "Make an overview of all these parts for low zooms, and do nothing else")
+      ->type_name("PART ...");
   prepare
       ->add_option("--reuse", arguments.reuse,
                    "A file prepared before, or the folder of such files, perhaps that of --output: "

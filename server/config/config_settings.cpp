@@ -591,7 +591,9 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "a number that grows and the id of a feature, with a number greater than {since}"),
       path<LayerConfig>(
           "prepared", [](auto& layer) -> auto& { return layer.prepared; },
-          "made of the file by `trapeze prepare`, and served in its place"),
+          "made of the file by `trapeze prepare`, and served in its place; parts of it by a name "
+          "in "
+          "which * stands for any characters, such as \"parts/*.trapeze\""),
       text<LayerConfig>(
           "title", [](auto& layer) -> auto& { return layer.title; },
           "for people; the name if it is not set"),

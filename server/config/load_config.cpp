@@ -497,7 +497,16 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
 std::string layer_name_of_file(const std::string& file) {
   std::filesystem::path path(file);
   if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
-  std::string name = path.stem().string().substr(0, kMaxUrlNameLength);
+  std::string name = path.stem().string();
+  // Of a pattern, what comes before it, or else the folder.
+  if (const std::size_t wild = name.find_first_of("*?"); wild != std::string::npos) {
+    name = name.substr(0, wild);
+    while (!name.empty() && std::string_view("-_.").find(name.back()) != std::string_view::npos) {
+      name.pop_back();
+    }
+    if (name.empty()) name = path.parent_path().filename().string();
+  }
+  name = name.substr(0, kMaxUrlNameLength);
   for (char& c : name) {
     if (!is_url_name(std::string_view(&c, 1))) c = '_';
   }

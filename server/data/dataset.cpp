@@ -51,14 +51,26 @@ void log_missing_title(const ServedLayer& served) {
                served.config.name, wanted);
 }
 
-void log_report(const LoadReport& report, const Layer& layer) {
+/// What is wrong with a layer in parts that can be served all the same.
+void log_parts(const LoadReport& report, const PreparedParts& parts) {
+  spdlog::info("{}: {} parts, of which each is looked at when it is needed", report.path,
+               parts.parts().size());
+  if (parts.overview() != nullptr || parts.parts().size() == 1) return;
+  spdlog::warn(
+      "{}: there is no overview, so a tile of a low zoom looks at every part; `trapeze prepare "
+      "--join` makes one",
+      report.path);
+}
+
+void log_report(const ServedLayer& served) {
+  const LoadReport& report = served.report;
   spdlog::info(
       "{}: {} of {} features, {} polygons, {} rings, {} vertices, {} trapezoids, {:.1f} MB, "
       "{:.2f} s ({})",
       report.path, report.loaded, report.features, report.polygons, report.rings, report.vertices,
-      layer.mesh().trapezoids.size(),
-      static_cast<double>(layer.memory() + layer.features().memory()) / 1e6, report.total_seconds,
-      report.origin());
+      served.trapezoids(), static_cast<double>(served.memory_of_tested()) / 1e6,
+      report.total_seconds, report.origin());
+  if (served.parts != nullptr) log_parts(report, *served.parts);
   if (report.taken_over > 0) {
     spdlog::info("{}: {} features are as they were and taken over", report.path, report.taken_over);
   }
@@ -225,12 +237,20 @@ ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
   served.source_state = state_of_sources(layer);  // before reading: what changes meanwhile is read
   OpenOptions options = how_to_open(layer);
   options.progress = progress;
+  if (earlier != nullptr) options.earlier_parts = earlier->parts;
   LoadedLayer loaded = open_with(layer, options, earlier);
+  if (loaded.parts != nullptr && layer.has_fast_topology()) {
+    throw std::runtime_error(
+        fmt::format("{}: a layer in parts is not served with topology=fast, for which it would be "
+                    "built again",
+                    loaded.report.path));
+  }
   served.revision = loaded.revision ? *loaded.revision : revision_of(*loaded.layer);
   served.layer = std::move(loaded.layer);
   if (layer.has_fast_topology()) served.untested = build_without_topology_test(*served.layer);
   served.report = std::move(loaded.report);
   served.file = std::move(loaded.file);
+  served.parts = std::move(loaded.parts);
   // Its fields may be in another file.
   if (served.report.driver == "GML" && served.file == nullptr) served.source_state.clear();
   return served;
@@ -248,9 +268,19 @@ OpenOptions how_to_open(const LayerConfig& layer) {
   return options;
 }
 
+std::size_t ServedLayer::trapezoids() const {
+  if (parts == nullptr) return layer->mesh().trapezoids.size();
+  const LayerSize size = parts->size();
+  return size.trapezoids + size.motes;
+}
+
+std::size_t ServedLayer::memory_of_tested() const {
+  if (parts != nullptr) return parts->file_size();
+  return layer->memory() + layer->features().memory();
+}
+
 std::size_t ServedLayer::memory() const {
-  return layer->memory() + layer->features().memory() +
-         (untested == nullptr ? 0 : untested->memory());
+  return memory_of_tested() + (untested == nullptr ? 0 : untested->memory());
 }
 
 Problem damaged_layer(const ServedLayer& layer) {
@@ -311,7 +341,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
     served[i] = layer.get();
   }
   progress.finish();
-  for (const auto& [i, layer] : reading) log_report(served[i].report, *served[i].layer);
+  for (const auto& [i, layer] : reading) log_report(served[i]);
   for (const ServedLayer& layer : served) log_missing_title(layer);
   check_layers(served, previous);
   return std::make_shared<const Dataset>(std::move(served));

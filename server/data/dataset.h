@@ -12,6 +12,7 @@
 #include "core/io/file/mapped_file.h"
 #include "core/io/load/load_layer.h"
 #include "core/io/prepared/open_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_changes.h"
 #include "server/base/problem.h"
@@ -22,11 +23,14 @@ namespace trapeze {
 
 struct ServedLayer {
   LayerConfig config;
+  /// Of a layer in several parts, what they have in common, fields and bounds, and no feature.
   std::shared_ptr<const Layer> layer;  // shared with the dataset before, if it did not change
   LoadReport report;
   std::uint64_t revision = 0;  // revision_of(*layer); of a live layer, by what was replaced too
   std::shared_ptr<const MappedFile> file = {};  // of a prepared layer
   std::string source_state = {};                // state_of_sources() before it was read
+  /// Of a layer in several parts: these. Null of all others.
+  std::shared_ptr<const PreparedParts> parts = {};
   /// Without the topological consistency test; null unless the configuration asks for it.
   std::shared_ptr<const Layer> untested = {};
 
@@ -40,14 +44,27 @@ struct ServedLayer {
   };
   std::shared_ptr<const Step> last_step = {};  // null: it was read whole
 
-  /// The layer to draw; null if it is not there without the test.
+  /// The layer to draw, unless it is in several parts; null if it is not there without the test.
   const Layer* layer_for(Topology topology) const {
     return topology == Topology::strict ? layer.get() : untested.get();
   }
-  /// In bytes: geometry, index and attributes, and what there is of it without the test.
+  /// Of all of its parts.
+  LayerSize size() const { return parts == nullptr ? layer->size() : parts->size(); }
+  /// Versions of trapezoids, horizontal edges and dust among them.
+  std::size_t trapezoids() const;
+  std::size_t memory_of_tested() const;
+  /// In bytes: geometry, index and attributes, and what there is of it without the test. Of a layer
+  /// in parts, that of the files: what is resident may be much less.
   std::size_t memory() const;
-  /// False if its prepared file was written into while it was mapped.
-  bool is_whole() const { return file == nullptr || file->is_whole(); }
+  /// False if a prepared file of it was written into while it was mapped, or is not what it was.
+  bool is_whole() const {
+    if (parts != nullptr) return parts->is_whole();
+    return file == nullptr || file->is_whole();
+  }
+  /// The same, perhaps of a moment ago.
+  bool was_whole_lately() const {
+    return parts != nullptr ? parts->was_whole_lately() : is_whole();
+  }
 };
 
 /// The problem, 503, with a layer whose prepared file was written into.

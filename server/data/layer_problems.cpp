@@ -4,6 +4,7 @@
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/open_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "server/data/dataset.h"
 
 namespace trapeze {
@@ -27,9 +28,9 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
 
 /// In words, that more of a prepared layer was skipped than may be; empty if not.
 std::string find_prepared_excess(const LayerConfig& layer) {
-  if (!is_prepared_file(layer.file_to_open())) return {};
-  return find_excess(open_layer(layer.file_to_open(), how_to_open(layer)).report,
-                     layer.max_skipped);
+  const std::string& file = layer.file_to_open();
+  if (!is_pattern_of_files(file) && !is_prepared_file(file)) return {};
+  return find_excess(open_layer(file, how_to_open(layer)).report, layer.max_skipped);
 }
 
 }  // namespace

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <stdexcept>
 #include <string_view>
+#include <utility>
 
+#include "core/io/prepared/prepared_parts.h"
 #include "server/config/load_config.h"
 
 namespace trapeze {
@@ -21,6 +24,17 @@ std::string write_ahead_log_of(const std::string& source) {
   return source + "-wal";
 }
 
+/// The files that have such a name now, and the folder, which changes when there are others.
+void append_parts(const std::string& pattern, std::vector<std::string>& files) {
+  const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
+  files.push_back(folder.empty() ? "." : folder.string());
+  try {
+    for (std::string& file : files_of_pattern(pattern)) files.push_back(std::move(file));
+  } catch (const std::runtime_error&) {
+    // There are none, which whoever reads them will say.
+  }
+}
+
 /// Whether the source is one file, to which all changes are made itself.
 bool is_in_one_file(const std::string& source) {
   std::error_code error;
@@ -32,6 +46,7 @@ bool is_in_one_file(const std::string& source) {
 
 void append_files(const std::string& source, std::vector<std::string>& files) {
   if (!is_file_path(source)) return;
+  if (is_pattern_of_files(source)) return append_parts(source, files);
   files.push_back(source);
   const std::filesystem::path named(source);
   if (named.extension() != ".shp") {

@@ -9,7 +9,8 @@
 namespace trapeze {
 
 /// Appends the file that a source is, if it is one, and those that belong to it: the parts of a
-/// Shapefile, the write-ahead log that a file of SQLite, such as a GeoPackage, may have.
+/// Shapefile, the write-ahead log that a file of SQLite, such as a GeoPackage, may have; those of a
+/// pattern, and their folder.
 void append_files(const std::string& source, std::vector<std::string>& files);
 
 /// What can be seen of files without reading them: equal as long as none was changed, replaced,

@@ -121,22 +121,37 @@ Json quantiles_json(const std::vector<Counted>& values, std::size_t count) {
   return json;
 }
 
-/// Those of the features that are drawn; the problem is one of the style.
+void count_values(const Layer& layer, const LayerStyle& style, int field,
+                  const std::optional<Box>& box, Counts& counts) {
+  const bool is_part = box && !holds(*box, layer.bounds());
+  const std::vector<bool> rows = is_part ? rows_in(layer, *box) : std::vector<bool>();
+  const Classing classing = style.classing.over(layer.features());
+  const FeatureClassifier classifier(classing, layer.features());
+  for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
+    if (layer.is_removed(row) || (is_part && !rows[row])) continue;
+    if (classifier.class_of(row) == kNotDrawn) continue;
+    counts.add(value_of(layer.features(), row, field));
+  }
+}
+
+/// Those of the features that are drawn; the problem is one of the style, or that a part of the
+/// layer cannot be opened.
 Result<Counts> count_values(const ServedLayer& served, std::size_t position, int field,
                             const StyleQuery& asked, const std::optional<Box>& box) {
   const auto query = complete_style(asked, served.config);
   if (!query) return query.problem();
   const auto style = layer_style(*query, served, position);
   if (!style) return style.problem();
-  const Layer& layer = *served.layer;
-  const bool is_part = box && !holds(*box, layer.bounds());
-  const std::vector<bool> rows = is_part ? rows_in(layer, *box) : std::vector<bool>();
-  const FeatureClassifier classifier(style->classing, layer.features());
   Counts counts;
-  for (std::uint32_t row = 0; row < layer.features().size(); ++row) {
-    if (layer.is_removed(row) || (is_part && !rows[row])) continue;
-    if (classifier.class_of(row) == kNotDrawn) continue;
-    counts.add(value_of(layer.features(), row, field));
+  if (served.parts == nullptr) {
+    count_values(*served.layer, *style, field, box, counts);
+    return counts;
+  }
+  for (const auto& part : served.parts->parts()) {
+    if (box && !box->intersects(part->summary().bounds)) continue;
+    const auto layer = part->layer();  // which the part keeps, and texts are views of it
+    if (layer == nullptr) return damaged_layer(served);
+    count_values(*layer, *style, field, box, counts);
   }
   return counts;
 }

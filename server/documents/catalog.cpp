@@ -81,8 +81,9 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["vertices"] = served.report.vertices;
   json["topologies"] = topologies_json(served);
   json["coverages"] = served.report.coverage.groups;
-  json["trapezoids"] = served.layer->mesh().trapezoids.size();
+  json["trapezoids"] = served.trapezoids();
   json["memory"] = served.memory();
+  if (served.parts != nullptr) json["parts"] = served.parts->parts().size();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;
   json["style"] = style_json(config, position);

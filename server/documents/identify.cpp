@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/layer/features_at.h"
 #include "core/layer/part_at.h"
@@ -113,16 +115,16 @@ class IdentifiedFeatures {
  public:
   explicit IdentifiedFeatures(Point place) : place_(place) {}
 
-  void add(const ServedLayer& served, std::uint32_t row) {
+  void add(const ServedLayer& served, const Layer& layer, std::uint32_t row) {
     if (++matched_ > kMaxIdentified) return;
-    const std::size_t size = size_of_properties(served.layer->features(), row);
+    const std::size_t size = size_of_properties(layer.features(), row);
     const bool is_too_much = size > bytes_left_;
     if (is_too_much) {
       ++left_out_;
     } else {
       bytes_left_ -= size;
     }
-    features_.push_back(feature_json(served, row, !is_too_much));
+    features_.push_back(feature_json(served, layer, row, !is_too_much));
   }
 
   Json take_json() {
@@ -136,7 +138,8 @@ class IdentifiedFeatures {
   }
 
  private:
-  Json feature_json(const ServedLayer& served, std::uint32_t row, bool has_properties) const;
+  Json feature_json(const ServedLayer& served, const Layer& layer, std::uint32_t row,
+                    bool has_properties) const;
   void add_bounds(Json& json, const Layer& layer, std::uint32_t row) const;
 
   Point place_;
@@ -156,9 +159,9 @@ void IdentifiedFeatures::add_bounds(Json& json, const Layer& layer, std::uint32_
   if (part != box) json["part_bbox"] = bounds_in_degrees(part);
 }
 
-Json IdentifiedFeatures::feature_json(const ServedLayer& served, std::uint32_t row,
-                                      bool has_properties) const {
-  const FeatureTable& features = served.layer->features();
+Json IdentifiedFeatures::feature_json(const ServedLayer& served, const Layer& layer,
+                                      std::uint32_t row, bool has_properties) const {
+  const FeatureTable& features = layer.features();
   Json json;
   json["type"] = "Feature";
   json["id"] = features.id(row);
@@ -168,25 +171,53 @@ Json IdentifiedFeatures::feature_json(const ServedLayer& served, std::uint32_t r
         title_of(features, title_field(features, served.config.title_attribute), row);
     if (!title.empty()) json["title"] = title;
   }
-  add_bounds(json, *served.layer, row);
+  add_bounds(json, layer, row);
   json["geometry"] = nullptr;
   json["properties"] = has_properties ? properties_json(features, row) : Json();
   return json;
 }
 
-/// The rows of the features that are found, or what is wrong with the style.
-Result<std::vector<std::uint32_t>> find_rows(const PlaceQuery& request, const ServedLayer& served,
-                                             std::size_t position) {
+/// A feature of a layer, or of a part of one.
+struct FoundFeature {
+  std::shared_ptr<const Layer> layer;
+  std::uint32_t row = 0;
+};
+
+/// The layer, or those of its parts that may have a feature there. The problem, 503, is that one
+/// cannot be opened.
+Result<std::vector<std::shared_ptr<const Layer>>> layers_at(Point place,
+                                                            const ServedLayer& served) {
+  if (served.parts == nullptr) return std::vector{served.layer};
+  std::vector<std::shared_ptr<const Layer>> layers;
+  for (const auto& part : served.parts->parts()) {
+    const Box& box = part->summary().bounds;
+    if (!box.intersects({place.x, place.y, place.x, place.y})) continue;
+    layers.push_back(part->layer());
+    if (layers.back() == nullptr) return damaged_layer(served);
+  }
+  return layers;
+}
+
+/// The features that are found, or what is wrong with the style.
+Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
+                                                const ServedLayer& served, std::size_t position) {
   const auto query = complete_style(request.style, served.config);
   if (!query) return query.problem();
   const auto style = layer_style(*query, served, position);
   if (!style) return style.problem();
-  if (!is_drawn(request, served.config)) return std::vector<std::uint32_t>();
-  auto rows =
-      features_at(*served.layer, request.place, level_of(request, *query, served.config.name));
-  const FeatureClassifier classifier(style->classing, served.layer->features());
-  std::erase_if(rows, [&](std::uint32_t row) { return classifier.class_of(row) == kNotDrawn; });
-  return rows;
+  std::vector<FoundFeature> found;
+  if (!is_drawn(request, served.config)) return found;
+  const auto layers = layers_at(request.place, served);
+  if (!layers) return layers.problem();
+  for (const auto& layer : *layers) {
+    const Classing classing = style->classing.over(layer->features());
+    const FeatureClassifier classifier(classing, layer->features());
+    for (const std::uint32_t row :
+         features_at(*layer, request.place, level_of(request, *query, served.config.name))) {
+      if (classifier.class_of(row) != kNotDrawn) found.push_back({layer, row});
+    }
+  }
+  return found;
 }
 
 Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
@@ -196,10 +227,12 @@ Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
     if (!position) return unknown_layer(*name, dataset);
     const ServedLayer& served = dataset.layers()[*position];
     if (!served.is_whole()) return damaged_layer(served);
-    const auto rows = find_rows(query, served, *position);
-    if (!rows) return rows.problem();
-    const std::size_t count = std::min(rows->size(), query.most_of_layer);
-    for (const std::uint32_t row : std::span(*rows).first(count)) features.add(served, row);
+    const auto found = find_features(query, served, *position);
+    if (!found) return found.problem();
+    const std::size_t count = std::min(found->size(), query.most_of_layer);
+    for (const FoundFeature& feature : std::span(*found).first(count)) {
+      features.add(served, *feature.layer, feature.row);
+    }
   }
   return features.take_json();
 }

@@ -69,7 +69,7 @@ bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::S
 }  // namespace
 
 KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes)
-    : plan_(plan) {
+    : plan_(plan), classes_(classes) {
   const ZoomRange zooms = plan.zooms();
   steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
   looks_.resize(steps_.size());
@@ -77,24 +77,55 @@ KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassC
     const TilePlan& of_zoom = plan.at(zoom);
     for (auto paint = of_zoom.layers.rbegin(); paint != of_zoom.layers.rend(); ++paint) {
       if (!paint->style.is_visible()) continue;
-      auto drawn = std::ranges::find(drawn_, paint->layer, &Drawn::layer);
-      if (drawn == drawn_.end()) {
-        drawn_.push_back({paint->layer, paint->topology, nullptr, {}});
-        drawn = drawn_.end() - 1;
-        drawn->paints.resize(steps_.size());
-        const Classing& classing = paint->style.classing;
-        if (!classing.is_plain()) {
-          const ServedLayer& served = of_zoom.dataset->layers()[paint->layer];
-          drawn->classes = classes->find(served.revision, classing, served.layer->features());
-        }
+      if (std::ranges::find(drawn_, paint->layer, &Drawn::layer) == drawn_.end()) {
+        add_drawn(of_zoom, *paint);
       }
-      drawn->paints[static_cast<std::size_t>(zoom)] = &*paint;
+      for (Drawn& drawn : drawn_) {
+        if (drawn.layer == paint->layer) drawn.paints[static_cast<std::size_t>(zoom)] = &*paint;
+      }
     }
   }
   for (Step& step : steps_) {
     step.spans.resize(drawn_.size());
     step.is_found.resize(drawn_.size());
   }
+}
+
+/// The layer, or each of its parts.
+void KnownTiles::add_drawn(const TilePlan& plan, const LayerPaint& paint) {
+  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  Drawn drawn;
+  drawn.layer = paint.layer;
+  drawn.number = drawn_.empty() ? 0 : drawn_.back().number + 1;
+  drawn.topology = paint.topology;
+  drawn.paints.resize(steps_.size());
+  if (served.parts == nullptr) {
+    drawn.opened = served.layer_for(paint.topology);
+    const Classing& classing = paint.style.classing;
+    if (!classing.is_plain()) {
+      drawn.classes = classes_->find(served.revision, classing, served.layer->features());
+    }
+    drawn_.push_back(std::move(drawn));
+    return;
+  }
+  for (const auto& part : served.parts->parts()) {
+    drawn.part = part.get();
+    drawn_.push_back(drawn);
+  }
+}
+
+/// False if a part cannot be opened: whoever draws will tell.
+bool KnownTiles::open(Drawn& drawn, const LayerPaint& paint) {
+  if (drawn.opened != nullptr) return true;
+  const Layer* layer = drawn.part->layer().get();  // which the part keeps
+  if (layer == nullptr) return false;
+  const Classing& classing = paint.style.classing;
+  if (!classing.is_plain()) {
+    drawn.classes = classes_->find(drawn.part->summary().revision, classing.over(layer->features()),
+                                   layer->features());
+  }
+  drawn.opened = layer;
+  return true;
 }
 
 int KnownTiles::first_zoom(const TileId& tile) const {
@@ -148,21 +179,54 @@ void KnownTiles::look_at(const TileId& tile) {
   Step& step = steps_[static_cast<std::size_t>(tile.z)];
   step.tile = tile;
   for (std::size_t k = 0; k < drawn_.size(); ++k) {
-    const Drawn& drawn = drawn_[k];
-    const TilePlan& any = plan_.at(plan_.zooms().first);
-    const Layer& layer = *any.dataset->layers()[drawn.layer].layer_for(drawn.topology);
-    const LevelSpanSelection selection = selection_of(drawn, tile);
+    Drawn& drawn = drawn_[k];
     const Step* above = tile.z > 0 ? &steps_[static_cast<std::size_t>(tile.z) - 1] : nullptr;
-    if (above != nullptr && above->is_found[k] != 0) {
-      step.spans[k].narrow(layer, above->spans[k], selection);
+    const bool is_known_above = above != nullptr && above->is_found[k] != 0;
+    if (is_known_above && above->spans[k].empty()) {
+      step.spans[k] = LevelSpan();
+      step.is_found[k] = 1;
+      continue;
+    }
+    const LevelSpanSelection selection = selection_of(drawn, tile);
+    if (is_known_above) {
+      step.spans[k].narrow(*drawn.opened, above->spans[k], selection);
       step.is_found[k] = 1;
     } else {
-      const std::span<const std::uint8_t> classes =
-          drawn.classes == nullptr ? std::span<const std::uint8_t>() : *drawn.classes;
-      step.is_found[k] = step.spans[k].find(layer, classes, selection, kMostTrapezoids) ? 1 : 0;
+      step.is_found[k] = find(drawn, selection, tile, step.spans[k]) ? 1 : 0;
     }
   }
   find_looks(step);
+}
+
+/// Opens a part only if something of it may be there, and not too much.
+bool KnownTiles::find(Drawn& drawn, const LevelSpanSelection& selection, const TileId& tile,
+                      LevelSpan& span) {
+  if (drawn.part != nullptr) {
+    const PreparedSummary& summary = drawn.part->summary();
+    const Box& bounds = summary.bounds;
+    if (!bounds.intersects(selection.box) && !bounds.intersects(selection.dust_box)) {
+      span = LevelSpan();
+      return true;
+    }
+    const Box& box = selection.box;
+    const bool is_within = box.min_x <= bounds.min_x && box.min_y <= bounds.min_y &&
+                           box.max_x >= bounds.max_x && box.max_y >= bounds.max_y;
+    if (is_within && summary.counts.trapezoids[selection.levels.finest] > kMostTrapezoids) {
+      return false;
+    }
+  }
+  const LayerPaint* paint = nullptr;
+  for (int zoom = first_zoom(tile); zoom <= plan_.zooms().last && paint == nullptr; ++zoom) {
+    paint = drawn.paints[static_cast<std::size_t>(zoom)];
+  }
+  if (paint == nullptr) {  // it is drawn at no zoom from here on
+    span = LevelSpan();
+    return true;
+  }
+  if (!open(drawn, *paint)) return false;
+  const std::span<const std::uint8_t> classes =
+      drawn.classes == nullptr ? std::span<const std::uint8_t>() : *drawn.classes;
+  return span.find(*drawn.opened, classes, selection, kMostTrapezoids);
 }
 
 void KnownTiles::find_looks(const Step& step) {
@@ -188,7 +252,7 @@ std::optional<TileLook> KnownTiles::find_look(const Step& step, int zoom) {
     const Seen seen = find_seen(drawn_[k], step.spans[k], step.tile, zoom, number);
     if (seen == Seen::something) return std::nullopt;
     if (seen == Seen::nothing) continue;
-    look.push_back(static_cast<char>(k));
+    look.push_back(static_cast<char>(drawn_[k].number));
     look.push_back(static_cast<char>(number));
     // Nothing below it is seen.
     if (paint->style.paints[number].fill.a == 255 && paint->style.opacity == 1) break;
@@ -201,7 +265,7 @@ KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span
   if (span.empty()) return Seen::nothing;
   const LayerPaint& paint = *drawn.paints[static_cast<std::size_t>(zoom)];
   const TilePlan& plan = plan_.at(zoom);
-  const Layer& layer = plan.layer_of(paint);
+  const Layer& layer = *drawn.opened;
   const View& view = plan.view;
   if (has_dust_or_edges(layer, span, trapeze::selection_of(plan, paint, view), paint)) {
     return Seen::something;
@@ -248,7 +312,8 @@ std::optional<KnownTiles::Estimate> KnownTiles::estimate() const {
       const LayerPaint* paint = drawn_[k].paints[static_cast<std::size_t>(zoom)];
       if (paint == nullptr) continue;
       if (step.is_found[k] == 0) return std::nullopt;
-      const Layer& layer = plan_.at(zoom).layer_of(*paint);
+      if (step.spans[k].empty()) continue;
+      const Layer& layer = *drawn_[k].opened;
       const std::span<const Lifespan> lifespans = layer.lifespans();
       const Box box = widened(tile_, 0);
       double length = 0;

@@ -54,10 +54,13 @@ class KnownTiles {
   std::optional<Estimate> estimate() const;
 
  private:
-  // A layer as it is drawn at some of the zooms.
+  // A layer as it is drawn at some of the zooms, or a part of one.
   struct Drawn {
     std::size_t layer = 0;
+    std::size_t number = 0;  // of the layer among those that are drawn, from the top
     Topology topology = Topology::strict;
+    const PreparedPart* part = nullptr;             // null: it is a layer in one piece
+    const Layer* opened = nullptr;                  // null: of a part that nobody has looked at
     std::shared_ptr<const FeatureClasses> classes;  // null: all are drawn alike
     std::vector<const LayerPaint*> paints;          // by zoom; null where it is not drawn
   };
@@ -68,6 +71,9 @@ class KnownTiles {
     std::vector<char> is_found;
   };
 
+  void add_drawn(const TilePlan& plan, const LayerPaint& paint);
+  bool open(Drawn& drawn, const LayerPaint& paint);
+  bool find(Drawn& drawn, const LevelSpanSelection& selection, const TileId& tile, LevelSpan& span);
   LevelSpanSelection selection_of(const Drawn& drawn, const TileId& tile) const;
   int first_zoom(const TileId& tile) const;
   void find_looks(const Step& step);
@@ -82,6 +88,7 @@ class KnownTiles {
                   const LayerPaint& paint, std::uint8_t& number);
 
   const SeedPlan& plan_;
+  std::shared_ptr<FeatureClassCache> classes_;
   std::vector<Drawn> drawn_;  // from the top
   std::vector<Step> steps_;   // by zoom
   TileId tile_;

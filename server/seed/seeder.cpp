@@ -19,10 +19,13 @@ using Clock = std::chrono::steady_clock;
 
 /// What was drawn while a file was written into may be drawn from anything.
 void refuse_damaged(const SeedPlan& plan) {
-  const ServedLayer* damaged = plan.at(plan.zooms().last).damaged_layer();
-  if (damaged == nullptr) return;
-  throw std::runtime_error(fmt::format(
-      "{} was written into while it was read; run `trapeze prepare` again", damaged->report.path));
+  const TilePlan& any = plan.at(plan.zooms().last);
+  for (const LayerPaint& paint : any.layers) {
+    const ServedLayer& layer = any.dataset->layers()[paint.layer];
+    if (layer.is_whole()) continue;
+    throw std::runtime_error(fmt::format(
+        "{} was written into while it was read; run `trapeze prepare` again", layer.report.path));
+  }
 }
 
 /// Of `count` items, all of them in an order in which any that are first are spread over them.

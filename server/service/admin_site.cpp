@@ -30,8 +30,8 @@ Json layer_json(const ServedLayer& served) {
           {"file", served.report.path},
           {"features", served.report.loaded},
           {"skipped", served.report.skipped},
-          {"vertices", served.layer->size().vertices},
-          {"bytes", served.layer->memory() + served.layer->features().memory()},
+          {"vertices", served.size().vertices},
+          {"bytes", served.memory_of_tested()},
           {"seconds", served.report.total_seconds}};
 }
 

@@ -124,9 +124,7 @@ void add_layers(Snapshot& snapshot, const Dataset& data) {
       Figure{"trapeze_layer_bytes", "Memory of a layer: geometry, index and attributes",
              [](const ServedLayer& served) { return static_cast<double>(served.memory()); }},
       Figure{"trapeze_layer_vertices", "Vertices of a layer at full detail",
-             [](const ServedLayer& served) {
-               return static_cast<double>(served.layer->size().vertices);
-             }},
+             [](const ServedLayer& served) { return static_cast<double>(served.size().vertices); }},
       Figure{"trapeze_layer_features", "Features of a layer",
              [](const ServedLayer& served) { return static_cast<double>(served.report.loaded); }},
       Figure{"trapeze_layer_skipped_features", "Features of a layer that could not be used",

@@ -255,6 +255,12 @@ void Reloader::forget_retired() {
       if (served.untested != nullptr) {
         meshes.push_back({served.untested, served.untested->mesh().id});
       }
+      if (served.parts == nullptr) continue;
+      const auto add = [&meshes](const PreparedPart& part) {
+        if (const auto layer = part.layer_if_open()) meshes.push_back({layer, layer->mesh().id});
+      };
+      for (const auto& part : served.parts->parts()) add(*part);
+      if (served.parts->overview() != nullptr) add(*served.parts->overview());
     }
   }
   datasets.clear();

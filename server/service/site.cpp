@@ -529,8 +529,9 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   if (dataset == nullptr) return false;
   const auto known = known_targets_->find(dataset, request.target);
   if (known == nullptr) return false;
-  const bool is_whole = std::ranges::all_of(
-      known->layers, [&](std::size_t layer) { return dataset->layers()[layer].is_whole(); });
+  const bool is_whole = std::ranges::all_of(known->layers, [&](std::size_t layer) {
+    return dataset->layers()[layer].was_whole_lately();
+  });
   if (!is_whole) return false;
   auto held = find_held(request, *known);
   if (held) respond(*std::move(held));

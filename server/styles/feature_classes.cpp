@@ -39,6 +39,12 @@ std::size_t Classing::class_of_others() const {
   return breaks.empty() ? values.size() : breaks.size() + 1;
 }
 
+Classing Classing::over(const FeatureTable& features) const {
+  Classing other = *this;
+  if (filter != nullptr) other.filter = std::make_shared<const BoundFilter>(filter->over(features));
+  return other;
+}
+
 bool Classing::is_plain() const {
   return field < 0 && filter == nullptr && ids.empty() && highlighted_ids.empty();
 }

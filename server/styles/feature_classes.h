@@ -38,6 +38,8 @@ struct Classing {
 
   std::size_t class_of_others() const;
   std::size_t class_of_highlighted() const { return class_of_others() + 1; }
+  /// The same rules for the features of another table that has the same fields.
+  Classing over(const FeatureTable& features) const;
   /// Whether all features are drawn, in one class.
   bool is_plain() const;
   /// Equal for rules that put the same features into the same classes.

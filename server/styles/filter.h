@@ -81,6 +81,13 @@ class BoundFilter {
   static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter,
                                   const FeatureTable& features);
 
+  /// The same over another table that has the same fields.
+  BoundFilter over(const FeatureTable& features) const {
+    BoundFilter other = *this;
+    other.features_ = &features;
+    return other;
+  }
+
   bool passes(std::uint32_t row) const;
   /// That of the filter.
   const std::string& text() const { return filter_->text(); }

@@ -5,6 +5,7 @@
 
 #include "core/mesh/visible_parts.h"
 #include "server/tiles/layer_drawing.h"
+#include "server/tiles/layer_pieces.h"
 #include "server/tiles/map_window.h"
 
 namespace trapeze {
@@ -32,37 +33,101 @@ double depth_of(const LayerStyle& style) {
   return depth;
 }
 
+/// About how much is selected of a layer.
+struct Amounts {
+  std::uint64_t trapezoids = 0;
+  std::uint64_t horizontal_edges = 0;
+  std::uint64_t grains = 0;
+  std::uint64_t pairs = 0;        // of features over each other, in all of the layer
+  std::uint64_t pairs_along = 0;  // of these, those whose boundaries run along each other
+  std::uint64_t features = 0;     // likewise
+};
+
 /// Of that many trapezoids, by those that lie over them. What is seen through others is cut up by
 /// all of them, so that its parts grow by the square of how many they are. The features are those
 /// of the layer with the test of topology: the one without has no table of them.
-std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
-                           const LayerPaint& paint) {
-  const OverlapTable& overlaps = plan.layer_of(paint).overlaps();
-  const std::size_t pairs =
-      (is_plain(paint.style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
+std::uint64_t cost_of_cuts(const Amounts& amounts, const LayerStyle& style) {
+  const std::uint64_t trapezoids = amounts.trapezoids;
+  const std::uint64_t pairs = (is_plain(style) ? amounts.pairs_along : amounts.pairs) / 2;
   if (pairs == 0) return 0;
-  const std::size_t features = plan.dataset->layers()[paint.layer].layer->features().size();
+  const std::uint64_t features = amounts.features;
   const std::uint64_t cost = trapezoids + trapezoids * pairs / features;
   const double each = static_cast<double>(pairs) / static_cast<double>(features);
-  const double depth = std::min(depth_of(paint.style), each);
+  const double depth = std::min(depth_of(style), each);
   if (depth <= 1) return cost;
   return cost + static_cast<std::uint64_t>(static_cast<double>(trapezoids) * depth * (depth - 1) *
                                            kSidesPerPartSeenThrough);
 }
 
-std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
+Amounts amounts_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Layer& layer = plan.layer_of(paint);
   const Layer::Selection selection = selection_of(plan, paint, view);
-  const std::uint64_t trapezoids = layer.estimate_trapezoids(selection);
-  const std::uint64_t grains =
-      layer.grains().count_near(selection.box, births_of_dust(paint, selection));
-  const std::uint64_t shapes = trapezoids + grains;
+  Amounts amounts;
+  amounts.trapezoids = layer.estimate_trapezoids(selection);
+  amounts.grains = layer.grains().count_near(selection.box, births_of_dust(paint, selection));
+  amounts.pairs = layer.overlaps().pairs().size();
+  amounts.pairs_along = layer.overlaps().pairs_along();
+  amounts.features = plan.dataset->layers()[paint.layer].layer->features().size();
+  if (paint.style.stroke.width > 0) {
+    amounts.horizontal_edges = layer.estimate_horizontal_edges(selection);
+  }
+  return amounts;
+}
+
+/// The share of one box that lies in another one.
+double share_of(const Box& box, const Box& within) {
+  const auto length = [](std::int32_t min, std::int32_t max) {
+    return std::max(0.0, static_cast<double>(max) - min + 1);
+  };
+  const double all = length(box.min_x, box.max_x) * length(box.min_y, box.max_y);
+  const double common =
+      length(std::max(box.min_x, within.min_x), std::min(box.max_x, within.max_x)) *
+      length(std::max(box.min_y, within.min_y), std::min(box.max_y, within.max_y));
+  return all > 0 ? common / all : 0;
+}
+
+/// By what the parts say of themselves, as if it were spread evenly over each: opening them would
+/// take longer than this may.
+Amounts amounts_of_parts(const TilePlan& plan, const LayerPaint& paint, const View& view) {
+  const Layer::Selection selection = selection_of(plan, paint, view);
+  const Level resolution = std::min(selection.level, selection.pixel_level);
+  const GrainIndex::Births births = births_of_dust(paint, selection);
+  Amounts amounts;
+  for (const PreparedPart* part : parts_in_view(plan, paint, view)) {
+    const PreparedSummary& summary = part->summary();
+    const LevelCounts& counts = summary.counts;
+    std::uint64_t trapezoids = counts.trapezoids[selection.level];
+    if (selection.small == SmallPolygons::dust) trapezoids += counts.motes[resolution];
+    std::uint64_t grains = 0;
+    for (std::size_t level = births.first; level <= births.last; ++level) {
+      grains += counts.grains[level];
+    }
+    const double share = share_of(summary.bounds, selection.box);
+    const auto shared = [share](std::uint64_t count) {
+      return static_cast<std::uint64_t>(std::ceil(static_cast<double>(count) * share));
+    };
+    amounts.trapezoids += shared(trapezoids);
+    amounts.horizontal_edges += shared(counts.horizontal_edges[selection.level]);
+    amounts.grains += shared(grains);
+    amounts.pairs += counts.overlaps;
+    amounts.pairs_along += counts.overlaps_along;
+    amounts.features += std::max<std::uint64_t>(summary.report.loaded, 1);
+  }
+  return amounts;
+}
+
+std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
+  const bool is_in_parts = plan.dataset->layers()[paint.layer].parts != nullptr;
+  const Amounts amounts =
+      is_in_parts ? amounts_of_parts(plan, paint, view) : amounts_of(plan, paint, view);
+  const std::uint64_t trapezoids = amounts.trapezoids;
+  const std::uint64_t shapes = trapezoids + amounts.grains;
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
-  cost += cost_of_cuts(trapezoids, plan, paint);
+  cost += cost_of_cuts(amounts, paint.style);
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
-    const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);
+    const std::uint64_t edges = 2 * trapezoids + amounts.horizontal_edges;
     cost += cost_of_outlines(edges, paint.style.stroke, view, plan.scale);
   }
   return cost;

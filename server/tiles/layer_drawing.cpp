@@ -114,12 +114,22 @@ void LayerDrawing::ClassDrawing::clear(std::uint8_t class_number) {
   is_full = false;
   is_drawn = false;
   ranges.clear();
+  piece_count = 0;
   made_vertices.clear();
   made_edges.clear();
   made_trapezoids.clear();
   all_made = {};
   parts.clear();
   digest = {};
+}
+
+void LayerDrawing::ClassDrawing::end_piece(const Layer& layer) {
+  if (ranges.empty()) return;
+  if (piece_count == pieces.size()) pieces.emplace_back();
+  OfPiece& piece = pieces[piece_count++];
+  piece.layer = &layer;
+  piece.ranges.swap(ranges);
+  ranges.clear();
 }
 
 void LayerDrawing::ClassDrawing::add_place(const Box& place, bool is_hole) {
@@ -177,9 +187,10 @@ bool is_plain(const LayerStyle& style) {
 }
 
 bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const View& view,
-                          const FeatureClasses* classes, DrawingTools& tools) {
+                          std::span<const DrawnPiece> pieces, DrawingTools& tools) {
   paint_ = &paint;
-  layer_ = &plan.layer_of(paint);
+  layer_ = nullptr;
+  has_pieces_ = pieces.size() > 1;
   view_ = view;
   class_count_ = 0;
   line_count_ = 0;
@@ -188,23 +199,35 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   const auto check = [&tools] {
     if (tools.cancellation != nullptr) tools.cancellation->check();
   };
-  check();
-  layer_->select(selection, tools.ranges);
-  check();
-  part_by_class(classes, selection, tools);
-  add_places(selection, classes, tools);
+  const InkOfLoops ink =
+      has_lines() ? ink_of_loops(style().stroke, view, plan.scale) : InkOfLoops();
+  tools.dust.begin(tools.shapes);
+  for (const DrawnPiece& piece : pieces) {
+    check();
+    add_piece(piece, selection, ink, tools);
+  }
+  tools.dust.finish(view_.shorter_side(), tools.shapes);
+  add_shapes(tools);
   check();
   for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
-  if (has_lines()) {
-    collect_edges(selection, ink_of_loops(style().stroke, view, plan.scale), classes, tools);
-    leave_out_empty_lines();
-  }
+  leave_out_empty_lines();
   const auto is_seen = [](const ClassDrawing& drawing) {
     return drawing.is_full || drawing.is_drawn;
   };
   return line_count_ > 0 ||
          std::any_of(classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(class_count_),
                      is_seen);
+}
+
+void LayerDrawing::add_piece(const DrawnPiece& piece, const Layer::Selection& selection,
+                             const InkOfLoops& ink, DrawingTools& tools) {
+  layer_ = piece.layer;
+  const FeatureClasses* classes = piece.classes.get();
+  layer_->select(selection, tools.ranges);
+  part_by_class(classes, selection, tools);
+  add_places(selection, classes, tools);
+  if (has_lines()) collect_edges(selection, ink, classes, tools);
+  for (std::size_t i = 0; i < class_count_; ++i) classes_[i].end_piece(*layer_);
 }
 
 LayerDrawing::ClassDrawing& LayerDrawing::new_drawing(std::uint8_t number) {
@@ -390,8 +413,14 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
   }
   const GrainIndex::Births births = births_of_dust(*paint_, selection);
   if (births.is_empty()) return;
-  tools.dust.gather(layer_->grains(), {around.box, births, view_.shorter_side()},
-                    classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
+  tools.dust.add(layer_->grains(), {around.box, births, view_.shorter_side()},
+                 classes == nullptr ? std::span<const std::uint8_t>() : *classes, tools.shapes);
+}
+
+// Of all pieces.
+void LayerDrawing::add_shapes(DrawingTools& tools) {
+  const bool is_kept = paint_->small == SmallPolygons::keep;
+  const auto pixel = static_cast<std::int64_t>(std::ceil(view_.shorter_side()));
   for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
     class_drawing(mote.feature_class)
@@ -403,12 +432,24 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
   }
 }
 
+// One that fills the box does so whatever others add, but for dust, which may take area away.
+bool LayerDrawing::fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) const {
+  const std::span pieces(drawing.pieces.data(), drawing.piece_count);
+  const auto have_dust = [](const auto& piece) { return piece.layer->have_dust(piece.ranges); };
+  if (pieces.size() > 1 && std::ranges::any_of(pieces, have_dust)) return false;
+  return std::ranges::any_of(
+      pieces, [&](const auto& piece) { return piece.layer->fill_box(selection, piece.ranges); });
+}
+
 void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing& drawing) {
   const bool has_made = !drawing.made_trapezoids.empty();
   if (drawing.alpha == 0 && !has_pattern()) return;
-  drawing.is_full = !has_made && view_.is_on_world() && layer_->fill_box(selection, drawing.ranges);
+  drawing.is_full = !has_made && view_.is_on_world() && fills_box(selection, drawing);
   if (drawing.is_full) return;
-  if (!drawing.ranges.empty()) drawing.parts.push_back({layer_->mesh(), drawing.ranges});
+  for (std::size_t i = 0; i < drawing.piece_count; ++i) {
+    const ClassDrawing::OfPiece& piece = drawing.pieces[i];
+    drawing.parts.push_back({piece.layer->mesh(), piece.ranges});
+  }
   if (has_made) {
     const MeshView mesh{new_mesh_id(), drawing.made_vertices, drawing.made_edges,
                         drawing.made_trapezoids};
@@ -454,16 +495,19 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfL
 }
 
 // Most edges are sides of several trapezoids, and some of these reach far out of the box.
-void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const {
+void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) {
   const MeshView& mesh = layer_->mesh();
+  point_of_.clear();
   sort_and_part(lines.sides);
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
     OutlineEdge line{edge.upper, edge.lower};
     if (take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
+      if (has_pieces_) take_points(line, lines);
       lines.edges.push_back(line);
     }
   }
+  lines.sides.clear();
   for (const SeenEdge& seen : lines.seen) {
     const auto first = static_cast<std::uint32_t>(lines.seen_points.size());
     OutlineEdge line{first, first + 1};
@@ -472,6 +516,22 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
     lines.seen_points.insert(lines.seen_points.end(), {seen.from, seen.to});
     lines.seen_edges.push_back(line);
   }
+  lines.seen.clear();
+}
+
+// Of an edge between vertices of the piece at hand: edges that share one go on sharing it.
+void LayerDrawing::take_points(OutlineEdge& line, Lines& lines) {
+  const std::span<const Point> vertices = layer_->mesh().vertices;
+  for (std::uint32_t* end : {&line.from, &line.to}) {
+    const auto [point, is_new] =
+        point_of_.emplace(*end, static_cast<std::uint32_t>(lines.points.size()));
+    if (is_new) lines.points.push_back(vertices[*end]);
+    *end = point->second;
+  }
+}
+
+std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
+  return has_pieces_ ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
 }
 
 // Of the piece of an edge between two points: its ink and its dashes. False if it is not seen here.
@@ -507,6 +567,7 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   lines.colour = colour;
   lines.sides.clear();
   lines.edges.clear();
+  lines.points.clear();
   lines.seen.clear();
   lines.seen_points.clear();
   lines.seen_edges.clear();
@@ -573,7 +634,7 @@ void LayerDrawing::draw_details(const View& picture, double scale, DrawingTools&
     const auto draw = [&](std::span<const Point> points, std::span<const OutlineEdge> edges) {
       tools.stroker.draw(points, edges, style().stroke, tools.cancellation);
     };
-    draw(layer_->mesh().vertices, lines.edges);
+    draw(points_of(lines), lines.edges);
     if (!lines.seen_edges.empty()) draw(lines.seen_points, lines.seen_edges);
     tools.stroker.finish(lines.mask);
   }
@@ -672,7 +733,7 @@ void LayerDrawing::add_lines_to(ContentHash& hash) const {
   for (std::size_t i = 0; i < line_count_; ++i) {
     const Lines& lines = lines_[i];
     hash.add(to_hex(lines.colour));
-    add(outline_digest(layer_->mesh().vertices, lines.edges, stroke, view_), hash);
+    add(outline_digest(points_of(lines), lines.edges, stroke, view_), hash);
     add(outline_digest(lines.seen_points, lines.seen_edges, stroke, view_), hash);
   }
 }

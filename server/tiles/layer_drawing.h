@@ -1,5 +1,6 @@
 // What is drawn of one layer in one tile: the trapezoids of each class of features, the pattern
-// over them, and the outlines.
+// over them, and the outlines. A layer that is in several parts is drawn as if it were one: the
+// parts have no place in common, so their areas add up.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -7,7 +8,9 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/grid/cancellation.h"
@@ -39,6 +42,12 @@ struct DrawingTools {
   std::vector<Box> places;
 };
 
+/// A layer, or a part of one, with the classes of its features: null if all are drawn alike.
+struct DrawnPiece {
+  const Layer* layer = nullptr;
+  std::shared_ptr<const FeatureClasses> classes;
+};
+
 /// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view);
 
@@ -52,11 +61,11 @@ bool is_plain(const LayerStyle& style);
 class LayerDrawing {
  public:
   /// Selects what is to be drawn of the world where it lies in the view, of which the drawing takes
-  /// a copy; of other copies of the world see views_of_copies(). `classes` has the class of every
-  /// feature; null if the style is plain. False if nothing of the layer is seen here; the drawing
-  /// must then not be used. Throws Cancelled.
+  /// a copy; of other copies of the world see views_of_copies(). `pieces` are what the layer
+  /// consists of there, see TilePlan::pieces_of(); they outlive the drawing. False if nothing of
+  /// the layer is seen here; the drawing must then not be used. Throws Cancelled.
   bool select(const TilePlan& plan, const LayerPaint& paint, const View& view,
-              const FeatureClasses* classes, DrawingTools& tools);
+              std::span<const DrawnPiece> pieces, DrawingTools& tools);
 
   /// Whether nothing below the layer can be seen.
   bool hides_all() const;
@@ -104,9 +113,15 @@ class LayerDrawing {
     std::uint8_t number = 0;
     std::uint8_t alpha = 0;  // of the fill
     bool is_beneath = false;
-    bool is_full = false;   // covers the tile wholly and need not be drawn
-    bool is_drawn = false;  // its mask
-    std::vector<TrapezoidRange> ranges;
+    bool is_full = false;                // covers the tile wholly and need not be drawn
+    bool is_drawn = false;               // its mask
+    std::vector<TrapezoidRange> ranges;  // of the piece at hand
+    struct OfPiece {
+      const Layer* layer = nullptr;
+      std::vector<TrapezoidRange> ranges;
+    };
+    std::vector<OfPiece> pieces;  // those that have been selected from, the first piece_count
+    std::size_t piece_count = 0;
     // A mesh made for this picture: small polygons, and parts of trapezoids.
     std::vector<Point> made_vertices;
     std::vector<MeshEdge> made_edges;
@@ -117,6 +132,7 @@ class LayerDrawing {
     Mask mask;
 
     void clear(std::uint8_t class_number);
+    void end_piece(const Layer& layer);
     void add_place(const Box& place, bool is_hole);
     void add_patch(const ClassPatch& patch);
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
@@ -124,10 +140,12 @@ class LayerDrawing {
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
-    std::vector<std::uint32_t> sides;  // edges of the mesh, before they are taken once each
+    // Edges of the mesh of the piece at hand, before they are taken once each.
+    std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
+    std::vector<Point> points;  // between which they lie if there are several pieces
     // Of features that others lie over: what is seen of them, between points of its own.
-    std::vector<SeenEdge> seen;
+    std::vector<SeenEdge> seen;  // of the piece at hand
     std::vector<Point> seen_points;
     std::vector<OutlineEdge> seen_edges;
     Mask mask;
@@ -146,6 +164,10 @@ class LayerDrawing {
   const LayerStyle& style() const { return paint_->style; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
+  void add_piece(const DrawnPiece& piece, const Layer::Selection& selection, const InkOfLoops& ink,
+                 DrawingTools& tools);
+  void add_shapes(DrawingTools& tools);
+  std::span<const Point> points_of(const Lines& lines) const;
   ClassDrawing& new_drawing(std::uint8_t number);
   ClassDrawing& class_drawing(std::uint8_t number);
   ClassDrawing& drawing_beneath(std::uint8_t number, std::uint8_t alpha);
@@ -165,6 +187,7 @@ class LayerDrawing {
   void add_places(const Layer::Selection& selection, const FeatureClasses* classes,
                   DrawingTools& tools);
   void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);
+  bool fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) const;
   void leave_out_empty_lines();
   template <typename Visit>
   void for_each_painted(const Visit& visit) const;
@@ -178,10 +201,14 @@ class LayerDrawing {
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
   void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
                     std::vector<SideOf>& in_common) const;
-  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
+  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines);
+  void take_points(OutlineEdge& line, Lines& lines);
 
   const LayerPaint* paint_ = nullptr;
-  const Layer* layer_ = nullptr;
+  const Layer* layer_ = nullptr;  // the piece at hand; afterwards the only one
+  bool has_pieces_ = false;       // several of them
+  // Of the piece at hand, for one colour: the numbers of its vertices among the points.
+  std::unordered_map<std::uint32_t, std::uint32_t> point_of_;
   View view_;
   bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them

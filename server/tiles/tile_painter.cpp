@@ -13,6 +13,7 @@
 #include "render/text/label.h"
 #include "server/base/build_id.h"
 #include "server/base/content_hash.h"
+#include "server/tiles/layer_pieces.h"
 #include "server/tiles/map_window.h"
 
 namespace trapeze {
@@ -238,24 +239,34 @@ void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
   const std::vector<View> copies = views_of_copies(sketch.view);
   for (auto paint = plan.layers.rbegin(); paint != plan.layers.rend(); ++paint) {
     if (!paint->style.is_visible()) continue;  // here for its marks only
-    const auto classes = classes_for(plan, *paint);
     const std::size_t first = drawing_count_;
     for (const View& copy : copies) {
       if (drawing_count_ == drawings_.size()) drawings_.emplace_back();
       LayerDrawing& drawing = drawings_[drawing_count_];
-      if (drawing.select(plan, *paint, copy, classes.get(), tools_)) ++drawing_count_;
+      if (drawing.select(plan, *paint, copy, pieces_for(plan, *paint, copy), tools_)) {
+        ++drawing_count_;
+      }
     }
     if (drawing_count_ > first && drawings_[first].hides_all()) break;
   }
 }
 
-// Null if all features are drawn alike.
-std::shared_ptr<const FeatureClasses> TilePainter::classes_for(const TilePlan& plan,
-                                                               const LayerPaint& paint) {
+std::vector<DrawnPiece> TilePainter::pieces_for(const TilePlan& plan, const LayerPaint& paint,
+                                                const View& view) {
   const Classing& classing = paint.style.classing;
-  if (classing.is_plain()) return nullptr;
   const ServedLayer& served = plan.dataset->layers()[paint.layer];
-  return classes_->find(served.revision, classing, served.layer->features());
+  std::vector<DrawnPiece> pieces;
+  for (const LayerPiece& piece : pieces_in_view(plan, paint, view)) {
+    std::shared_ptr<const FeatureClasses> classes;
+    if (!classing.is_plain() && served.parts != nullptr) {
+      const FeatureTable& features = piece.layer->features();
+      classes = classes_->find(piece.revision, classing.over(features), features);
+    } else if (!classing.is_plain()) {
+      classes = classes_->find(served.revision, classing, served.layer->features());
+    }
+    pieces.push_back({piece.layer, std::move(classes)});
+  }
+  return pieces;
 }
 
 DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketches) {
@@ -367,22 +378,27 @@ void TilePainter::mark(const TilePlan& plan, const View& view, Picture& picture)
 }
 
 void TilePainter::mark_layers(const TilePlan& plan, const View& view, Picture& picture) {
-  const View around = with_margin(view);  // of marks that reach into the picture
   for (const LayerPaint& paint : plan.layers) {
-    const Layer& layer = plan.layer_of(paint);
-    std::vector<TrapezoidRange> ranges;
-    layer.select({around.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
-    const FeatureOf feature_of = [&layer](std::uint32_t i) { return layer.feature_of(i); };
-    if (plan.debug.faces) mark_faces(layer.mesh(), ranges, feature_of, view, picture);
-    if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
-    if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
-    if (plan.debug.junctions) {
-      std::vector<TrapezoidRange> horizontal_edges;
-      layer.select_horizontal_edges(around.box(), paint.level, horizontal_edges);
-      mark_junctions(layer.mesh(), ranges, horizontal_edges, feature_of, view, kJunctionColour,
-                     picture);
+    for (const LayerPiece& piece : pieces_in_view(plan, paint, view)) {
+      mark_piece(plan, paint, *piece.layer, view, picture);
     }
   }
+}
+
+void TilePainter::mark_piece(const TilePlan& plan, const LayerPaint& paint, const Layer& layer,
+                             const View& view, Picture& picture) {
+  const View around = with_margin(view);  // of marks that reach into the picture
+  std::vector<TrapezoidRange> ranges;
+  layer.select({around.box(), paint.level, plan.pixel_level(), SmallPolygons::drop}, ranges);
+  const FeatureOf feature_of = [&layer](std::uint32_t i) { return layer.feature_of(i); };
+  if (plan.debug.faces) mark_faces(layer.mesh(), ranges, feature_of, view, picture);
+  if (plan.debug.mesh) mark_mesh(layer.mesh(), ranges, view, kMeshColour, picture);
+  if (plan.debug.vertices) mark_vertices(layer.mesh(), ranges, view, kVertexColour, picture);
+  if (!plan.debug.junctions) return;
+  std::vector<TrapezoidRange> horizontal_edges;
+  layer.select_horizontal_edges(around.box(), paint.level, horizontal_edges);
+  mark_junctions(layer.mesh(), ranges, horizontal_edges, feature_of, view, kJunctionColour,
+                 picture);
 }
 
 }  // namespace trapeze

@@ -127,7 +127,8 @@ class TilePainter {
   bool is_constant(const TilePlan& plan, const Sketch& sketch) const;
   void select(const TilePlan& plan, Sketch& sketch);
   void draw_details(const Job& job, Sketch& sketch);
-  std::shared_ptr<const FeatureClasses> classes_for(const TilePlan& plan, const LayerPaint& paint);
+  std::vector<DrawnPiece> pieces_for(const TilePlan& plan, const LayerPaint& paint,
+                                     const View& view);
   DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
   void note_times(const DrawTimes& drawn, Sketch& sketch) const;
   PaintedTile finish(const TilePlan& plan, Sketch& sketch);
@@ -139,6 +140,8 @@ class TilePainter {
                                               TileFormat format);
   void mark(const TilePlan& plan, const View& view, Picture& picture);
   static void mark_layers(const TilePlan& plan, const View& view, Picture& picture);
+  static void mark_piece(const TilePlan& plan, const LayerPaint& paint, const Layer& layer,
+                         const View& view, Picture& picture);
 
   std::unique_ptr<MaskRenderer> renderer_;
   std::string renderer_identity_;

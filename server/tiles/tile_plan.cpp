@@ -52,6 +52,25 @@ bool is_drawn_at(const LayerConfig& config, double zoom) {
   return std::max(zoom, 0.0) >= config.min_zoom && std::floor(zoom) <= config.max_zoom;
 }
 
+/// Of those that may be looked at for the view, and some around it.
+bool has_damaged_part(const PreparedParts& parts, const View& view) {
+  constexpr double kPixelsAround = 512;
+  if (parts.overview() != nullptr && parts.overview()->is_damaged()) return true;
+  const auto around = static_cast<std::int64_t>(std::ceil(kPixelsAround * view.longer_side()));
+  for (const View& copy : views_of_copies(view)) {
+    const Box box = copy.box();
+    if (box.is_empty()) continue;
+    for (const auto& part : parts.parts()) {
+      const Box& bounds = part->summary().bounds;
+      const bool is_near = bounds.min_x - around <= box.max_x &&
+                           bounds.max_x + around >= box.min_x &&
+                           bounds.min_y - around <= box.max_y && bounds.max_y + around >= box.min_y;
+      if (is_near && part->is_damaged()) return true;
+    }
+  }
+  return false;
+}
+
 Problem no_fast_topology(const std::string& layer) {
   return {400,
           fmt::format("The layer \"{}\" is not served with topology=fast: its configuration does "
@@ -69,7 +88,9 @@ const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
 const ServedLayer* TilePlan::damaged_layer() const {
   for (const LayerPaint& paint : layers) {
     const ServedLayer& served = dataset->layers()[paint.layer];
-    if (!served.is_whole()) return &served;
+    if (served.parts == nullptr ? !served.is_whole() : has_damaged_part(*served.parts, view)) {
+      return &served;
+    }
   }
   return nullptr;
 }

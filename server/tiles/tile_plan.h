@@ -45,7 +45,8 @@ struct TilePlan {
   Quality quality = Quality::bounded;
   std::string caption = {};  // for debug=tile
 
-  /// What the paint is for, made with or without the topological consistency test as it says.
+  /// What the paint is for, made with or without the topological consistency test as it says. Of a
+  /// layer in several parts see pieces_in_view().
   const Layer& layer_of(const LayerPaint& paint) const;
   /// The first of the layers whose prepared file was truncated while it was mapped; null if
   /// there is none. To be called before drawing and after.

@@ -57,7 +57,7 @@ class MappingGuard {
   }
 
  private:
-  static constexpr std::size_t kMostFiles = 1024;
+  static constexpr std::size_t kMostFiles = 4096;
   /// The addresses of a mapping, and not the file: another thread may be destroying that one while
   /// the handler looks for its own.
   struct Slot {
@@ -110,23 +110,23 @@ class MappingGuard {
   }
 };
 
-MappedFile::MappedFile(const std::string& path) : file_(open_or_throw(path)) {
+MappedFile::MappedFile(const std::string& path, Pages pages) : file_(open_or_throw(path)) {
   try {
-    map(path);
+    map(path, pages);
   } catch (...) {
     close(file_);
     throw;
   }
 }
 
-void MappedFile::map(const std::string& path) {
+void MappedFile::map(const std::string& path, Pages pages) {
   struct stat status {};
   if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) fail(path, "is no regular file");
   modified_ = modified_of(status);
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return;
-  // Its pages are taken in at once: all of it is about to be read.
-  void* memory = mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, file_, 0);
+  const int flags = pages == Pages::at_once ? MAP_SHARED | MAP_POPULATE : MAP_SHARED;
+  void* memory = mmap(nullptr, size, PROT_READ, flags, file_, 0);
   if (memory == MAP_FAILED) fail(path, std::string("cannot be mapped: ") + std::strerror(errno));
   bytes_ = {static_cast<const std::byte*>(memory), size};
   MappingGuard::add(bytes_);
@@ -138,6 +138,11 @@ MappedFile::~MappedFile() {
     munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
   }
   close(file_);
+}
+
+void MappedFile::release_pages() const {
+  if (bytes_.empty()) return;
+  madvise(const_cast<std::byte*>(bytes_.data()), bytes_.size(), MADV_DONTNEED);
 }
 
 // The descriptor stays with the file that is mapped, whatever its name means by now.

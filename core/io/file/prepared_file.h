@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be incremented when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 6;
+constexpr std::uint32_t kPreparedVersion = 7;
 
 /// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
@@ -120,9 +120,15 @@ class SectionWriter {
 /// returned reaches beyond its end. Throws PreparedFileError.
 class SectionReader {
  public:
-  /// Checks header, directory and, on all cores, the checksum of every section. `file` begins at a
-  /// multiple of 64 bytes and must outlive the sections taken from it.
-  explicit SectionReader(std::span<const std::byte> file);
+  /// Which sections are checked.
+  enum class Checked {
+    all,
+    first,  // and no other is to be taken
+  };
+
+  /// Checks header, directory and, on all cores, the checksum of every section that is to be
+  /// checked. `file` begins at a multiple of 64 bytes and must outlive the sections taken from it.
+  explicit SectionReader(std::span<const std::byte> file, Checked checked = Checked::all);
 
   std::uint64_t fingerprint() const { return header_.fingerprint; }
 
@@ -144,7 +150,7 @@ class SectionReader {
   };
 
   void read_directory(std::span<const std::byte> file);
-  void check_sections() const;
+  void check_sections(std::size_t count) const;
   std::span<const std::byte> take_bytes(SectionKind kind, std::size_t item_size);
 
   PreparedHeader header_;

@@ -10,6 +10,7 @@
 #include "core/io/load/feature_builder.h"
 #include "core/io/load/feature_pipeline.h"
 #include "core/io/load/huge_pages.h"
+#include "core/io/load/source_division.h"
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
@@ -82,11 +83,12 @@ std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tall
 }
 
 void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilder>& builders,
-                 const FeatureSource& source, LoadReport& report) {
+                 const FeatureSource& source, bool is_first_part, LoadReport& report) {
   report.driver = source.driver();
   report.warnings = source.warnings();
-  report.features = pipeline.features() + source.passed_over();
-  report.other_geometry = source.passed_over();
+  const std::size_t passed_over = is_first_part ? source.passed_over() : 0;
+  report.features = pipeline.features() + passed_over;
+  report.other_geometry = passed_over;
   std::vector<const FeatureTally*> tallies = pipeline.tallies();
   for (const FeatureBuilder& builder : builders) {
     tallies.push_back(&builder.tally());
@@ -118,8 +120,17 @@ bool can_take_over(const LoadOptions& options) {
          arrays_of(*options.earlier).options == options.generalization;
 }
 
+/// Throws SourceError if there are other features than were divided.
+void keep_part(FeatureSource& source, const LoadOptions& options) {
+  source.keep_only([division = options.division, part = options.part](std::size_t order) {
+    if (!division->knows(order)) throw SourceError("has changed since it was divided into parts");
+    return division->part_of(order) == part;
+  });
+}
+
 LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {
   LoadedLayer loaded;
+  if (options.division != nullptr) keep_part(source, options);
   TableReader table(source, options.selection);
   const unsigned threads = thread_count(options.threads);
   std::optional<EarlierLayer> earlier;
@@ -143,10 +154,15 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
   FeaturePipeline pipeline(source, options.generalization, workers, building,
                            earlier ? &*earlier : nullptr);
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
-  fill_report(pipeline, builders, source, loaded.report);
+  fill_report(pipeline, builders, source, options.division == nullptr || options.part == 1,
+              loaded.report);
   loaded.layer = join_layer(builders, table.take_table(), joining, threads);
   warn_of_unknown_overlaps(*loaded.layer, loaded.report);
   progress(1);
+  if (options.division != nullptr) {
+    loaded.part =
+        PartNumber{options.part, options.division->count(), options.division->fingerprint()};
+  }
   loaded.report.read_seconds = seconds_between(start, pipeline.read_until());
   loaded.report.total_seconds = seconds_between(start, Clock::now());
   return loaded;

@@ -12,10 +12,13 @@
 #include "core/io/source/source_selection.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
+#include "core/layer/layer_part.h"
 
 namespace trapeze {
 
 class MappedFile;
+class PreparedParts;
+class SourceDivision;
 
 struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
@@ -25,6 +28,9 @@ struct LoadOptions {
   /// and is there sooner. Nothing is taken over of one that was built with other options. It was
   /// built by the same program: see build_fingerprint().
   std::shared_ptr<const Layer> earlier = {};
+  /// Into which the source is divided, with the same selection and options; null: it is read whole.
+  std::shared_ptr<const SourceDivision> division = {};
+  std::uint32_t part = 1;  // the one of its parts that is read
   /// Called from the thread that called load_layer now and then, with about the share of the time
   /// that has gone, reading and building alike: in [0, 1] and never falling, or < 0 while unknown;
   /// at the end with 1. What it throws ends the loading.
@@ -36,6 +42,10 @@ struct LoadedLayer {
   LoadReport report;
   std::shared_ptr<const MappedFile> file = {};  // that a prepared layer looks at
   std::optional<std::uint64_t> revision = {};   // of a prepared layer: under which it was saved
+  std::optional<PartNumber> part = {};          // of a part of a layer
+  /// Of a layer in several prepared parts: these. `layer` has their fields and bounds, and no
+  /// polygon.
+  std::shared_ptr<const PreparedParts> parts = {};
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its

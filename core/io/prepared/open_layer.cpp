@@ -5,11 +5,25 @@
 
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
+#include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
 
 namespace trapeze {
 namespace {
+
+/// Warns of what is served by itself because a shell has put all files in place of their pattern.
+LoadedLayer open_single(const std::string& path, const PreparedDemands& demands) {
+  LoadedLayer loaded = open_prepared_layer(path, demands);
+  if (!loaded.part) return loaded;
+  const std::string parts = std::to_string(loaded.part->count) + " parts of a layer";
+  loaded.report.warnings.push_back(
+      (loaded.part->is_overview()
+           ? "is the overview of the " + parts
+           : "is number " + std::to_string(loaded.part->number) + " of the " + parts) +
+      ", by itself; all of them are one layer under a name with a *, in quotes on a command line");
+  return loaded;
+}
 
 LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
   if (!options.selection.is_all()) {
@@ -17,8 +31,17 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              ": is prepared already; select from its source with the options of "
                              "`trapeze prepare`");
   }
-  return open_prepared_layer(
-      path, {options.weights, options.prepared_from, options.coverage, options.close_gaps});
+  const PreparedDemands demands = {options.weights, options.prepared_from, options.coverage,
+                                   options.close_gaps};
+  if (!is_pattern_of_files(path)) return open_single(path, demands);
+  LoadedLayer loaded =
+      open_prepared_parts(files_of_pattern(path), demands, options.earlier_parts.get());
+  loaded.report.path = path;
+  return loaded;
+}
+
+bool is_prepared(const std::string& path) {
+  return is_pattern_of_files(path) || is_prepared_file(path);
 }
 
 LayerOptions layer_options(const OpenOptions& options) {
@@ -69,7 +92,7 @@ void examine_source(const std::string& path, const SourceSelection& selection,
 std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOptions& options) {
   std::vector<OpenFinding> findings;
   try {
-    if (is_prepared_file(path)) {
+    if (is_prepared(path)) {
       open_prepared(path, options);
       return findings;
     }
@@ -88,7 +111,7 @@ std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOption
 }
 
 LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
-  if (is_prepared_file(path)) {
+  if (is_prepared(path)) {
     LoadedLayer layer = open_prepared(path, options);
     if (options.progress) options.progress(1);
     return layer;

@@ -22,6 +22,7 @@ struct OpenOptions {
       {};                                 // unset: that of a prepared layer, else kUsualCoverage
   std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
   std::shared_ptr<const Layer> earlier = {};  // see LoadOptions; of no use to a prepared layer
+  std::shared_ptr<const PreparedParts> earlier_parts = {};  // see open_prepared_parts()
 };
 
 /// What of the options a finding is about, or the file itself.
@@ -41,7 +42,8 @@ struct OpenFinding {
 /// for what is wrong. Thread-safety: any thread.
 std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOptions& options = {});
 
-/// Maps a prepared file, which is known by its first bytes, or loads a source. Throws as
+/// Maps a prepared file, which is known by its first bytes, or loads a source. A pattern of files
+/// is a layer in several prepared parts, see open_prepared_parts(). Throws as
 /// open_prepared_layer() and load_layer() do. Thread-safety: any thread.
 LoadedLayer open_layer(const std::string& path, const OpenOptions& options = {});
 

@@ -32,6 +32,8 @@ struct Description {
   std::uint64_t revision = 0;
   SourceStamp source;
   LoadReport report;
+  std::optional<PartNumber> part;
+  LevelCounts counts;  // of a part
 };
 
 // Writing and reading name the same parts in the same order; keep them side by side.
@@ -156,13 +158,53 @@ LayerArrays read_numbers(ByteReader& in) {
   return numbers;
 }
 
+/// Calls visit(number) for every number that says how much there is of a part.
+template <typename Counts, typename Visit>
+void for_each_count_by_level(Counts& counts, const Visit& visit) {
+  for (auto* of_level :
+       {&counts.trapezoids, &counts.horizontal_edges, &counts.motes, &counts.grains}) {
+    for (auto& count : *of_level) visit(count);
+  }
+  visit(counts.overlaps);
+  visit(counts.overlaps_along);
+}
+
+void write_part(const LoadedLayer& loaded, ByteWriter& out) {
+  out.add(static_cast<std::uint8_t>(loaded.part.has_value()));
+  if (!loaded.part) return;
+  out.add(loaded.part->number);
+  out.add(loaded.part->count);
+  out.add(loaded.part->division);
+  out.add(loaded.part->revision_of_parts);
+  out.add(loaded.part->first_level);
+  const LevelCounts counts = count_by_level(*loaded.layer);
+  for_each_count_by_level(counts, [&out](std::uint64_t count) { out.add(count); });
+}
+
+void read_part(ByteReader& in, Description& description) {
+  if (in.take<std::uint8_t>() == 0) return;
+  PartNumber part;
+  part.number = in.take<std::uint32_t>();
+  part.count = in.take<std::uint32_t>();
+  part.division = in.take<std::uint64_t>();
+  part.revision_of_parts = in.take<std::uint64_t>();
+  part.first_level = in.take<Level>();
+  if (part.number > part.count || part.count == 0 || part.first_level > kLastLevel) {
+    throw std::invalid_argument("the description names a part that there cannot be");
+  }
+  description.part = part;
+  for_each_count_by_level(description.counts,
+                          [&in](std::uint64_t& count) { count = in.take<std::uint64_t>(); });
+}
+
 ByteWriter written(const LayerArrays& numbers, std::uint64_t revision, const SourceStamp& source,
-                   const LoadReport& report) {
+                   const LoadedLayer& loaded) {
   ByteWriter out;
   write_numbers(numbers, out);
   out.add(revision);
   write_stamp(source, out);
-  write_report(report, out);
+  write_report(loaded.report, out);
+  write_part(loaded, out);
   return out;
 }
 
@@ -173,6 +215,7 @@ Description read_description(std::span<const std::byte> bytes) {
   description.revision = in.take<std::uint64_t>();
   description.source = read_stamp(in);
   description.report = read_report(in);
+  read_part(in, description);
   if (!in.is_at_end()) throw std::invalid_argument("the description is too long");
   return description;
 }
@@ -291,11 +334,42 @@ LoadedLayer layer_from_sections(SectionReader& sections, Description description
   loaded.report = std::move(description.report);
   loaded.report.prepared_from = std::move(description.source.path);
   loaded.revision = description.revision;
+  loaded.part = description.part;
   return loaded;
 }
 
 Description take_description(SectionReader& sections) {
   return read_description(sections.take<std::byte>(SectionKind::description));
+}
+
+PreparedSummary summary_of(Description&& description, const SectionReader& sections,
+                           std::size_t file_size) {
+  PreparedSummary summary;
+  summary.fields = std::move(description.numbers.fields);
+  summary.bounds = description.numbers.bounds;
+  summary.size = description.numbers.size;
+  summary.options = description.numbers.options;
+  summary.report = std::move(description.report);
+  summary.report.prepared_from = description.source.path;
+  summary.revision = description.revision;
+  summary.source = std::move(description.source);
+  summary.part = description.part;
+  summary.counts = description.counts;
+  summary.fingerprint = sections.fingerprint();
+  summary.file_size = file_size;
+  return summary;
+}
+
+/// Calls open() and puts what it throws in words for whoever runs the server.
+template <typename Open>
+auto opened(const std::string& path, const Open& open) {
+  try {
+    return open();
+  } catch (const PreparedFileError& error) {
+    throw std::runtime_error(path + ": " + error.what() + kPrepareAgain);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": is damaged: " + error.what() + kPrepareAgain);
+  }
 }
 
 LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
@@ -324,7 +398,7 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
     throw std::runtime_error(path + ": is there already and is no prepared file; not replaced");
   }
   const LayerArrays arrays = arrays_of(*loaded.layer);
-  const ByteWriter description = written(arrays, revision, source, loaded.report);
+  const ByteWriter description = written(arrays, revision, source, loaded);
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
   add_arrays(arrays, sections);
@@ -332,13 +406,41 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
 }
 
 LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands) {
-  try {
-    return open(path, demands);
-  } catch (const PreparedFileError& error) {
-    throw std::runtime_error(path + ": " + error.what() + kPrepareAgain);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(path + ": is damaged: " + error.what() + kPrepareAgain);
-  }
+  return opened(path, [&] { return open(path, demands); });
+}
+
+PreparedSummary read_prepared_summary(const std::string& path) {
+  return opened(path, [&path] {
+    const MappedFile file(path, MappedFile::Pages::as_needed);
+    SectionReader sections(file.bytes(), SectionReader::Checked::first);
+    return summary_of(take_description(sections), sections, file.bytes().size());
+  });
+}
+
+void check_prepared_summary(const std::string& path, const PreparedSummary& summary,
+                            const PreparedDemands& demands) {
+  opened(path, [&] {
+    check_fingerprint(summary.options, summary.fingerprint);
+    check_options(summary.options, demands);
+    check_source(summary.source, demands);
+  });
+}
+
+LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary& summary) {
+  return opened(path, [&] {
+    const auto file = std::make_shared<const MappedFile>(path);
+    SectionReader sections(file->bytes());
+    Description description = take_description(sections);
+    if (description.revision != summary.revision || description.part != summary.part ||
+        sections.fingerprint() != summary.fingerprint) {
+      throw PreparedFileError("is another file by now than when the layers were read");
+    }
+    LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
+    loaded.file = file;
+    loaded.report.path = path;
+    file->release_pages();
+    return loaded;
+  });
 }
 
 EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options) {

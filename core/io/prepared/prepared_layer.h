@@ -6,15 +6,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/io/load/load_layer.h"
 #include "core/io/source/source_stamp.h"
+#include "core/layer/feature_table.h"
+#include "core/layer/layer_part.h"
+#include "core/layer/layer_size.h"
 
 namespace trapeze {
 
-/// Saves a layer that was loaded from the source of the stamp, under a `revision` that it is to
-/// have when it is opened. A prepared file of that name is replaced, see write_atomically; any
-/// other one is not. Throws std::runtime_error that names the path.
+/// Saves a layer that was loaded from the source of the stamp, or a part of one, under a `revision`
+/// that it is to have when it is opened. A prepared file of that name is replaced, see
+/// write_atomically; any other one is not. Throws std::runtime_error that names the path.
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
                          const SourceStamp& source);
 
@@ -35,6 +39,38 @@ struct PreparedDemands {
 /// the file is damaged, of another version of Trapeze, prepared otherwise than demanded, or older
 /// than its source. The source itself need not exist.
 LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands = {});
+
+/// What a prepared file says of its layer before the layer is looked at.
+struct PreparedSummary {
+  std::vector<Field> fields;
+  Box bounds;
+  LayerSize size;
+  LayerOptions options;
+  LoadReport report;
+  std::uint64_t revision = 0;
+  SourceStamp source;
+  std::optional<PartNumber> part;  // unset: it is a whole layer
+  LevelCounts counts;              // of a part
+  std::uint64_t fingerprint = 0;   // build_fingerprint() of whoever prepared it
+  std::uint64_t file_size = 0;
+};
+
+/// Looks at the beginning of the file only, which takes less than a millisecond however large it
+/// is. Throws std::runtime_error that names the path and says what to do if it is no prepared file,
+/// of another version of Trapeze, cut off, or damaged in its beginning.
+PreparedSummary read_prepared_summary(const std::string& path);
+
+/// Throws std::runtime_error that names the path and says what to do if this version of Trapeze
+/// builds layers otherwise, if it was prepared otherwise than demanded, or is older than its
+/// source.
+void check_prepared_summary(const std::string& path, const PreparedSummary& summary,
+                            const PreparedDemands& demands);
+
+/// Maps a prepared file of which that is the summary, and checks every byte of it, after which
+/// none of its pages is held: each becomes resident when it is looked at. Its source is not
+/// checked. Throws std::runtime_error that names the path if it is not the same file any longer, or
+/// damaged.
+LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary& summary);
 
 /// A prepared layer of which another one is to take over what has not changed.
 struct EarlierPrepared {

@@ -218,6 +218,13 @@ void FeatureSource::check_reference_systems() const {
 }
 
 bool FeatureSource::next(SourceFeature& next) {
+  while (read_next(next)) {
+    if (!is_wanted_ || is_wanted_(read_ - 1)) return true;
+  }
+  return false;
+}
+
+bool FeatureSource::read_next(SourceFeature& next) {
   messages_.clear();
   next.feature = is_interleaved_ ? next_interleaved(next)
                  : ids_          ? next_by_id(next)

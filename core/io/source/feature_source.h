@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ogrsf_frmts.h>
@@ -56,6 +58,12 @@ class FeatureSource {
   /// fewer features of a layer can be read than it says it has.
   bool next(SourceFeature& next);
 
+  /// From here on, next() passes over features for which that is false, without looking at them;
+  /// `order` counts those that it would give otherwise, from 0.
+  void keep_only(std::function<bool(std::size_t order)> is_wanted) {
+    is_wanted_ = std::move(is_wanted);
+  }
+
   /// Share of the features that have been read, 0 to 1, or < 0 if unknown.
   double progress() const;
 
@@ -67,6 +75,7 @@ class FeatureSource {
   std::string apply_condition(const std::string& where);
   std::string apply_condition(const std::string& where, OGRLayer& layer);
   void select_ids(const SourceSelection& selection);
+  bool read_next(SourceFeature& next);
   OGRFeatureUniquePtr next_by_id(SourceFeature& next);
   void read_by_id(OGRLayer& layer);
   std::vector<SelectionProblem> find_missing_attributes(
@@ -93,6 +102,8 @@ class FeatureSource {
   std::optional<std::vector<std::int64_t>> ids_;
   std::string condition_;  // on the others, in SQL; empty: none
   std::vector<OGRFeatureUniquePtr> by_id_;
+
+  std::function<bool(std::size_t)> is_wanted_;  // empty: all are
 
   std::size_t current_layer_ = 0;
   std::size_t read_ = 0;

@@ -335,7 +335,7 @@ TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
   prepare(kMixed, prepared_);
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(failure_of(prepared_),
-              AllOf(StartsWith(prepared_), HasSubstr("format 7"), HasSubstr("reads 6")));
+              AllOf(StartsWith(prepared_), HasSubstr("format 8"), HasSubstr("reads 7")));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));

@@ -1,0 +1,268 @@
+#include "core/io/load/source_division.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "core/grid/digest.h"
+#include "core/grid/disjoint_sets.h"
+#include "core/grid/hilbert.h"
+#include "core/grid/item_count.h"
+#include "core/grid/web_mercator.h"
+#include "core/io/source/feature_source.h"
+#include "core/io/source/source_name.h"
+#include "core/io/source/source_ring_reader.h"
+
+namespace trapeze {
+namespace {
+
+constexpr std::size_t kFeaturesBetweenShows = 4096;
+
+/// What is measured of the features of a source, in its order.
+struct Measures {
+  std::vector<std::uint32_t> vertices;  // by feature; 0 of what is not drawn
+  std::vector<std::uint32_t> places;    // by feature: along the Hilbert curve
+  std::vector<Box> boxes;
+  std::vector<std::uint32_t> owners;  // by box: the feature
+  std::uint64_t fingerprint = 0;
+};
+
+Box box_of(std::span<const Point> ring) {
+  Box box;
+  for (const Point p : ring) box.include(p);
+  return box;
+}
+
+bool holds(const Box& outer, const Box& inner) {
+  return outer.min_x <= inner.min_x && outer.min_y <= inner.min_y && outer.max_x >= inner.max_x &&
+         outer.max_y >= inner.max_y;
+}
+
+std::uint64_t word_of(std::int32_t x, std::int32_t y) {
+  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
+}
+
+/// Wide enough that two that would be closed to each other meet.
+Box widened_for_gaps(const Box& box, double metres) {
+  if (metres == 0) return box;
+  // The scale of the map grows towards the poles.
+  const double y =
+      std::max(std::abs(static_cast<double>(box.min_y)), std::abs(static_cast<double>(box.max_y)));
+  const auto cells = static_cast<std::int64_t>(std::ceil(cells_from_ground(metres, y))) + 1;
+  const auto cell = [](std::int64_t v) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, kGridMin, kGridMax));
+  };
+  return {cell(box.min_x - cells), cell(box.min_y - cells), cell(box.max_x + cells),
+          cell(box.max_y + cells)};
+}
+
+class Measuring {
+ public:
+  Measuring(FeatureSource& source, const LayerOptions& options)
+      : source_(source), options_(options), reader_(source) {}
+
+  Measures measure(const std::function<void(double)>& progress) {
+    SourceFeature next;
+    while (source_.next(next)) {
+      require_countable(measures_.vertices.size() + 1, "features that can be divided");
+      measures_.vertices.push_back(0);
+      measures_.places.push_back(0);
+      measure(next);
+      if (progress && measures_.vertices.size() % kFeaturesBetweenShows == 0) {
+        progress(source_.progress());
+      }
+    }
+    measures_.fingerprint = digester_.digest().low;
+    return std::move(measures_);
+  }
+
+ private:
+  void measure(SourceFeature& next) {
+    digester_.add(static_cast<std::uint64_t>(next.feature->GetFID()));
+    if (next.layer == nullptr) return;
+    const OGRGeometry* geometry = next.feature->GetGeomFieldRef(next.layer->geometry_field);
+    if (geometry == nullptr || !has_polygons(*geometry)) return;
+    const FeatureRings& feature = reader_.read(*geometry, next.layer_index);
+    if (!feature.failure.empty() || feature.rings.empty()) return;
+    const auto owner = static_cast<std::uint32_t>(measures_.vertices.size() - 1);
+    measures_.vertices.back() = static_cast<std::uint32_t>(feature.rings.points.size());
+    const Box all = box_of(feature.rings.points);
+    measures_.places.back() =
+        hilbert({static_cast<std::int32_t>((std::int64_t{all.min_x} + all.max_x) / 2),
+                 static_cast<std::int32_t>((std::int64_t{all.min_y} + all.max_y) / 2)});
+    digester_.add(word_of(all.min_x, all.min_y));
+    digester_.add(word_of(all.max_x, all.max_y));
+    digester_.add(feature.rings.points.size());
+    // With coverage on, features are grouped by the boxes around the whole of them.
+    if (options_.coverage == CoverageMode::on) return add(all, owner);
+    const std::size_t first = measures_.boxes.size();
+    for (std::size_t r = 0; r < feature.rings.size(); ++r) {
+      const Box box = widened_for_gaps(box_of(feature.rings[r]), options_.close_gaps);
+      // A hole mostly follows its shell.
+      const bool is_within = measures_.boxes.size() > first && holds(measures_.boxes.back(), box);
+      if (!is_within) add_as_is(box, owner);
+    }
+  }
+
+  void add(const Box& box, std::uint32_t owner) {
+    add_as_is(widened_for_gaps(box, options_.close_gaps), owner);
+  }
+  void add_as_is(const Box& box, std::uint32_t owner) {
+    require_countable(measures_.boxes.size() + 1, "rings that can be divided");
+    measures_.boxes.push_back(box);
+    measures_.owners.push_back(owner);
+  }
+
+  FeatureSource& source_;
+  const LayerOptions& options_;
+  SourceRingReader reader_;
+  Measures measures_;
+  Digester digester_;
+};
+
+/// Ties the owners of boxes that meet, by a sweep from north to south over strips that hold about
+/// as many boxes, and in each from west to east.
+class BoxTies {
+ public:
+  BoxTies(std::span<const Box> boxes, std::span<const std::uint32_t> owners, DisjointSets& sets)
+      : boxes_(boxes),
+        owners_(owners),
+        sets_(sets),
+        steps_left_(kMostStepsOfEach * (boxes.size() + kLeastStrip)) {}
+
+  void tie() {
+    std::vector<std::uint32_t> order(boxes_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, {}, [this](std::uint32_t i) { return std::pair(boxes_[i].min_y, i); });
+    for (std::size_t begin = 0; begin < order.size();) {
+      const std::int32_t north = boxes_[order[begin]].min_y;
+      std::erase_if(strip_, [&](std::uint32_t i) { return boxes_[i].max_y < north; });
+      // As long as what reaches into it, so that this is not looked at too often.
+      const std::size_t size = std::max(kLeastStrip, strip_.size());
+      const std::size_t end = std::min(begin + size, order.size());
+      strip_.insert(strip_.end(), order.begin() + static_cast<std::ptrdiff_t>(begin),
+                    order.begin() + static_cast<std::ptrdiff_t>(end));
+      tie_strip();
+      begin = end;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLeastStrip = 4096;
+  // Beyond that, boxes of a strip are tied that need not be: a division is coarser, and not wrong.
+  static constexpr std::size_t kMostStepsOfEach = 4096;
+
+  void tie_strip() {
+    std::ranges::sort(strip_, {},
+                      [this](std::uint32_t i) { return std::pair(boxes_[i].min_x, i); });
+    open_.clear();
+    for (const std::uint32_t i : strip_) {
+      if (steps_left_ < open_.size()) {
+        if (!open_.empty()) sets_.tie(owners_[open_.front()], owners_[i]);
+        open_.assign(1, i);
+        continue;
+      }
+      steps_left_ -= open_.size();
+      sweep_over(i);
+    }
+  }
+
+  void sweep_over(std::uint32_t i) {
+    const Box& box = boxes_[i];
+    bool is_hidden = false;  // whatever meets it later meets one that is open as well
+    std::erase_if(open_, [&](std::uint32_t other) {
+      const Box& open = boxes_[other];
+      if (open.max_x < box.min_x) return true;
+      if (open.min_y > box.max_y || open.max_y < box.min_y) return false;
+      sets_.tie(owners_[other], owners_[i]);
+      if (open.max_x >= box.max_x && open.min_y <= box.min_y && open.max_y >= box.max_y) {
+        is_hidden = true;
+        return false;
+      }
+      return open.max_x <= box.max_x && open.min_y >= box.min_y && open.max_y <= box.max_y;
+    });
+    if (!is_hidden) open_.push_back(i);
+  }
+
+  std::span<const Box> boxes_;
+  std::span<const std::uint32_t> owners_;
+  DisjointSets& sets_;
+  std::size_t steps_left_;
+  std::vector<std::uint32_t> strip_;
+  std::vector<std::uint32_t> open_;
+};
+
+/// Features that hang together, by the first of them.
+struct Group {
+  std::uint32_t place = 0;  // of the first
+  std::uint32_t first = 0;
+  std::uint64_t vertices = 0;
+};
+
+/// Those that have vertices, along the curve.
+std::vector<Group> groups_of(const Measures& measures, DisjointSets& sets) {
+  std::vector<std::uint64_t> vertices(sets.size());
+  for (std::uint32_t i = 0; i < sets.size(); ++i) vertices[sets.find(i)] += measures.vertices[i];
+  std::vector<Group> groups;
+  for (std::uint32_t i = 0; i < sets.size(); ++i) {
+    if (vertices[i] > 0) groups.push_back({measures.places[i], i, vertices[i]});
+  }
+  std::ranges::sort(groups, {},
+                    [](const Group& group) { return std::pair(group.place, group.first); });
+  return groups;
+}
+
+}  // namespace
+
+std::shared_ptr<const SourceDivision> SourceDivision::of(
+    const std::string& path, const SourceSelection& selection, const LayerOptions& options,
+    std::uint32_t count, const std::function<void(double)>& progress) {
+  Measures measures;
+  try {
+    FeatureSource source(path, selection);
+    measures = Measuring(source, options).measure(progress);
+  } catch (const SourceError& error) {
+    throw std::runtime_error(name_of_source(path) + ": " + error.what());
+  }
+  std::shared_ptr<SourceDivision> division(new SourceDivision());
+  DisjointSets sets(measures.vertices.size());
+  BoxTies(measures.boxes, measures.owners, sets).tie();
+  measures.boxes = {};
+  measures.owners = {};
+
+  const std::vector<Group> groups = groups_of(measures, sets);
+  std::uint64_t all = 0;
+  for (const Group& group : groups) all += group.vertices;
+  division->parts_.resize(count);
+  division->part_of_.assign(measures.vertices.size(), 0);
+  std::uint64_t before = 0;
+  for (const Group& group : groups) {
+    // The part in which the middle of its vertices lies.
+    const auto part = static_cast<std::uint64_t>(static_cast<Int128>(before + group.vertices / 2) *
+                                                 count / std::max<std::uint64_t>(all, 1));
+    division->part_of_[group.first] =
+        static_cast<std::uint16_t>(std::min<std::uint64_t>(part, count - 1));
+    before += group.vertices;
+    division->largest_group_ = std::max(division->largest_group_, group.vertices);
+  }
+  for (std::uint32_t i = 0; i < measures.vertices.size(); ++i) {
+    if (measures.vertices[i] == 0) continue;
+    division->part_of_[i] = division->part_of_[sets.find(i)];
+    Part& part = division->parts_[division->part_of_[i]];
+    ++part.features;
+    part.vertices += measures.vertices[i];
+  }
+  Digester digester;
+  digester.add(measures.fingerprint);
+  digester.add(count);
+  digester.add(static_cast<std::uint64_t>(options.coverage));
+  for (const Part& part : division->parts_) digester.add(part.features);
+  division->fingerprint_ = digester.digest().low;
+  return division;
+}
+
+}  // namespace trapeze
