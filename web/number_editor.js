@@ -154,6 +154,7 @@ export class NumberEditor {
     const { table, problem } = await post_table(document.baseURI, text, columns, this.layer_.name, join);
     if (number !== this.made_anew_) return undefined;
     this.told_.textContent = problem ?? fit_in_words(table);
+    this.told_.className = problem === undefined ? "hint" : "problem";
     mark_wrong(this.text_, problem !== undefined);
     if (problem !== undefined || table.type === "string") return undefined;
     this.values_ = table.id;

@@ -57,7 +57,8 @@ class ClassLabels {
     // Numbers that came out of a rule have more digits than anybody wants to read.
     const double step = least_step();
     if (!(step > 0) || !std::isfinite(step)) return;
-    const NumberFormat apart = format_for_step(step);
+    NumberFormat apart = format_for_step(step);
+    while (*apart.digits > 0 && all_end_with_zero(apart)) --*apart.digits;
     if (!format_) format_ = apart;
     format_->digits = apart.digits;
   }
@@ -128,6 +129,14 @@ class ClassLabels {
   bool is_ruled() const {
     return style_.origin && style_.origin->rule && style_.origin->spread != nullptr &&
            !style_.origin->spread->is_empty();
+  }
+  /// Whether the last digit says nothing, of any number of the labels.
+  bool all_end_with_zero(const NumberFormat& format) const {
+    const auto ends_with_zero = [&format](double number) {
+      return formatted(number, format).ends_with('0');
+    };
+    return ends_with_zero(least()) && ends_with_zero(greatest()) &&
+           std::ranges::all_of(style_.classing.breaks, ends_with_zero);
   }
   /// Between the numbers of labels.
   double least_step() const {

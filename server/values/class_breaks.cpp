@@ -37,7 +37,9 @@ std::vector<double> quantile_breaks(int classes, const ValueSpread& spread) {
     const std::size_t rank =
         static_cast<std::size_t>(i) * spread.count / static_cast<std::size_t>(classes);
     while (before + spread.counts[value] <= rank) before += spread.counts[value++];
-    breaks.push_back(spread.values[value]);
+    // Below the least number there would be nothing: so many are the same that they are a class.
+    const std::size_t next = std::max<std::size_t>(value, 1);
+    if (next < spread.values.size()) breaks.push_back(spread.values[next]);
   }
   return breaks;
 }

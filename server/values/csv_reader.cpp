@@ -27,7 +27,6 @@ Result<bool> CsvReader::next() {
   count_ = 0;
   line_ = next_line_;
   if (text_.empty()) return false;
-  const char ends[] = {delimiter_, '\n', '\r'};
   while (true) {
     std::string* field = new_field();
     if (field == nullptr) {
@@ -36,7 +35,9 @@ Result<bool> CsvReader::next() {
     if (text_.starts_with('"')) {
       if (!read_quoted(*field)) return malformed("has a quote that is not closed");
     } else {
-      const std::size_t end = std::min(text_.find_first_of({ends, sizeof ends}), text_.size());
+      std::size_t end =
+          0;  // by hand: of single characters, find_first_of() is several times slower
+      while (end < text_.size() && !ends_field(text_[end])) ++end;
       field->assign(text_.substr(0, end));
       text_.remove_prefix(end);
     }

@@ -35,6 +35,7 @@ class CsvReader {
   static constexpr std::size_t kMaxFields = 1000;  // of one record
 
  private:
+  bool ends_field(char c) const { return c == delimiter_ || c == '\n' || c == '\r'; }
   std::string* new_field();
   bool read_quoted(std::string& field);
   Problem malformed(std::string_view what) const;

@@ -63,7 +63,12 @@ class RowHandler {
     // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..."
     std::string_view what = error.what();
     const std::size_t place = what.find("line ");
-    if (place != std::string_view::npos) what = what.substr(place);
+    const std::size_t bracket = what.find("] ");
+    if (place != std::string_view::npos) {
+      what = what.substr(place);
+    } else if (bracket != std::string_view::npos) {
+      what = what.substr(bracket + 2);
+    }
     return fail(fmt::format("The body is not JSON: {}.", echoed(std::string(what))));
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -56,9 +57,21 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+/// Whether a whole word of it is ASCII, as most of a table is.
+bool begins_with_ascii(std::string_view text) {
+  std::uint64_t word = 0;
+  if (text.size() < sizeof word) return false;
+  std::memcpy(&word, text.data(), sizeof word);
+  return (word & 0x8080808080808080) == 0;
+}
+
 /// The first byte that is not UTF-8.
 std::optional<std::size_t> find_foreign_byte(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
+    if (begins_with_ascii(text.substr(i))) {
+      i += sizeof(std::uint64_t);
+      continue;
+    }
     const std::size_t length = character_length(text.substr(i));
     if (length == 0) return i;
     i += length;

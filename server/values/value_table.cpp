@@ -66,18 +66,37 @@ class PlainNumber {
 
 enum class CellKind { missing, integer, real, endless, word };
 
-CellKind kind_of(std::string_view text, bool has_decimal_commas) {
-  if (text.empty()) return CellKind::missing;
-  const PlainNumber number(text, has_decimal_commas);
+/// What a value is, and its number if it is one.
+struct Cell {
+  CellKind kind = CellKind::missing;
   std::int64_t integer = 0;
-  if (number.read(integer) == std::errc()) return CellKind::integer;
   double real = 0;
-  const std::errc error = number.read(real);
-  if (error == std::errc() && std::isfinite(real)) return CellKind::real;
-  if (is_missing_number(text)) return CellKind::missing;
+};
+
+/// -0 is 0.
+std::uint64_t bits_of(double number) {
+  return std::bit_cast<std::uint64_t>(number + 0.0);
+}
+
+Cell read_cell(std::string_view text, bool has_decimal_commas) {
+  Cell cell;
+  if (text.empty()) return cell;
+  const PlainNumber number(text, has_decimal_commas);
+  if (number.read(cell.integer) == std::errc()) {
+    cell.kind = CellKind::integer;
+    cell.real = static_cast<double>(cell.integer);
+    return cell;
+  }
+  const std::errc error = number.read(cell.real);
+  if (error == std::errc() && std::isfinite(cell.real)) {
+    cell.kind = CellKind::real;
+    return cell;
+  }
+  if (is_missing_number(text)) return cell;
   const bool is_endless =
-      error == std::errc::result_out_of_range || (error == std::errc() && std::isinf(real));
-  return is_endless ? CellKind::endless : CellKind::word;
+      error == std::errc::result_out_of_range || (error == std::errc() && std::isinf(cell.real));
+  cell.kind = is_endless ? CellKind::endless : CellKind::word;
+  return cell;
 }
 
 }  // namespace
@@ -119,7 +138,9 @@ ValueTableBuilder::ValueTableBuilder(ValueNames names, std::size_t max_rows,
 }
 
 void ValueTableBuilder::reserve(std::size_t rows) {
+  const std::size_t bytes = 24 * rows;
   const std::size_t most = std::min(rows, max_rows_);
+  table_.text_.reserve(bytes);
   table_.rows_.reserve(most);
   places_.reserve(most);
   grow_slots(most);
@@ -198,33 +219,40 @@ Result<ValueTable> ValueTableBuilder::finish() && {
   }
   if (table_.rows_.empty()) return Problem{400, "The table has no row with a key."};
   if (auto problem = find_type()) return std::move(*problem);
-  if (table_.type_ != FieldType::text) fill_numbers();
   table_.text_.shrink_to_fit();
   table_.rows_.shrink_to_fit();
-  table_.id_ = digest_of(identity());
+  table_.id_ = identity();
   return std::move(table_);
 }
 
 /// Numbers, if all values are; the problem is one that would be, and has no end.
 std::optional<Problem> ValueTableBuilder::find_type() {
+  const auto text_of_value = [this](std::uint32_t row) {
+    const ValueTable::Row& place = table_.rows_[row];
+    return std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
+  };
   bool has_words = false;
   bool has_reals = false;
   std::optional<std::uint32_t> endless;
   std::vector<bool>& has_value = table_.has_value_;
   has_value.assign(table_.rows_.size(), false);
-  const auto text_of = [this](std::uint32_t row) {
-    const ValueTable::Row& place = table_.rows_[row];
-    return std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
-  };
-  for (std::uint32_t row = 0; row < has_value.size(); ++row) {
-    const CellKind kind = kind_of(text_of(row), has_decimal_commas_);
-    has_value[row] = kind != CellKind::missing;
-    has_reals = has_reals || kind == CellKind::real;
-    if (kind == CellKind::endless && !endless) endless = row;
-    if (kind != CellKind::word) continue;
-    has_words = true;
-    table_.first_word_ = text_of(row);
-    break;
+  std::vector<std::uint64_t> numbers(table_.rows_.size(), 0);
+  for (std::uint32_t row = 0; row < has_value.size() && !has_words; ++row) {
+    const Cell cell = read_cell(text_of_value(row), has_decimal_commas_);
+    has_value[row] = cell.kind != CellKind::missing;
+    if (cell.kind == CellKind::real && !has_reals) {
+      has_reals = true;  // and those before it are, too
+      for (std::uint32_t before = 0; before < row; ++before) {
+        numbers[before] =
+            bits_of(static_cast<double>(std::bit_cast<std::int64_t>(numbers[before])));
+      }
+    }
+    if (has_value[row]) {
+      numbers[row] = has_reals ? bits_of(cell.real) : std::bit_cast<std::uint64_t>(cell.integer);
+    }
+    if (cell.kind == CellKind::endless && !endless) endless = row;
+    has_words = cell.kind == CellKind::word;
+    if (has_words) table_.first_word_ = text_of_value(row);
   }
   if (has_words) {
     table_.type_ = FieldType::text;
@@ -232,60 +260,50 @@ std::optional<Problem> ValueTableBuilder::find_type() {
       has_value[row] = table_.rows_[row].value_size > 0;
     }
   } else if (endless) {
-    return Problem{400, fmt::format("The value of {} (row {}) is {}, and numbers here have an end: "
-                                    "leave it empty if there is none.",
-                                    table_.key(*endless), places_[*endless], text_of(*endless))};
+    return Problem{400,
+                   fmt::format("The value of {} (row {}) is {}, and numbers here have an end: "
+                               "leave it empty if there is none.",
+                               table_.key(*endless), places_[*endless], text_of_value(*endless))};
   } else {
     table_.type_ = has_reals ? FieldType::real : FieldType::integer;
+    table_.numbers_ = std::move(numbers);
+    fill_numbers();
   }
   table_.missing_ = static_cast<std::size_t>(std::count(has_value.begin(), has_value.end(), false));
   return std::nullopt;
 }
 
-/// The text of the numbers is given up: keys are all that is left of it.
+/// Of numbers: keys are all that is left of it, and move together.
 void ValueTableBuilder::fill_numbers() {
-  std::string keys;
-  table_.numbers_.assign(table_.rows_.size(), 0);
-  for (std::uint32_t row = 0; row < table_.rows_.size(); ++row) {
-    ValueTable::Row& place = table_.rows_[row];
-    const std::string_view text =
-        std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
-    if (table_.has_value_[row]) {
-      const PlainNumber number(text, has_decimal_commas_);
-      std::int64_t integer = 0;
-      double real = 0;
-      if (table_.type_ == FieldType::integer) {
-        number.read(integer);
-        table_.numbers_[row] = std::bit_cast<std::uint64_t>(integer);
-      } else {
-        number.read(real);
-        table_.numbers_[row] = std::bit_cast<std::uint64_t>(real + 0.0);  // -0 is 0
-      }
-    }
-    const auto begin = static_cast<std::uint32_t>(keys.size());
-    keys += table_.key(row);
-    place = {begin, place.key_size, 0};
+  std::string& text = table_.text_;
+  std::uint32_t end = 0;
+  for (ValueTable::Row& place : table_.rows_) {
+    std::copy_n(text.begin() + place.begin, place.key_size, text.begin() + end);
+    place = {end, place.key_size, 0};
+    end += place.key_size;
   }
-  table_.text_ = std::move(keys);
+  text.resize(end);
 }
 
+/// Of all that makes the table: keys, and words behind them, stand in the text in the order of
+/// rows.
 std::string ValueTableBuilder::identity() const {
-  std::string text =
-      fmt::format("{}:{} {}:{} {} ", table_.names_.key.size(), table_.names_.key,
-                  table_.names_.value.size(), table_.names_.value, static_cast<int>(table_.type_));
-  constexpr std::size_t kAroundKey = 16;
-  text.reserve(text.size() + table_.text_.size() + table_.rows_.size() * kAroundKey);
-  const auto append = [&text](std::uint64_t word) {
-    text.append(reinterpret_cast<const char*>(&word), sizeof word);
-  };
+  const std::string head = fmt::format(
+      "{}:{} {}:{} {} {} ", table_.names_.key.size(), table_.names_.key, table_.names_.value.size(),
+      table_.names_.value, static_cast<int>(table_.type_), table_.rows_.size());
+  std::vector<std::uint32_t> sizes(table_.rows_.size());
   for (std::uint32_t row = 0; row < table_.rows_.size(); ++row) {
     const ValueTable::Row& place = table_.rows_[row];
-    append(std::uint64_t{place.key_size} << 32 | std::uint64_t{place.value_size} << 1 |
-           std::uint64_t{table_.has_value_[row]});
-    text.append(table_.text_, place.begin, std::size_t{place.key_size} + place.value_size);
-    if (!table_.numbers_.empty()) append(table_.numbers_[row]);
+    sizes[row] = std::uint32_t{place.key_size} << 11 |  // both are at most 256
+                 std::uint32_t{place.value_size} << 1 | std::uint32_t{table_.has_value_[row]};
   }
-  return text;
+  const auto bytes_of = [](const auto& numbers) {
+    return std::string_view(reinterpret_cast<const char*>(numbers.data()),
+                            numbers.size() * sizeof numbers[0]);
+  };
+  const std::array<std::string_view, 4> parts = {head, bytes_of(sizes), table_.text_,
+                                                 bytes_of(table_.numbers_)};
+  return digest_of(parts);
 }
 
 }  // namespace trapeze

@@ -1,9 +1,7 @@
 // Tables of values over a site: posted, joined, drawn, told in legends, and given up.
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "render/picture/png.h"
@@ -82,7 +80,7 @@ class ValuesSiteTest : public ::testing::Test {
     return *response.body;
   }
 
-  testing::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   testing::SampleSite sample_;
 
  private:
