@@ -39,6 +39,7 @@ const PAGE = [
   "named_styles.js",
   "notices.js",
   "number_editor.js",
+  "numbers.js",
   "place_hash.js",
   "progress_line.js",
   "row_order.js",

@@ -5,8 +5,6 @@ import { ramp_list } from "./class_editor.js";
 import { button, choose, element, mark_wrong, select } from "./elements.js";
 import { columns_of, fit_in_words, post_table } from "./value_tables.js";
 
-export const NUMBER_PARAMETERS = ["values", "join"];
-
 const VALUE = "value"; // as the server calls joined values
 const WAYS = [["quantile", "quantiles"], ["equal", "equal steps"], ["jenks", "natural breaks"],
   ["pretty", "round numbers"], ["stddev", "standard deviations"]];
@@ -15,10 +13,13 @@ const USUAL = { way: "quantile", count: "5", ramp: "YlGnBu" };
 const COPIED_MS = 1500;
 
 export class NumberEditor {
-  /** @param layer of the catalog: {name, title, fields: usable ones, title_attribute} */
+  /**
+   * @param layer of the catalog: {name, title, fields: usable ones, title_attribute}
+   * @param on_change called with pairs of parameter and value; none if there are no numbers any more
+   */
   constructor(layer, on_change) {
     this.layer_ = layer;
-    this.on_change_ = on_change;
+    this.on_change_ = () => on_change(this.read_());
     this.values_ = null; // the name or id of the table
     this.made_anew_ = 0;
     this.text_ = element("textarea");
@@ -43,33 +44,25 @@ export class NumberEditor {
     this.listen_();
   }
 
-  /** Whether the layer is coloured by numbers of a table. */
-  is_on() {
+  is_on_() {
     return this.values_ !== null;
   }
 
-  /** Pairs of parameter and value. */
-  read() {
-    if (!this.is_on()) return [];
+  read_() {
+    if (!this.is_on_()) return [];
     const way = this.way_.value;
     return [["values", this.values_], ...(this.joined_ ? [["join", this.joined_]] : []),
       ["color-by", VALUE], ["breaks", way === "stddev" ? way : `${way}:${this.count_.value}`],
       ["ramp", this.ramp_.value]];
   }
 
-  /** Whether a style, a Map of parameters, is one that can be shown here. */
-  static is_for(style) {
-    return style.has("values") && style.get("color-by") === VALUE &&
-      WAYS.some(([way]) => way === (style.get("breaks") ?? "").split(":")[0]);
-  }
-
-  /** `style`: a Map of parameters; one that this is not for takes the numbers away. */
+  /** `style`: a Map of the parameters that on_change is told; an empty one takes the numbers away. */
   show(style) {
-    const is_for = NumberEditor.is_for(style);
-    if (this.values_ !== (is_for ? style.get("values") : null)) this.told_.textContent = "";
-    this.values_ = is_for ? style.get("values") : null;
-    this.joined_ = is_for ? style.get("join") : undefined;
-    if (is_for) {
+    const is_on = style.size > 0;
+    if (this.values_ !== (is_on ? style.get("values") : null)) this.told_.textContent = "";
+    this.values_ = is_on ? style.get("values") : null;
+    this.joined_ = style.get("join");
+    if (is_on) {
       const [way, count] = style.get("breaks").split(":");
       this.way_.value = way;
       if (count) choose(this.count_, count);
@@ -94,7 +87,7 @@ export class NumberEditor {
     this.way_.value = USUAL.way;
     this.count_.value = USUAL.count;
     this.ramp_.value = USUAL.ramp;
-    return element("details", "numbers", element("summary", "", "Numbers of your own"),
+    return element("div", "part",
       element("p", "hint", "Copy two columns from a spreadsheet, with their names in the first line."),
       row("Table", this.text_, "row tall"), this.columns_,
       row("Keys are in", this.join_), this.classes_, this.show_button_, this.told_, this.ends_);
@@ -106,7 +99,7 @@ export class NumberEditor {
     for (const control of [this.way_, this.count_, this.ramp_]) {
       control.addEventListener("change", () => {
         this.show_parts_();
-        if (this.is_on()) this.on_change_();
+        if (this.is_on_()) this.on_change_();
       });
     }
     this.copy_.addEventListener("click", () => this.copy_link_());
@@ -119,8 +112,7 @@ export class NumberEditor {
 
   show_parts_() {
     this.count_.disabled = this.way_.value === "stddev";
-    this.ends_.hidden = !this.is_on();
-    if (this.is_on()) this.node.open = true;
+    this.ends_.hidden = !this.is_on_();
     this.show_columns_();
   }
 

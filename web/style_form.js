@@ -3,7 +3,7 @@
 import { ClassEditor } from "./class_editor.js";
 import { button, element } from "./elements.js";
 import { CLASS_PARAMETERS, over } from "./named_styles.js";
-import { NUMBER_PARAMETERS, NumberEditor } from "./number_editor.js";
+import { NUMBER_PARAMETERS, Numbers } from "./numbers.js";
 import {
   choice_control, colour_control, number_control, switched_colour_control, text_control,
 } from "./style_controls.js";
@@ -78,6 +78,7 @@ export class StyleForm {
   /** From now on it can be seen. */
   open() {
     this.classes_.open();
+    this.numbers_.open();
   }
 
   /** What the server found wrong: {detail, parameter}, or null. */
@@ -120,7 +121,7 @@ export class StyleForm {
       this.numbers_.show(new Map());
       change();
     });
-    this.numbers_ = new NumberEditor({ ...layer, fields }, () => {
+    this.numbers_ = new Numbers({ ...layer, fields }, () => {
       if (this.numbers_.is_on()) this.classes_.show(new Map());
       change();
     });

@@ -40,7 +40,7 @@ export function fit_in_words({ type, first_word, rows_without_key, joins }) {
   const parts = [`${matched} ${matched === 1 ? "row matches" : "rows match"}.`];
   if (unmatched > 0) {
     const more = unmatched > unmatched_keys.length ? ", …" : "";
-    parts.push(`${unmatched} ${unmatched === 1 ? "does" : "do"} not: ${unmatched_keys.join(", ")}${more}`);
+    parts.push(`${unmatched} ${unmatched === 1 ? "does" : "do"} not: ${unmatched_keys.join(", ")}${more}.`);
   }
   if (rows_without_key > 0) parts.push(`${rows_without_key} have no key.`);
   if (features_without_value > 0) parts.push(`${features_without_value} shapes have no value.`);

@@ -69,8 +69,8 @@ test("a pasted table colours the layer, says what does not match, and is in the 
   await form.getByLabel("Values in column").selectOption("score");
   await form.getByRole("button", { name: "Show on the map" }).click();
   await page.waitForFunction(() => location.hash.includes("columns.values="));
-  const said = form.locator(".numbers [role=status]");
-  assert.equal(await said.textContent(), "10 rows match. 1 does not: XX 2 shapes have no value.");
+  const said = form.locator(".numbers .part > [role=status]");
+  assert.equal(await said.textContent(), "10 rows match. 1 does not: XX. 2 shapes have no value.");
   await page.waitForFunction(() =>
     document.querySelector("#legend-body h2")?.textContent === "Columns: score");
   assert.deepEqual(await legend_rows(page),
@@ -102,12 +102,12 @@ test("what is wrong with a table is said beside it, and the map stays", async ()
   await page.getByLabel("Style of Columns").click();
   await form.getByText("Numbers of your own").click();
   const table = form.getByLabel("Table", { exact: true });
-  const said = form.locator(".numbers [role=status]");
+  const said = form.locator(".numbers .part > [role=status]");
   const show = form.getByRole("button", { name: "Show on the map" });
   const says = async (words) => {
     await show.click();
     await page.waitForFunction((text) =>
-      document.querySelector("#layers details[open] .numbers [role=status]").textContent.includes(text), words)
+      document.querySelector("#layers details[open] .numbers .part > [role=status]").textContent.includes(text), words)
       .catch(async () => assert.fail(`"${await said.textContent()}" does not say "${words}"`));
   };
   await says("Paste a table first.");
