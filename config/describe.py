@@ -206,7 +206,7 @@ def settings_page(schema, parameters):
                 ".B trapeze config print", "what comes of it."]
     tables = schema["properties"]
     for name, table in tables.items():
-        if name in ("styles", "layer"):
+        if name in ("styles", "values", "layer"):
             continue
         yield from [f".SH [{roff(name)}]",
                     f"A key is also a variable of the environment, \\fBTRAPEZE_{roff(name.upper())}_\\fIKEY\\fR."]
@@ -216,6 +216,9 @@ def settings_page(schema, parameters):
     for key, setting in tables["layer"]["items"]["properties"].items():
         if key == "style":
             setting = {"description": "a table of what is told under STYLES"}
+        yield from setting_in_roff(key, setting)
+    yield from [".SH [values.\\fINAME\\fR]", sentences(tables["values"]["description"])]
+    for key, setting in tables["values"]["additionalProperties"]["properties"].items():
         yield from setting_in_roff(key, setting)
     yield from [".SH STYLES", "A layer's \\fBstyle\\fR, and a table \\fB[styles.\\fINAME\\fB]\\fR for",
                 "style=\\fINAME\\fR in requests, take these parameters;",

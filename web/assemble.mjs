@@ -38,6 +38,8 @@ const PAGE = [
   "map_frame.js",
   "named_styles.js",
   "notices.js",
+  "number_editor.js",
+  "numbers.js",
   "place_hash.js",
   "progress_line.js",
   "row_order.js",
@@ -51,6 +53,7 @@ const PAGE = [
   "tile_requests.js",
   "tile_timing.js",
   "try_panel.js",
+  "value_tables.js",
   "view_bounds.js",
   "icon.svg",
 ];

@@ -205,7 +205,8 @@ function classes_of(values) {
   return [...classes, { kind: "others", value: "", colour: COLOUR_OF_OTHERS }];
 }
 
-function ramp_list() {
+/** All ramps that can be chosen. */
+export function ramp_list() {
   const list = select([]);
   for (const [label, names] of RAMPS) {
     const group = element("optgroup", "", ...names.map((name) => new Option(name, name)));

@@ -20,7 +20,9 @@ const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity"
 
 /**
  * Asks for the legend of one layer in a style, over the one that is named `under`, if any, which is also
- * how a style is proved before tiles are asked for. @returns {entries} or {problem: {detail, parameter}}; neither if there is no answer.
+ * how a style is proved before tiles are asked for. @returns {entries, and
+ * values_title: what the joined values are, if any colour it} or {problem: {detail, parameter}}; neither if
+ * there is no answer.
  */
 export async function ask_legend(base, name, style, under) {
   const parameters = parameters_of_layers([{ name, style }], under ? [["style", under]] : []);
@@ -30,7 +32,8 @@ export async function ask_legend(base, name, style, under) {
       base));
     const told = await response.json();
     if (response.ok && Array.isArray(told?.layers?.[0]?.entries)) {
-      return { entries: told.layers[0].entries };
+      const { entries, values_title } = told.layers[0];
+      return { entries, values_title };
     }
     if (response.status >= 400 && response.status < 500) {
       const detail = String(told?.detail ?? told?.title);

@@ -3,6 +3,7 @@
 import { ClassEditor } from "./class_editor.js";
 import { button, element } from "./elements.js";
 import { CLASS_PARAMETERS, over } from "./named_styles.js";
+import { NUMBER_PARAMETERS, Numbers } from "./numbers.js";
 import {
   choice_control, colour_control, number_control, switched_colour_control, text_control,
 } from "./style_controls.js";
@@ -64,10 +65,12 @@ export class StyleForm {
     const controls = this.controls_();
     for (const { parameter, show } of controls) show(shown.get(parameter) ?? null);
     this.stroke_.switch_to(has_outline(shown));
-    this.classes_.show(shown);
+    this.numbers_.show(shown);
+    this.classes_.show(this.numbers_.is_on() ? without_classes(shown) : shown);
     this.show_gates_();
     // What has no control here, such as stroke-linejoin of an address, stays as it is.
-    const known = [...controls.map(({ parameter }) => parameter), ...CLASS_PARAMETERS];
+    const known = [...controls.map(({ parameter }) => parameter), ...CLASS_PARAMETERS,
+      ...(this.numbers_.is_on() ? NUMBER_PARAMETERS : [])];
     this.kept_ = new Map([...style].filter(([parameter]) => !known.includes(parameter)));
     this.show_problem(null);
   }
@@ -75,6 +78,7 @@ export class StyleForm {
   /** From now on it can be seen. */
   open() {
     this.classes_.open();
+    this.numbers_.open();
   }
 
   /** What the server found wrong: {detail, parameter}, or null. */
@@ -86,6 +90,7 @@ export class StyleForm {
       mark_wrong(parameter === problem?.parameter);
     }
     this.classes_.mark_wrong(problem?.parameter);
+    this.numbers_.mark_wrong(problem?.parameter);
   }
 
   make_controls_() {
@@ -111,7 +116,15 @@ export class StyleForm {
     const change = () => this.change_();
     const fields = (Array.isArray(layer.fields) ? layer.fields : [])
       .filter((field) => typeof field?.name === "string");
-    this.classes_ = new ClassEditor(fields, suggest, change);
+    // Either the one or the other colours the layer.
+    this.classes_ = new ClassEditor(fields, suggest, () => {
+      this.numbers_.show(new Map());
+      change();
+    });
+    this.numbers_ = new Numbers({ ...layer, fields }, () => {
+      if (this.numbers_.is_on()) this.classes_.show(new Map());
+      change();
+    });
     this.groups_ = [
       {
         name: "Fill",
@@ -168,15 +181,16 @@ export class StyleForm {
       this.show(new Map(), this.usual_);
       this.on_change_();
     });
-    this.class_group_ = fieldset("Classes", this.classes_.node);
+    this.class_group_ = fieldset("Classes", this.classes_.node, this.numbers_.node);
     const [fill, ...others] = this.groups_.map(({ node }) => node);
     return element("div", "style-form", fill, this.class_group_, ...others, reset);
   }
 
   /** Pairs of parameter and value; none if the classes are the usual ones. */
   changed_classes_() {
-    const pairs = this.classes_.read();
-    const usual = CLASS_PARAMETERS.filter((name) => this.usual_.has(name));
+    const pairs = this.numbers_.is_on() ? this.numbers_.read() : this.classes_.read();
+    const parameters = this.numbers_.is_on() ? [...NUMBER_PARAMETERS, ...CLASS_PARAMETERS] : CLASS_PARAMETERS;
+    const usual = parameters.filter((name) => this.usual_.has(name));
     const is_usual = pairs.length === usual.length &&
       pairs.every(([name, value]) => this.usual_.get(name) === value);
     if (is_usual) return [];
@@ -192,7 +206,7 @@ export class StyleForm {
 
   /** Where the parameter is set; the last group if it has no control. */
   group_of_(parameter) {
-    if (CLASS_PARAMETERS.includes(parameter)) return this.class_group_;
+    if ([...CLASS_PARAMETERS, ...NUMBER_PARAMETERS].includes(parameter)) return this.class_group_;
     const found = this.groups_.find(({ gate, controls }) =>
       [gate?.control, ...controls].some((control) => control?.parameter === parameter));
     return (found ?? this.groups_.at(-1)).node;
@@ -218,6 +232,10 @@ function range(min, max, step, builtin, format) {
 function has_outline(style) {
   if (!style.has("stroke") && !style.has("stroke-width")) return false;
   return Number(style.get("stroke-width") ?? 1) > 0;
+}
+
+function without_classes(style) {
+  return new Map([...style].filter(([name]) => !CLASS_PARAMETERS.includes(name)));
 }
 
 function example_filter(field) {

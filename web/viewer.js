@@ -469,7 +469,7 @@ class Viewer {
     if (style.size === 0) state.drawn = style;
     this.refresh_();
     const name = this.shared_.get("style");
-    const { problem = null, entries = [] } =
+    const { problem = null, entries = [], values_title } =
       await ask_legend(BASE, this.layers_[i].name, style, name);
     if (this.states_[i] !== state || state.style !== style) return;
     if (this.shared_.get("style") !== name) return;
@@ -477,7 +477,7 @@ class Viewer {
     if (problem && $("panel-body").hidden) {
       mention(`${this.title_of_(this.layers_[i].name)}: ${problem.detail}`);
     }
-    if (!problem) Object.assign(state, { drawn: style, entries });
+    if (!problem) Object.assign(state, { drawn: style, entries, values_title });
     else if (!state.drawn) this.draw_usual_(i, state, name);
     this.refresh_();
   }
@@ -485,8 +485,9 @@ class Viewer {
   /** In place of a style of the address that was wrong from the start. */
   async draw_usual_(i, state, name) {
     state.drawn = new Map();
-    const { entries = [] } = await ask_legend(BASE, this.layers_[i].name, state.drawn, name);
-    if (state.drawn.size === 0) state.entries = entries;
+    const { entries = [], values_title } =
+      await ask_legend(BASE, this.layers_[i].name, state.drawn, name);
+    if (state.drawn.size === 0) Object.assign(state, { entries, values_title });
     this.show_legend_();
   }
 
@@ -540,9 +541,10 @@ class Viewer {
   /** Of the layers that are on and in view, the topmost first. */
   show_legend_() {
     const sections = this.layers_on_().flatMap((i) => {
-      const { drawn, entries, usual } = this.states_[i];
+      const { drawn, entries, values_title, usual } = this.states_[i];
       if (!drawn || entries.length === 0 || !is_in_view(this.map_, this.layers_[i].bounds)) return [];
-      const layer = { ...this.layers_[i], title: this.title_of_(this.layers_[i].name) };
+      const title = this.title_of_(this.layers_[i].name);
+      const layer = { ...this.layers_[i], title: values_title ? `${title}: ${values_title}` : title };
       return [legend_section(layer, entries, over(usual, drawn))];
     });
     $("legend-body").replaceChildren(...sections.reverse());

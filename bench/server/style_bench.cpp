@@ -1,5 +1,7 @@
 // What styles cost: a tile drawn in each, against the same tile in the layer's own; and the way
-// from a URL to the key under which its tile is cached, the style written out or named.
+// from a URL to the key under which its tile is cached, the style written out or named. And what a
+// table of 100,000 rows takes that is posted: reading it, joining it to as many features, parting
+// its numbers into classes.
 //
 //   TRAPEZE_DATA=folder style_bench
 //
@@ -16,8 +18,12 @@
 #include <vector>
 
 #include "bench/measure/trip.h"
+#include "core/layer/layer_builder.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_request.h"
+#include "server/values/class_breaks.h"
+#include "server/values/joined_values.h"
+#include "server/values/read_values.h"
 
 namespace trapeze {
 namespace {
@@ -32,6 +38,8 @@ constexpr Style kStyles[] = {
     {"plain", ""},
     {"one_class", "color-by=type&classes=*:red"},
     {"three_classes", "color-by=type&classes=residential:red,farmland:green,*:blue"},
+    // The same picture, by numbers of a table that is joined.
+    {"three_classes_joined", "values=types&join=type&color-by=value&classes=1:red,2:green,*:blue"},
     {"filter", "filter=type='residential'"},
     {"outline", "stroke=black"},
     {"outline_dashed", "stroke=black&stroke-dasharray=4,2"},
@@ -55,6 +63,12 @@ std::vector<TripLayer> trip_layers() {
   return layers;
 }
 
+std::shared_ptr<const ValueTable> read_table(const std::string& text) {
+  auto table = read_values(text, TableFormat::csv, {});
+  if (!table) throw std::runtime_error(table.problem().detail);
+  return std::make_shared<const ValueTable>(*std::move(table));
+}
+
 std::shared_ptr<const Dataset> dataset() {
   static const auto loaded = [] {
     std::vector<LayerConfig> layers;
@@ -65,7 +79,9 @@ std::shared_ptr<const Dataset> dataset() {
       config.file = layer.file;
       layers.push_back(config);
     }
-    return Dataset::load(layers);
+    const NamedTables tables = {
+        {"types", {read_table("key,value\nresidential,1\nfarmland,2\n"), "", ""}}};
+    return Dataset::load(layers, nullptr, nullptr, std::make_shared<const NamedTables>(tables));
   }();
   return loaded;
 }
@@ -127,7 +143,59 @@ void make_key(benchmark::State& state, const std::string& query) {
   for (auto _ : state) benchmark::DoNotOptimize(plan_of(target).key());
 }
 
+constexpr int kRows = 100'000;
+
+std::string code_of(int row) {
+  return "code-" + std::to_string(10'000'000 + row);
+}
+
+std::string large_table() {
+  std::string text = "code,value\n";
+  for (int row = 0; row < kRows; ++row)
+    text += code_of(row) + "," + std::to_string(row * 0.37) + "\n";
+  return text;
+}
+
+/// As many features as rows, in another order.
+std::unique_ptr<const Layer> large_layer() {
+  FeatureTable features({{"code", FieldType::text}});
+  for (int row = 0; row < kRows; ++row) {
+    const std::string code = code_of(static_cast<int>(std::int64_t{row} * 7919 % kRows));
+    const Value value = std::string_view(code);
+    features.append(row, {&value, 1});
+  }
+  std::vector<LayerBuilder> builders(1);
+  return LayerBuilder::join(builders, std::move(features));
+}
+
+void read_rows(benchmark::State& state) {
+  const std::string text = large_table();
+  for (auto _ : state) benchmark::DoNotOptimize(read_table(text));
+}
+
+void join_rows(benchmark::State& state) {
+  const auto table = read_table(large_table());
+  const auto layer = large_layer();
+  for (auto _ : state) benchmark::DoNotOptimize(JoinedValues::join(table, *layer, 0));
+}
+
+void part_rows(benchmark::State& state, const std::string& rule) {
+  const auto layer = large_layer();
+  const auto joined = *JoinedValues::join(read_table(large_table()), *layer, 0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(class_breaks(*parse_break_rule(rule), joined->spread()));
+  }
+}
+
 void register_all() {
+  using benchmark::kMillisecond;
+  benchmark::RegisterBenchmark("values/read_100000", read_rows)->Unit(kMillisecond);
+  benchmark::RegisterBenchmark("values/join_100000", join_rows)->Unit(kMillisecond);
+  for (const char* rule : {"quantile:5", "jenks:5"}) {
+    benchmark::RegisterBenchmark((std::string("values/part_100000/") + rule).c_str(), part_rows,
+                                 rule)
+        ->Unit(kMillisecond);
+  }
   for (const Style& style : kStyles) {
     const std::string name = style.name;
     benchmark::RegisterBenchmark(("paint/" + name).c_str(), paint, style.query)

@@ -35,5 +35,8 @@ constexpr unsigned kBatch = 8;  // tiles
 
 constexpr std::string_view kCacheControl = "public, max-age=3600";  // of tiles
 constexpr unsigned kPostedStylesMegabytes = 64;
+constexpr unsigned kPostedValuesMegabytes = 64;
+constexpr std::uint32_t kValuesBytes = 8 * 1024 * 1024;  // of the body of a table
+constexpr std::size_t kValuesRows = 100'000;
 
 }  // namespace trapeze::defaults

@@ -39,6 +39,20 @@ void add(const ChangedLayer& more, ChangedLayer& sum) {
   });
 }
 
+/// The id of the table that the layer's own style joins; empty if it joins none.
+std::string table_of(const ServedLayer& layer) {
+  const ParameterValue* values = layer.config.style.find({}, ParameterId::values);
+  if (values == nullptr || layer.tables == nullptr) return {};
+  const auto named = layer.tables->find(std::get<TableChoice>(*values).name);
+  return named == layer.tables->end() ? std::string() : named->second.table->id();
+}
+
+/// Whether the values have changed by which it is coloured: anywhere, as classes are of all of
+/// them.
+bool has_other_values(const ServedLayer& before, const ServedLayer& after) {
+  return table_of(before) != table_of(after);
+}
+
 }  // namespace
 
 ChangeLog::ChangeLog(Options options) : options_(std::move(options)) {
@@ -105,7 +119,10 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
     ChangedLayer layer;
     layer.name = name;
     layer.tiles.zooms = options_.zooms;
-    if (before && after) {
+    if (before && after &&
+        has_other_values(step.before->layers()[*before], step.after->layers()[*after])) {
+      layer.is_everything = true;
+    } else if (before && after) {
       if (step.before->layers()[*before].revision == step.after->layers()[*after].revision)
         continue;
       ChangeRequest request;

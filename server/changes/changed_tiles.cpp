@@ -131,20 +131,55 @@ class Comparison {
     layers_.push_back(std::move(compared));
   }
 
+  static const std::string& name_of(const TilePlan& plan, const LayerPaint& paint) {
+    return plan.dataset->layers()[paint.layer].config.name;
+  }
+
   const LayerChanges* changes_of(const TilePlan& plan, const LayerPaint& paint) const {
-    const std::string& name = plan.dataset->layers()[paint.layer].config.name;
-    const auto found = std::ranges::find(layers_, name, &ComparedLayer::name);
+    const auto found = std::ranges::find(layers_, name_of(plan, paint), &ComparedLayer::name);
     if (found == layers_.end()) return nullptr;
     return paint.topology == Topology::strict ? &found->changes : &found->untested;
+  }
+
+  /// Whether other numbers have come out of a rule for breaks, or other values are joined: then
+  /// features may have other colours that have not changed themselves.
+  static bool has_other_classes(const std::string& name, const TilePlan& before,
+                                const TilePlan& after) {
+    const auto classing_in = [&name](const TilePlan& plan) -> const Classing* {
+      const auto found = std::ranges::find_if(
+          plan.layers, [&](const LayerPaint& paint) { return name_of(plan, paint) == name; });
+      return found == plan.layers.end() ? nullptr : &found->style.classing;
+    };
+    const Classing* old = classing_in(before);
+    const Classing* now = classing_in(after);
+    if (old == nullptr || now == nullptr) return false;
+    const auto joined = [](const Classing& classing) {
+      return classing.joined == nullptr ? std::string() : classing.joined->key();
+    };
+    return old->breaks != now->breaks || joined(*old) != joined(*now);
+  }
+
+  /// All places of the layers of which that is so.
+  static LayerChanges all_of_reclassed(const TilePlan& before, const TilePlan& after) {
+    LayerChanges changes;
+    for (const TilePlan* plan : {&before, &after}) {
+      for (const LayerPaint& paint : plan->layers) {
+        if (!has_other_classes(name_of(*plan, paint), before, after)) continue;
+        changes.places.push_back({plan->layer_of(paint).bounds(), {}});
+      }
+    }
+    return changes;
   }
 
   /// Layers that are seen in one state and not in the other are of other zooms or opacities, which
   /// is no change of the data.
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
     std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // mostly alike in both
+    const LayerChanges everywhere = all_of_reclassed(before, after);
     for (const TilePlan* plan : {&before, &after}) {
       for (const LayerPaint& paint : plan->layers) {
-        const LayerChanges* changes = changes_of(*plan, paint);
+        const bool is_reclassed = has_other_classes(name_of(*plan, paint), before, after);
+        const LayerChanges* changes = is_reclassed ? &everywhere : changes_of(*plan, paint);
         if (changes == nullptr) continue;
         const Stroke& stroke = paint.style.stroke;
         const double reach = (stroke.width > 0 ? stroke.reach(plan->scale) : 0) + kReachOfDust;

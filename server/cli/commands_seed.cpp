@@ -15,6 +15,7 @@
 #include "server/cli/commands.h"
 #include "server/data/layer_summary.h"
 #include "server/seed/batch_jobs.h"
+#include "server/data/named_tables.h"
 #include "server/seed/earlier_archive.h"
 #include "server/seed/join.h"
 #include "server/seed/seed_jobs.h"
@@ -195,7 +196,8 @@ Work prepare_work(const SeedArguments& arguments, const Config& config) {
   SeedRequest request = make_request(arguments, config);
   const SeedPart part = part_of(arguments);
   auto renderers = start_renderers(config.server.renderer, renderer_count(config.server.workers));
-  const auto dataset = Dataset::load(config.layers);
+  const auto dataset =
+      Dataset::load(config.layers, nullptr, nullptr, read_named_tables(config.values));
   auto plan = SeedPlan::make(request, dataset);
   if (!plan) throw UsageError(plan.problem().detail);
   std::string renderer = renderers.front()->identity();

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -95,13 +97,16 @@ void warn_of_other_changes(const Config& running, const Config& now) {
 }
 
 LayerSource layer_source(const ServeArguments& arguments, const Config& running) {
-  const auto layers = [arguments, running] {
+  using ValueTables = std::map<std::string, ValueTableConfig>;
+  const auto values = std::make_shared<ValueTables>();
+  const auto layers = [arguments, running, values] {
     Config now = configure(arguments);
     check_files_exist(now.layers);
     warn_of_other_changes(running, now);
+    *values = std::move(now.values);
     return std::move(now.layers);
   };
-  return {layers, arguments.config};
+  return {layers, arguments.config, [values] { return *values; }};
 }
 
 [[noreturn]] void end_now(ServerLog& log) {

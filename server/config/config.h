@@ -51,6 +51,15 @@ struct LayerConfig {
   bool has_fast_topology() const;
 };
 
+/// Values that styles may join to layers by a key.
+struct ValueTableConfig {
+  std::string file;         // CSV or JSON
+  std::string key;          // the column of keys; empty: the first
+  std::string value;        // the column of values; empty: the second
+  std::string title;        // of the values, for people; empty: the name of the column
+  std::string attribution;  // what maps must say about where they are from
+};
+
 struct ServerConfig {
   std::string address{defaults::kAddress};
   std::uint16_t port = defaults::kPort;                // 0: any free port
@@ -96,6 +105,9 @@ struct LimitsConfig {
   std::uint64_t tile_cost = defaults::kTileCost;      // as drawing_cost() counts; 0: no limit
   double cost_per_second = defaults::kCostPerSecond;  // of dear tiles, for one address; 0: no limit
   double cost_burst = defaults::kCostBurst;
+  std::uint32_t values_bytes = defaults::kValuesBytes;    // of a table that is posted
+  std::size_t values_rows = defaults::kValuesRows;        // of it
+  unsigned values_mb = defaults::kPostedValuesMegabytes;  // of memory for all that are posted
 };
 
 struct TextConfig {
@@ -135,8 +147,9 @@ struct Config {
   LogConfig log;
   AdminConfig admin;
   ChangesConfig changes;
-  std::map<std::string, StyleQuery> styles;  // by name, for which is_url_name() holds
-  std::vector<LayerConfig> layers;           // names are unique
+  std::map<std::string, StyleQuery> styles;        // by name, for which is_url_name() holds
+  std::map<std::string, ValueTableConfig> values;  // tables by name, which is as those of styles
+  std::vector<LayerConfig> layers;                 // names are unique
 };
 
 }  // namespace trapeze

@@ -66,6 +66,16 @@ std::string print_named_style(const std::string& name, const StyleQuery& style) 
   return fmt::format("\n[styles.{}]\n{}\n", name, fmt::join(style_assignments(style), "\n"));
 }
 
+std::string print_value_table(const std::string& name, const ValueTableConfig& table,
+                              const LoadedConfig& loaded) {
+  std::string text = fmt::format("\n[values.{}]\n", name);
+  for (const auto& setting : value_table_settings()) {
+    text += line(setting.key, toml_text(setting.get(table)), loaded,
+                 fmt::format("values.{}.{}", name, setting.key));
+  }
+  return text;
+}
+
 /// Connection strings may hold one.
 SettingValue without_password(const Setting<LayerConfig>& setting, const SettingValue& value) {
   if (setting.type != SettingType::path) return value;
@@ -157,6 +167,18 @@ Json styles_schema() {
           {"additionalProperties", style}};
 }
 
+Json value_tables_schema() {
+  Json table = closed_object();
+  for (const auto& setting : value_table_settings()) {
+    table["properties"][setting.key] = setting_schema(setting);
+  }
+  table["required"] = {"file"};
+  return {{"type", "object"},
+          {"description", "tables of values by name, for values=NAME"},
+          {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
+          {"additionalProperties", table}};
+}
+
 Json layer_schema() {
   Json schema = closed_object();
   for (const auto& setting : layer_settings()) {
@@ -184,6 +206,9 @@ std::string print_config(const LoadedConfig& loaded) {
     text += line(setting.key, toml_text(setting.get(loaded.config)), loaded, setting.name());
   }
   for (const auto& [name, style] : loaded.config.styles) text += print_named_style(name, style);
+  for (const auto& [name, values] : loaded.config.values) {
+    text += print_value_table(name, values, loaded);
+  }
   for (const LayerConfig& layer : loaded.config.layers) text += print_layer(layer, loaded);
   return text;
 }
@@ -201,6 +226,7 @@ std::string config_schema() {
     table["properties"][setting.key] = setting_schema(setting);
   }
   schema["properties"]["styles"] = styles_schema();
+  schema["properties"]["values"] = value_tables_schema();
   schema["properties"]["layer"] = {{"type", "array"},
                                    {"description", "the layers, the first lies lowest"},
                                    {"items", layer_schema()}};

@@ -490,6 +490,16 @@ void append_limits(std::vector<Setting<Config>>& all) {
   all.push_back(number<Config>(
       "limits.cost_burst", [](auto& c) -> auto& { return c.limits.cost_burst; }, 1, 1e12,
       "how much of that it may ask for at once after a rest"));
+  all.push_back(integer<Config>(
+      "limits.values_bytes", [](auto& c) -> auto& { return c.limits.values_bytes; }, 0, 64 << 20,
+      "a table that is posted to /values; more is answered with 413"));
+  all.push_back(integer<Config>(
+      "limits.values_rows", [](auto& c) -> auto& { return c.limits.values_rows; }, 1, 10'000'000,
+      "rows of such a table; more are answered with 413"));
+  all.push_back(integer<Config>(
+      "limits.values_mb", [](auto& c) -> auto& { return c.limits.values_mb; }, 0, 65'536,
+      "memory for tables that are posted: those not asked for longest are given up for others; 0: "
+      "none are kept"));
 }
 
 void append_viewer(std::vector<Setting<Config>>& all) {
@@ -563,6 +573,28 @@ const std::vector<Setting<Config>>& config_settings() {
     append_log_and_admin(all);
     return all;
   }();
+  return settings;
+}
+
+const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
+  static const std::vector<Setting<ValueTableConfig>> settings = {
+      path<ValueTableConfig>(
+          "values.file", [](auto& table) -> auto& { return table.file; },
+          "rows of keys and values, as CSV with a line of names, or as JSON; read again when it "
+          "has "
+          "changed"),
+      text<ValueTableConfig>(
+          "values.key", [](auto& table) -> auto& { return table.key; },
+          "the column of keys; empty: the first"),
+      text<ValueTableConfig>(
+          "values.value", [](auto& table) -> auto& { return table.value; },
+          "the column of values; empty: the second"),
+      text<ValueTableConfig>(
+          "values.title", [](auto& table) -> auto& { return table.title; },
+          "what the values are, for people; empty: the name of their column"),
+      text<ValueTableConfig>(
+          "values.attribution", [](auto& table) -> auto& { return table.attribution; },
+          "what maps must say about where they are from; may hold links in HTML")};
   return settings;
 }
 

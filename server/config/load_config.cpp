@@ -62,15 +62,17 @@ class ConfigReader {
         read_layers(node);
       } else if (key.str() == "styles") {
         read_styles(node);
+      } else if (key.str() == "values") {
+        read_value_tables(node);
       } else if (is_table_of_settings(key.str())) {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
              fmt::format("unknown key {}; allowed here are server, viewer, limits, text, log, "
-                         "admin, styles, layer{}",
+                         "admin, styles, values, layer{}",
                          key.str(),
                          did_you_mean(key.str(), {"server", "viewer", "limits", "text", "log",
-                                                  "admin", "styles", "layer"})));
+                                                  "admin", "styles", "values", "layer"})));
       }
     }
   }
@@ -361,6 +363,27 @@ class ConfigReader {
     const toml::table* table = node.as_table();
     if (table == nullptr) return fail(node, "styles are tables, begun by [styles.NAME]");
     for (const auto& [key, style] : *table) read_named_style(std::string(key.str()), style);
+  }
+
+  void read_value_tables(const toml::node& node) {
+    const toml::table* tables = node.as_table();
+    if (tables == nullptr) return fail(node, "tables of values are begun by [values.NAME]");
+    for (const auto& [key, table] : *tables) {
+      const std::string name(key.str());
+      if (!is_url_name(name) || !table.is_table()) {
+        fail(table,
+             "tables of values are each begun by [values.NAME] with a name of 1 to 64 letters, "
+             "digits, '_' or '-'");
+        continue;
+      }
+      ValueTableConfig read;
+      const std::size_t before = loaded_.problems.size();
+      read_settings(*table.as_table(), value_table_settings(), read, "values." + name);
+      if (loaded_.problems.size() == before && read.file.empty()) {
+        fail(table, fmt::format("values \"{}\" need a file", name));
+      }
+      loaded_.config.values.emplace(name, std::move(read));
+    }
   }
 
   void read_named_style(const std::string& name, const toml::node& node) {

@@ -314,7 +314,8 @@ std::uint64_t revision_of(const Layer& layer) {
 }
 
 std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers,
-                                             const Dataset* previous, LayersToRead* told) {
+                                             const Dataset* previous, LayersToRead* told,
+                                             std::shared_ptr<const NamedTables> tables) {
   // All at once: while one layer is at a step for one core, another one uses the others.
   SharedProgress progress(layers, told);
   std::vector<ServedLayer> served(layers.size());
@@ -344,16 +345,35 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
   for (const auto& [i, layer] : reading) log_report(served[i]);
   for (const ServedLayer& layer : served) log_missing_title(layer);
   check_layers(served, previous);
-  return std::make_shared<const Dataset>(std::move(served));
+  if (tables == nullptr && previous != nullptr) tables = previous->tables_;
+  return std::make_shared<const Dataset>(std::move(served), std::move(tables));
 }
 
-Dataset::Dataset(std::vector<ServedLayer> layers) : layers_(std::move(layers)) {
-  ContentHash hash;
+Dataset::Dataset(std::vector<ServedLayer> layers, std::shared_ptr<const NamedTables> tables)
+    : layers_(std::move(layers)), tables_(std::move(tables)) {
+  std::shared_ptr<DerivedValues> derived;
   for (const ServedLayer& layer : layers_) {
+    if (tables_ == nullptr) tables_ = layer.tables;
+    if (derived == nullptr) derived = layer.derived;
+  }
+  if (derived == nullptr) derived = std::make_shared<DerivedValues>();
+  ContentHash hash;
+  for (ServedLayer& layer : layers_) {
+    layer.tables = tables_;
+    layer.derived = derived;
     hash.add(layer.config.name);
     hash.add(layer.revision);
   }
+  for (const auto& [name, named] : this->tables()) {
+    hash.add(name);
+    hash.add(named.table->id());
+  }
   generation_ = hash.hex();
+}
+
+const NamedTables& Dataset::tables() const {
+  static const NamedTables none;
+  return tables_ == nullptr ? none : *tables_;
 }
 
 std::optional<std::size_t> Dataset::find(std::string_view name) const {

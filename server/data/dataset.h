@@ -18,6 +18,8 @@
 #include "server/base/problem.h"
 #include "server/config/config.h"
 #include "server/data/load_progress.h"
+#include "server/values/derived_values.h"
+#include "server/values/value_book.h"
 
 namespace trapeze {
 
@@ -43,6 +45,12 @@ struct ServedLayer {
     LayerChanges changes;
   };
   std::shared_ptr<const Step> last_step = {};  // null: it was read whole
+
+  /// The tables of the configuration that styles may join; null: none.
+  std::shared_ptr<const NamedTables> tables = {};
+  /// What was found out about it for styles, shared by the layers of a dataset; null: nothing is
+  /// kept.
+  std::shared_ptr<DerivedValues> derived = {};
 
   /// The layer to draw, unless it is in several parts; null if it is not there without the test.
   const Layer* layer_for(Topology topology) const {
@@ -87,22 +95,29 @@ class Dataset {
   /// if one cannot be read, was prepared otherwise than configured, has more skipped features than
   /// its configuration allows, or, unless that allows it, fewer than half of the features that
   /// `previous` draws of the layer of that name, of whose source the same was selected.
-  /// `told`, if it is not null, is told how far each layer is.
+  /// `told`, if it is not null, is told how far each layer is. `tables` are those of the
+  /// configuration; null: those of `previous`.
   static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
                                              const Dataset* previous = nullptr,
-                                             LayersToRead* told = nullptr);
+                                             LayersToRead* told = nullptr,
+                                             std::shared_ptr<const NamedTables> tables = nullptr);
 
-  explicit Dataset(std::vector<ServedLayer> layers);
+  /// `tables` that are null are those that the layers have.
+  explicit Dataset(std::vector<ServedLayer> layers,
+                   std::shared_ptr<const NamedTables> tables = nullptr);
 
   const std::vector<ServedLayer>& layers() const { return layers_; }
   /// Position of the layer of that name.
   std::optional<std::size_t> find(std::string_view name) const;
-  /// Hex digits that change when any layer's name or contents change, and only then: equal on every
-  /// machine that serves the same data.
+  /// Those of the configuration.
+  const NamedTables& tables() const;
+  /// Hex digits that change when any layer's or table's name or contents change, and only then:
+  /// equal on every machine that serves the same data.
   const std::string& generation() const { return generation_; }
 
  private:
   std::vector<ServedLayer> layers_;
+  std::shared_ptr<const NamedTables> tables_;  // null: none
   std::string generation_;
 };
 

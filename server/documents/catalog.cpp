@@ -10,6 +10,7 @@
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
 #include "server/data/title_attribute.h"
+#include "server/documents/classification.h"
 #include "server/tiles/layer_style.h"
 
 namespace trapeze {
@@ -125,6 +126,32 @@ std::string tiles_url(const TileJsonRequest& request, const std::string& base_ur
                      scale_suffix(request.scale), after_path(request.style.own.canonical_text()));
 }
 
+/// Where numbers of the layers are parted by a rule, or values joined: what came of it. The problem
+/// is one of the style.
+struct Classifications {
+  Json json = Json::object();  // by layer
+  std::vector<std::string> attributions;
+};
+Result<Classifications> classifications_of(const TileJsonRequest& request, const Dataset& dataset) {
+  Classifications found;
+  for (const std::string& name : request.layers) {
+    const std::size_t position = *dataset.find(name);
+    const ServedLayer& served = dataset.layers()[position];
+    const auto complete = complete_style(request.full_style, served.config);
+    // What is wrong besides is told by the tiles.
+    if (!complete || !names_values(*complete, name)) continue;
+    const auto style = layer_style(*complete, served, position);
+    if (!style) return style.problem();
+    found.json[name] = classification_json(*style);
+    if (style->classing.joined == nullptr) continue;
+    for (const auto& [table, named] : dataset.tables()) {
+      if (named.table.get() != &style->classing.joined->table()) continue;
+      if (!named.attribution.empty()) found.attributions.push_back(named.attribution);
+    }
+  }
+  return found;
+}
+
 std::string legend_url(const TileJsonRequest& request, const std::string& base_url) {
   return fmt::format("{}/legend/{}{}.png{}", base_url, fmt::join(request.layers, ","),
                      scale_suffix(request.scale), after_path(request.style.query()));
@@ -157,6 +184,13 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["name"] = summary.title;
   json["description"] = summary.description;
   json["attribution"] = summary.attribution;
+  const auto classified = classifications_of(request, dataset);
+  if (!classified) return classified.problem();
+  for (const std::string& attribution : classified->attributions) {
+    const std::string before = json["attribution"].get<std::string>();
+    if (before.find(attribution) != std::string::npos) continue;
+    json["attribution"] = before.empty() ? attribution : fmt::format("{}, {}", before, attribution);
+  }
   json["scheme"] = "xyz";
   json["format"] = "png";
   json["tiles"] = {tiles_url(request, base_url)};
@@ -169,6 +203,7 @@ Result<std::string> tile_json(const TileJsonRequest& request, const Dataset& dat
   json["bounds"] = summary.bounds();
   json["center"] = center_json(summary);
   json["legend"] = legend_url(request, base_url);
+  if (!classified->json.empty()) json["classification"] = classified->json;
   json["vector_layers"] = Json::array();  // TileJSON 3.0 wants it always; these are pictures
   return to_text(json);
 }

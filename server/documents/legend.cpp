@@ -15,8 +15,10 @@
 #include "render/text/fonts.h"
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/classification.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_request.h"
+#include "server/values/number_format.h"
 
 namespace trapeze {
 namespace {
@@ -27,50 +29,151 @@ constexpr std::string_view kJson = ".json";
 struct LegendEntry {
   std::string label;
   ClassPaint paint;
+  std::optional<double> from = {};  // of a class between breaks
+  std::optional<double> to = {};
 };
 
 struct LayerLegend {
   std::string name;
   std::string title;
-  Stroke stroke;
-  Pattern pattern;
-  double opacity = 1;
+  std::string values_title;  // of joined values that colour the layer; empty: none do
+  LayerStyle style;
   std::vector<LegendEntry> entries;
+
+  /// Above the entries.
+  std::string heading() const {
+    return values_title.empty() ? title : fmt::format("{}: {}", title, values_title);
+  }
 };
 
-std::string label_of_value(const std::optional<FilterLiteral>& value) {
-  if (!value) return "no value";
-  if (const auto* integer = std::get_if<std::int64_t>(&*value)) return fmt::format("{}", *integer);
-  if (const auto* real = std::get_if<double>(&*value)) return fmt::format("{}", *real);
-  return std::get<std::string>(*value);
-}
+/// Writes what the classes of a style mean.
+class ClassLabels {
+ public:
+  explicit ClassLabels(const LayerStyle& style) : style_(style) {
+    format_ = style.label_format;
+    const bool has_digits =
+        format_ && (format_->digits || format_->type != NumberFormat::Type::fixed);
+    if (has_digits || !is_ruled()) return;
+    // Numbers that came out of a rule have more digits than anybody wants to read.
+    const double step = least_step();
+    if (!(step > 0) || !std::isfinite(step)) return;
+    NumberFormat apart = format_for_step(step);
+    while (*apart.digits > 0 && all_end_with_zero(apart)) --*apart.digits;
+    if (!format_) format_ = apart;
+    format_->digits = apart.digits;
+  }
 
-std::string label_between(const std::vector<double>& breaks, std::size_t i) {
-  if (i == 0) return fmt::format("below {}", breaks.front());
-  if (i == breaks.size()) return fmt::format("{} and more", breaks.back());
-  return fmt::format("{} to {}", breaks[i - 1], breaks[i]);
-}
+  /// By number of class, as LayerStyle::paints; classes in which nothing can be are left out.
+  std::vector<LegendEntry> entries(const std::string& title) const {
+    const Classing& classing = style_.classing;
+    std::vector<LegendEntry> entries;
+    for (const auto& value : classing.values) add(entries, of_value(value));
+    const std::size_t between = classing.breaks.empty() ? 0 : classing.breaks.size() + 1;
+    for (std::size_t i = 0; i < between; ++i) add_between(entries, i);
+    const bool has_classes = style_.origin.has_value();
+    const bool is_by_value = !classing.values.empty();
+    add(entries, !has_classes ? title : is_by_value ? "others" : "no data");
+    if (!classing.highlighted_ids.empty()) add(entries, "highlighted");
+    for (std::size_t i = 0; i < entries.size(); ++i) entries[i].paint = style_.paints[i];
+    // All numbers are the same: there is one class, and none below it.
+    if (is_ruled() && between == 2 && least() == greatest()) entries.erase(entries.begin());
+    return entries;
+  }
 
-/// By number of class, as LayerStyle::paints.
-std::vector<std::string> labels_of(const Classing& classing, const std::string& title) {
-  std::vector<std::string> labels;
-  for (const auto& value : classing.values) labels.push_back(label_of_value(value));
-  if (!classing.breaks.empty()) {
-    for (std::size_t i = 0; i <= classing.breaks.size(); ++i) {
-      labels.push_back(label_between(classing.breaks, i));
+ private:
+  static void add(std::vector<LegendEntry>& entries, std::string label) {
+    entries.push_back({std::move(label), {}});
+  }
+
+  void add_between(std::vector<LegendEntry>& entries, std::size_t i) const {
+    const std::vector<double>& breaks = style_.classing.breaks;
+    LegendEntry entry;
+    if (i > 0) entry.from = breaks[i - 1];
+    if (i < breaks.size()) entry.to = breaks[i];
+    if (is_ruled()) {
+      if (!entry.from) entry.from = least();
+      if (!entry.to) entry.to = greatest();
+    }
+    if (!entry.from) {
+      entry.label = fmt::format("below {}", with_units(number(*entry.to)));
+    } else if (!entry.to) {
+      entry.label = fmt::format("{} and more", with_units(number(*entry.from)));
+    } else {
+      const std::string from = number(*entry.from);
+      const std::string to = number(*entry.to);
+      entry.label = with_units(from == to ? from : fmt::format("{} to {}", from, to));
+    }
+    entries.push_back(std::move(entry));
+  }
+
+  std::string of_value(const std::optional<FilterLiteral>& value) const {
+    if (!value) return "no value";
+    if (const auto* text = std::get_if<std::string>(&*value)) return *text;
+    if (const auto* integer = std::get_if<std::int64_t>(&*value)) {
+      return with_units(format_ ? number(static_cast<double>(*integer))
+                                : fmt::format("{}", *integer));
+    }
+    return with_units(number(std::get<double>(*value)));
+  }
+
+  std::string number(double number) const {
+    return format_ ? formatted(number, *format_) : fmt::format("{}", number);
+  }
+  std::string with_units(std::string text) const {
+    constexpr std::string_view kNoBreakSpace = "\u00a0";
+    if (style_.units.empty()) return text;
+    return fmt::format("{}{}{}", text, kNoBreakSpace, style_.units);
+  }
+
+  /// Whether a rule has parted numbers, of which there are some.
+  bool is_ruled() const {
+    return style_.origin && style_.origin->rule && style_.origin->spread != nullptr &&
+           !style_.origin->spread->is_empty();
+  }
+  /// Whether the last digit says nothing, of any number of the labels.
+  bool all_end_with_zero(const NumberFormat& format) const {
+    const auto ends_with_zero = [&format](double number) {
+      return formatted(number, format).ends_with('0');
+    };
+    return ends_with_zero(least()) && ends_with_zero(greatest()) &&
+           std::ranges::all_of(style_.classing.breaks, ends_with_zero);
+  }
+  /// Between the numbers of labels.
+  double least_step() const {
+    double step = greatest() - least();
+    double below = least();
+    for (const double at : style_.classing.breaks) {
+      if (at > below) step = std::min(step, at - below);
+      below = at;
+    }
+    return step;
+  }
+  double least() const { return style_.origin->spread->least(); }
+  double greatest() const { return style_.origin->spread->greatest(); }
+
+  const LayerStyle& style_;
+  std::optional<NumberFormat> format_;
+};
+
+/// What the joined values are, if they colour the layer.
+std::string title_of_values(const ServedLayer& served, const LayerStyle& style) {
+  const JoinedValues* joined = style.classing.joined.get();
+  if (joined == nullptr || !style.origin || style.origin->attribute != kJoinedName) return {};
+  if (served.tables != nullptr) {
+    for (const auto& [name, named] : *served.tables) {
+      if (named.table.get() == &joined->table() && !named.title.empty()) return named.title;
     }
   }
-  labels.push_back(labels.empty() ? title : "others");
-  if (!classing.highlighted_ids.empty()) labels.emplace_back("highlighted");
-  return labels;
+  return joined->table().names().value;
 }
 
-LayerLegend legend_of_layer(const LayerConfig& config, const LayerStyle& style) {
-  LayerLegend legend{config.name, config.title, style.stroke, style.pattern, style.opacity, {}};
-  const std::vector<std::string> labels = labels_of(style.classing, config.title);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    legend.entries.push_back({labels[i], style.paints[i]});
-  }
+LayerLegend legend_of_layer(const ServedLayer& served, LayerStyle style) {
+  LayerLegend legend;
+  legend.name = served.config.name;
+  legend.title = served.config.title;
+  legend.values_title = title_of_values(served, style);
+  legend.entries = ClassLabels(style).entries(served.config.title);
+  legend.style = std::move(style);
   return legend;
 }
 
@@ -85,32 +188,52 @@ Result<std::vector<LayerLegend>> legend_of(const std::vector<std::string>& layer
     const ServedLayer& served = request.dataset.layers()[*position];
     const auto complete = complete_style(*query, served.config);
     if (!complete) return complete.problem();
-    const auto style = layer_style(*complete, served, *position);
-    if (!style) return style.problem();
-    legend.push_back(legend_of_layer(served.config, *style));
+    auto style = layer_style(*complete, served, *position, Looking::for_legend);
+    if (!style) return std::move(style).problem();
+    legend.push_back(legend_of_layer(served, *std::move(style)));
   }
   return legend;
 }
 
-Json entry_json(const LegendEntry& entry, const LayerLegend& layer) {
+Json entry_json(const LegendEntry& entry, const LayerStyle& style) {
   Json json = {{"label", entry.label},
                {"fill", css_colour(entry.paint.fill)},
-               {"fill-opacity", entry.paint.fill.a / 255.0 * layer.opacity}};
-  if (layer.stroke.width > 0) {
+               {"fill-opacity", entry.paint.fill.a / 255.0 * style.opacity}};
+  if (style.stroke.width > 0) {
     json["stroke"] = css_colour(entry.paint.stroke);
-    json["stroke-opacity"] = entry.paint.stroke.a / 255.0 * layer.opacity;
-    json["stroke-width"] = layer.stroke.width;
+    json["stroke-opacity"] = entry.paint.stroke.a / 255.0 * style.opacity;
+    json["stroke-width"] = style.stroke.width;
+  }
+  if (entry.from) json["from"] = *entry.from;
+  if (entry.to) json["to"] = *entry.to;
+  return json;
+}
+
+Json histogram_json(const ValueSpread& spread) {
+  constexpr std::size_t kBins = 20;
+  if (spread.is_empty()) return nullptr;
+  return {
+      {"min", spread.least()}, {"max", spread.greatest()}, {"counts", histogram(spread, kBins)}};
+}
+
+Json layer_json(const LayerLegend& layer) {
+  Json entries = Json::array();
+  for (const LegendEntry& entry : layer.entries) entries.push_back(entry_json(entry, layer.style));
+  Json json = {{"name", layer.name}, {"title", layer.title}};
+  if (!layer.values_title.empty()) json["values_title"] = layer.values_title;
+  json["entries"] = std::move(entries);
+  if (auto classification = classification_json(layer.style); !classification.is_null()) {
+    json["classification"] = std::move(classification);
+  }
+  if (layer.style.origin && layer.style.origin->spread != nullptr) {
+    json["histogram"] = histogram_json(*layer.style.origin->spread);
   }
   return json;
 }
 
 std::string legend_json(const std::vector<LayerLegend>& legend) {
   Json layers = Json::array();
-  for (const LayerLegend& layer : legend) {
-    Json entries = Json::array();
-    for (const LegendEntry& entry : layer.entries) entries.push_back(entry_json(entry, layer));
-    layers.push_back({{"name", layer.name}, {"title", layer.title}, {"entries", entries}});
-  }
+  for (const LayerLegend& layer : legend) layers.push_back(layer_json(layer));
   return to_text({{"layers", layers}});
 }
 
@@ -132,7 +255,7 @@ constexpr Rgba kFrame{0x88, 0x88, 0x88, 255};
 
 /// A line of the picture: a title, or a swatch with its label.
 struct LegendRow {
-  std::string_view label;
+  std::string label;
   const LegendEntry* entry = nullptr;  // null for a title
   const LayerLegend* layer = nullptr;
 };
@@ -141,7 +264,7 @@ std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
   std::vector<LegendRow> rows;
   for (const LayerLegend& layer : legend) {
     // The only entry of a layer is labelled with its title.
-    if (layer.entries.size() > 1) rows.push_back({layer.title, nullptr, &layer});
+    if (layer.entries.size() > 1) rows.push_back({layer.heading(), nullptr, &layer});
     for (const LegendEntry& entry : layer.entries) rows.push_back({entry.label, &entry, &layer});
   }
   return rows;
@@ -161,24 +284,24 @@ class Swatch {
   /// The result lasts until the next call.
   const Picture& draw(const ClassPaint& paint, const LayerLegend& layer) {
     // Wider outlines would leave nothing of the fill.
-    Stroke stroke = layer.stroke;
+    Stroke stroke = layer.style.stroke;
     stroke.width = std::min(stroke.width, kMaxSwatchStroke);
     const double inset = scale_ * stroke.width / 2;
     fill_rectangle(inset);
     PaintedClass fill{&fill_, paint.fill};
     PaintedClass line{&line_, paint.stroke};
-    PaintedLayer painted{{&fill, 1}, nullptr, layer.pattern.colour, {}, layer.opacity};
-    if (layer.pattern.kind != PatternKind::none) {
-      pattern_.place(layer.pattern, view_, scale_);
+    PaintedLayer painted{{&fill, 1}, nullptr, layer.style.pattern.colour, {}, layer.style.opacity};
+    if (layer.style.pattern.kind != PatternKind::none) {
+      pattern_.place(layer.style.pattern, view_, scale_);
       painted.pattern = &pattern_;
     }
-    if (layer.stroke.width > 0) {
+    if (layer.style.stroke.width > 0) {
       draw_outline(stroke, inset);
       painted.lines = {&line, 1};
     }
     composer_.compose({&painted, 1}, view_.width, view_.height, kPaper, Quality::exact, runs_);
     picture_ = to_pixels(runs_);
-    if (layer.stroke.width == 0) draw_frame();
+    if (layer.style.stroke.width == 0) draw_frame();
     return picture_;
   }
 

@@ -31,7 +31,6 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::number:
       return number_schema(parameter);
     case ParameterType::numbers:
-    case ParameterType::ascending:
       return list_schema(number_schema(parameter), parameter.max_items);
     case ParameterType::word:
       return {{"type", "string"}, {"enum", Json(parameter.words)}};
@@ -47,7 +46,12 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::ramp:
     case ParameterType::classes:
     case ParameterType::style:
+    case ParameterType::breaks:  // numbers with commas between them, or a rule
+    case ParameterType::format:
+    case ParameterType::table:
       return {{"type", "string"}};
+    case ParameterType::text:
+      return {{"type", "string"}, {"maxLength", parameter.max_items}};
   }
   return Json::object();
 }
@@ -120,6 +124,8 @@ Json components_json() {
   }
   parameters["path-place"] = path_parameter(
       "place", "Longitude and latitude in degrees, with a comma between", {{"type", "string"}});
+  parameters["path-table"] = path_parameter(
+      "table", "Name of a table of values, or the id of one that was posted", {{"type", "string"}});
   parameters["path-layer"] = path_parameter("layer", "Name of a layer", {{"type", "string"}});
   parameters["path-attribute"] =
       path_parameter("attribute", "Name of an attribute of the layer", {{"type", "string"}});
@@ -196,6 +202,16 @@ Json components_json() {
       {"in", "query"},
       {"description", "Zoom at which the polygons are looked at; without it: at full detail"},
       {"schema", {{"type", "number"}, {"minimum", 0}, {"maximum", kMaxZoom}}}};
+  for (const auto& [name, description] :
+       {std::pair("key", "The column of keys; without it, the first"),
+        std::pair("value", "The column of values; without it, the second"),
+        std::pair("layer", "The layer to join; without it, all that have the attribute"),
+        std::pair("join", "The attribute that is the key; without it, called as the column")}) {
+    parameters[fmt::format("table-{}", name)] = {{"name", name},
+                                                 {"in", "query"},
+                                                 {"description", description},
+                                                 {"schema", {{"type", "string"}}}};
+  }
   parameters["collections"] = {
       {"name", "collections"},
       {"in", "query"},
@@ -303,13 +319,33 @@ Json get_json(const Route& route) {
   return get;
 }
 
+/// The body of a POST: a table of keys and values.
+Json table_body_json() {
+  Json body = {{"required", true}};
+  body["content"]["text/csv"]["schema"] = {{"type", "string"}};
+  // OpenAPI 3.0 knows no type that is one of two.
+  body["content"]["application/json"]["schema"] = {
+      {"oneOf", {{{"type", "array"}, {"items", Json::object()}}, {{"type", "object"}}}}};
+  return body;
+}
+
 Json post_json(const Route& route) {
+  const bool is_table = route.id == RouteId::post_values;
   Json post = {{"operationId", route.operation},
                {"summary", route.summary},
-               {"requestBody", style_body_json()}};
-  post["responses"] = {{"201", response("The id of the style", route.content_type)},
-                       {"400", problem_response_json()},
-                       {"403", problem_response_json()}};
+               {"requestBody", is_table ? table_body_json() : style_body_json()}};
+  if (is_table) post["parameters"] = parameters_of(route);
+  post["responses"] = {
+      {"201", response(is_table ? "The id of the table, and what of it fits the layers"
+                                : "The id of the style",
+                       route.content_type)},
+      {"400", problem_response_json()},
+      {"403", problem_response_json()}};
+  if (is_table) {
+    for (const char* status : {"413", "415", "429", "503"}) {
+      post["responses"][status] = problem_response_json();
+    }
+  }
   return post;
 }
 

@@ -24,6 +24,8 @@ struct HttpRequest {
   ClientAddress client = {};  // who asks: the peer, or whom a trusted proxy speaks for
   std::shared_ptr<Disconnection> disconnection = {};  // null: it is not watched for
   std::string accept_encoding = {};                   // as sent; empty if none was
+  std::string content_type = {};                      // of the body, as sent; empty if none was
+  std::string content_encoding = {};                  // of the body, as sent; empty if none was
 };
 
 struct HttpResponse {

@@ -41,7 +41,10 @@ using Socket = net::basic_stream_socket<tcp, Executor>;
 using Timer = net::basic_waitable_timer<Clock, net::wait_traits<Clock>, Executor>;
 
 constexpr std::size_t kMaxBuffer = std::size_t{64} << 10;  // of requests read ahead
-constexpr std::size_t kFirstRead = 2048;                   // most requests come as a whole
+// What a client posts to HttpServerOptions::long_body_path lies in memory until it is answered.
+constexpr std::size_t kMostLongBodies = 8;       // at once
+constexpr std::size_t kMostLongBodiesOfOne = 3;  // address
+constexpr std::size_t kFirstRead = 2048;         // most requests come as a whole
 // A connection that is closed while the client still sends would be reset, and the response lost:
 // so what it sends is read and thrown away for a little while.
 constexpr auto kLingerTime = std::chrono::seconds(1);
@@ -125,6 +128,10 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   std::size_t connections() const;
   std::uint64_t refusals() const { return refusals_; }
 
+  /// Whether there is room for another long body of that client; if so, leave_room() gives it back.
+  bool take_room(const ClientAddress& client, bool is_trusted);
+  void leave_room(const ClientAddress& client);
+
   void enter(Connection& connection);
   void leave(Connection& connection);
 
@@ -153,7 +160,9 @@ class HttpServer::State : public std::enable_shared_from_this<State> {
   std::atomic<bool> is_draining_ = false;
   std::atomic<std::uint64_t> refusals_ = 0;
 
-  mutable std::mutex mutex_;  // guards the three below
+  mutable std::mutex mutex_;  // guards the five below
+  std::size_t long_bodies_ = 0;
+  std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> long_bodies_of_;
   std::unordered_set<Connection*> connections_;
   std::unordered_map<ClientAddress, std::size_t, ClientAddressHash> connections_of_;
   bool has_run_ = false;
@@ -190,7 +199,11 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
         is_trusted_(state.is_trusted(peer)),
         socket_(std::move(socket)),
         half_closed_timer_(socket_.get_executor()) {}
-  ~Connection() { state_.leave(*this); }  // NOLINT(bugprone-exception-escape): memory may end
+  // NOLINTNEXTLINE(bugprone-exception-escape): memory may end
+  ~Connection() {
+    leave_room();
+    state_.leave(*this);
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
@@ -216,12 +229,17 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   /// A client that waits for leave to send its body gets it (RFC 9110, section 10.1.1).
   void ask_for_body();
   void read_body();
+  /// How long the body of the request may be whose header was read.
+  std::uint64_t body_limit() const;
+  /// False if it is a long one, and there are too many of them: then it is answered.
+  bool has_room_for_body();
+  void leave_room();
   void on_read(const ErrorCode& error);
   void answer_unreadable(const ErrorCode& error);
   /// Whether it is the request line, and not the fields after it, that broke the limit.
   bool is_request_line_too_long() const;
   Problem target_too_long() const;
-  void handle(const http::request<http::string_body>& message);
+  void handle(http::request<http::string_body>& message);
   ClientAddress client_of(const http::request<http::string_body>& message) const;
   /// Watches for the client to go until the response is sent.
   void watch_for_disconnection();
@@ -251,6 +269,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   unsigned version_ = 11;
   bool keep_alive_ = false;
   bool is_answered_ = false;
+  bool has_room_ = false;  // for a long body, see State::take_room()
 
   // The response being sent.
   std::string head_;
@@ -295,7 +314,8 @@ void HttpServer::Connection::read() {
   if (state_.is_draining() && buffer_.size() == 0) return close_gently();
   parser_.emplace();
   parser_->header_limit(state_.options().header_limit);
-  parser_->body_limit(state_.options().body_limit);
+  // Of any request, until its path is known.
+  parser_->body_limit(std::max(state_.options().body_limit, state_.options().long_body_limit));
   is_reading_ = true;
   if (buffer_.size() > 0) return read_request();
   await_first_byte();
@@ -327,8 +347,40 @@ void HttpServer::Connection::read_request() {
                               const ErrorCode& failure, std::size_t) { on_header(failure); });
 }
 
+std::uint64_t HttpServer::Connection::body_limit() const {
+  const HttpServerOptions& options = state_.options();
+  const auto& header = parser_->get();
+  const auto target = header.target();
+  const bool is_long = !options.long_body_path.empty() && header.method() == http::verb::post &&
+                       target.substr(0, target.find('?')) == options.long_body_path;
+  return is_long ? options.long_body_limit : options.body_limit;
+}
+
+bool HttpServer::Connection::has_room_for_body() {
+  const std::uint64_t usual = state_.options().body_limit;
+  const auto length = parser_->content_length();  // none: it comes in chunks
+  if (body_limit() <= usual || (length && *length <= usual)) return true;
+  has_room_ = state_.take_room(peer_, is_trusted_);
+  if (has_room_) return true;
+  is_reading_ = false;
+  begin_ = Clock::now();
+  request_ = {};
+  request_.client = peer_;
+  keep_alive_ = false;
+  send(problem_response({503, "Too many long bodies are being posted. Ask again."}));
+  return false;
+}
+
+void HttpServer::Connection::leave_room() {
+  if (std::exchange(has_room_, false)) state_.leave_room(peer_);
+}
+
 void HttpServer::Connection::ask_for_body() {
   const auto& header = parser_->get();
+  const auto length = parser_->content_length();
+  if (length && *length > body_limit()) return on_read(http::error::body_limit);
+  parser_->body_limit(body_limit());
+  if (!has_room_for_body()) return;
   const bool is_expected = header.version() >= 11 && buffer_.size() == 0 &&
                            beast::iequals(header[http::field::expect], "100-continue");
   if (!is_expected) return read_body();
@@ -363,8 +415,7 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
   Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
   if (error == http::error::body_limit) {
-    problem = {413, fmt::format("The body of a request is at most {} bytes long.",
-                                state_.options().body_limit)};
+    problem = {413, fmt::format("The body of a request is at most {} bytes long.", body_limit())};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem = is_request_line_too_long()
                   ? target_too_long()
@@ -384,16 +435,18 @@ Problem HttpServer::Connection::target_too_long() const {
   return {414, fmt::format("A target is at most {} bytes long.", state_.options().target_limit)};
 }
 
-void HttpServer::Connection::handle(const http::request<http::string_body>& message) {
+void HttpServer::Connection::handle(http::request<http::string_body>& message) {
   const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
   request_ = {text(message.method_string()),
               text(message.target()),
               text(message[http::field::host]),
               text(message[http::field::if_none_match]),
-              message.body(),
+              std::move(message.body()),
               client_of(message),
               std::make_shared<Disconnection>(),
-              list_of(message, "Accept-Encoding")};
+              list_of(message, "Accept-Encoding"),
+              text(message[http::field::content_type]),
+              text(message[http::field::content_encoding])};
   version_ = message.version();
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
@@ -462,6 +515,8 @@ void HttpServer::Connection::send(HttpResponse response) {
   is_answered_ = true;
   stop_watching();
   tell(response);
+  request_.body = {};  // it may be long, and the next request may be long in coming
+  leave_room();
   keep_alive_ = keep_alive_ && !state_.is_draining();
   head_.clear();
   append_response_head(response, version_, keep_alive_, head_);
@@ -670,6 +725,24 @@ bool HttpServer::State::is_trusted(const ClientAddress& peer) const {
 std::size_t HttpServer::State::connections() const {
   const std::lock_guard lock(mutex_);
   return connections_.size();
+}
+
+bool HttpServer::State::take_room(const ClientAddress& client, bool is_trusted) {
+  const std::lock_guard lock(mutex_);
+  const ClientAddress address = limited_address(client);
+  if (long_bodies_ == kMostLongBodies) return false;
+  std::size_t& of_client = long_bodies_of_[address];
+  if (of_client == kMostLongBodiesOfOne && !is_trusted) return false;
+  ++of_client;
+  ++long_bodies_;
+  return true;
+}
+
+void HttpServer::State::leave_room(const ClientAddress& client) {
+  const std::lock_guard lock(mutex_);
+  const auto of_client = long_bodies_of_.find(limited_address(client));
+  if (--of_client->second == 0) long_bodies_of_.erase(of_client);
+  --long_bodies_;
 }
 
 void HttpServer::State::enter(Connection& connection) {

@@ -31,6 +31,10 @@ struct HttpServerOptions {
   std::size_t target_limit = kMaxTargetLength;          // bytes of path and query together
   std::uint32_t header_limit = defaults::kHeaderBytes;  // bytes of request line and header together
   std::uint32_t body_limit = defaults::kBodyBytes;      // styles are posted
+  // A path to which longer ones are posted, of which there is only room for a few at once; empty:
+  // none.
+  std::string long_body_path = {};
+  std::uint32_t long_body_limit = 0;
   std::chrono::milliseconds idle_timeout = defaults::kIdleTimeout;  // until a request begins
   std::chrono::milliseconds read_timeout =
       defaults::kReadTimeout;  // from its first byte to its last

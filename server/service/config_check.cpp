@@ -9,6 +9,7 @@
 #include "render/make_renderer.h"
 #include "server/base/failure_words.h"
 #include "server/data/layer_problems.h"
+#include "server/data/named_tables.h"
 #include "server/http/http_server.h"
 #include "server/http/static_files.h"
 #include "server/service/line_writer.h"
@@ -40,7 +41,14 @@ class ConfigCheck {
     check_files();
     check_renderer();
     check_addresses();
-    for (const LayerConfig& layer : config_.layers) check_layer(layer);
+    for (const auto& [name, table] : config_.values) {
+      if (!table.file.empty()) note(fmt::format("values.{}.file", name), find_table_problem(table));
+    }
+    for (const auto& [name, style] : config_.styles) check_tables("styles." + name, style);
+    for (const LayerConfig& layer : config_.layers) {
+      check_tables(fmt::format("layer.{}.style", layer.name), layer.style);
+      check_layer(layer);
+    }
     if (config_.layers.empty() && findings_.problems.empty()) {
       findings_.warnings.push_back(
           {path_, "there is no [[layer]]: `trapeze serve` needs the names of files as well"});
@@ -98,6 +106,15 @@ class ConfigCheck {
   }
 
   static bool is_any(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
+
+  /// A style that names a table which is not there draws nothing.
+  void check_tables(const std::string& setting, const StyleQuery& style) {
+    for (const StyleSetting& each : style.settings()) {
+      const auto* choice = std::get_if<TableChoice>(&each.value);
+      if (choice == nullptr || config_.values.contains(choice->name)) continue;
+      note(setting, fmt::format("there is no table [values.{}]", choice->name));
+    }
+  }
 
   void check_layer(const LayerConfig& layer) {
     if (layer.file_to_open().empty()) return;  // a problem of reading the configuration

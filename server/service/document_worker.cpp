@@ -81,13 +81,13 @@ std::shared_ptr<const Document> DocumentWorker::find_kept(
     kept_ = LruMap<std::string, std::shared_ptr<const Document>>(kBudget);
     kept_of_ = dataset;
   }
-  const auto* kept = kept_.find(key);
+  const auto* kept = key.empty() ? nullptr : kept_.find(key);
   return kept == nullptr ? nullptr : *kept;
 }
 
 void DocumentWorker::keep(const Order& order, const std::shared_ptr<const Document>& document) {
   constexpr std::size_t kOverhead = 256;  // of an entry, about
-  if (find_kept(order.dataset, order.key) != nullptr) return;
+  if (order.key.empty() || find_kept(order.dataset, order.key) != nullptr) return;
   kept_.insert(order.key, document, kOverhead + order.key.size() + document->bytes.size());
 }
 

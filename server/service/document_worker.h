@@ -41,7 +41,7 @@ class DocumentWorker {
 
   /// Makes it, keeps it, and calls `callback` exactly once: from the worker, from within this call
   /// if too many wait (503), or from the destructor. What `make` throws is logged, and answered
-  /// with a problem (500).
+  /// with a problem (500). What has an empty key is made every time.
   void submit(std::shared_ptr<const Dataset> dataset, std::string key, Make make,
               Callback callback);
 

@@ -1,6 +1,7 @@
 #include "server/service/reloader.h"
 #include "server/base/failure_words.h"
 #include "server/base/heap.h"
+#include "server/data/named_tables.h"
 #include "server/data/source_files.h"
 
 #include <spdlog/spdlog.h>
@@ -121,14 +122,16 @@ void Reloader::note(const std::string& problem) {
 }
 
 void Reloader::serve(const std::vector<LayerConfig>& layers) {
-  files_ = watched_files(layers);
+  const ValueTables values = source_.values ? source_.values() : ValueTables();
+  files_ = watched_files(layers, values);
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
   std::vector<LiveLayer> live;
   for (const LayerConfig& layer : layers) {
     if (!layer.live_query.empty()) live.emplace_back(layer);  // before it is read, likewise
   }
   const auto before = data_.get();
-  std::shared_ptr<const Dataset> loaded = Dataset::load(layers, before.get(), &to_read_);
+  std::shared_ptr<const Dataset> loaded =
+      Dataset::load(layers, before.get(), &to_read_, read_named_tables(values));
   begin_live(std::move(live), loaded);
   publish(std::move(loaded));
   metrics_.count_load(true);
@@ -192,9 +195,11 @@ void Reloader::publish(std::shared_ptr<const Dataset> loaded) {
              }});
 }
 
-std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers) const {
+std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>& layers,
+                                                 const ValueTables& values) const {
   std::vector<std::string> files;
   if (!source_.config.empty()) files.push_back(source_.config);
+  for (const auto& [name, table] : values) files.push_back(table.file);
   for (const LayerConfig& layer : layers) {
     if (layer.live_query.empty()) append_files(layer.file, files);
     append_files(layer.prepared, files);

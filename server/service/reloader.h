@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -32,6 +33,8 @@ struct LayerSource {
   /// The layers as configured at this moment. Throws std::exception that says what is wrong.
   std::function<std::vector<LayerConfig>()> layers;
   std::string config;  // the path of the configuration, watched as well; empty: there is none
+  /// The tables of values as layers() found them configured the last time; empty: none are.
+  std::function<std::map<std::string, ValueTableConfig>()> values = {};
 };
 
 class Reloader {
@@ -78,7 +81,9 @@ class Reloader {
   bool load_first();
   void load_again();
   void serve(const std::vector<LayerConfig>& layers);
-  std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers) const;
+  using ValueTables = std::map<std::string, ValueTableConfig>;
+  std::vector<std::string> watched_files(const std::vector<LayerConfig>& layers,
+                                         const ValueTables& values) const;
   bool wait_for_a_reason();
   bool has_settled_change();
   void publish(std::shared_ptr<const Dataset> loaded);

@@ -42,6 +42,8 @@ SiteOptions site_options(const Config& config) {
   options.max_scale = config.limits.scale;
   options.max_zoom = config.limits.zoom;
   options.map_pixels = config.limits.map_pixels;
+  options.values_rows = config.limits.values_rows;
+  options.posted_values = std::size_t{config.limits.values_mb} << 20;
   options.drawn_per_second = config.limits.drawn_per_second;
   options.drawn_burst = config.limits.drawn_burst;
   options.tile_cost = config.limits.tile_cost;
@@ -72,6 +74,8 @@ HttpServerOptions server_options(const Config& config) {
   options.target_limit = config.limits.target_bytes;
   options.header_limit = config.limits.header_bytes;
   options.body_limit = config.limits.body_bytes;
+  options.long_body_path = "/values";
+  options.long_body_limit = config.limits.values_bytes;
   options.idle_timeout = milliseconds(config.limits.idle_timeout_ms);
   options.read_timeout = milliseconds(config.limits.read_timeout_ms);
   options.write_timeout = milliseconds(config.limits.write_timeout_ms);
@@ -99,6 +103,7 @@ std::vector<std::string> what_is_open(const Config& config) {
   if (config.server.posted_styles_mb > 0) {
     open.emplace_back("posting styles (server.posted_styles_mb)");
   }
+  if (config.limits.values_mb > 0) open.emplace_back("posting tables (limits.values_mb)");
   if (config.server.metrics) open.emplace_back("/metrics (server.metrics)");
   if (config.server.public_url.empty() && config.server.allowed_hosts.empty()) {
     open.emplace_back("any Host (server.public_url, server.allowed_hosts)");

@@ -22,6 +22,7 @@
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
 #include "server/documents/tile_matrix_set.h"
+#include "server/documents/value_tables.h"
 #include "server/documents/wms.h"
 #include "server/documents/wms_exception.h"
 #include "server/documents/wmts.h"
@@ -54,6 +55,14 @@ constexpr double kShareSeconds = 3600;
 
 double share_of_styles(const SiteOptions& options) {
   return static_cast<double>(options.posted_styles) / 8;
+}
+
+// Tables are larger, and made by hand: an address may post half of those that are kept, and as much
+// again each ten minutes.
+constexpr double kTablesSeconds = 600;
+
+double share_of_tables(const SiteOptions& options) {
+  return std::max(static_cast<double>(options.posted_values) / 2, 1.0);
 }
 
 Problem too_large_style(std::size_t length, const SiteOptions& options) {
@@ -284,12 +293,15 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       cost_limit_(std::make_unique<RateLimit>(options_.cost_per_second, options_.cost_burst)),
       post_limit_(std::make_unique<RateLimit>(share_of_styles(options_) / kShareSeconds,
                                               share_of_styles(options_))),
+      values_limit_(std::make_unique<RateLimit>(share_of_tables(options_) / kTablesSeconds,
+                                                share_of_tables(options_))),
       data_(data),
       tiles_(tiles),
       cache_(cache),
       known_targets_(std::make_unique<KnownTargets>(kKnownTargetBytes)),
       known_fingerprints_(std::make_shared<KnownFingerprints>(kKnownFingerprintBytes)),
-      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles)),
+      values_(std::make_shared<ValueBook>(options_.posted_values)),
+      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles, values_)),
       documents_(std::make_unique<DocumentWorker>()) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {
@@ -327,6 +339,10 @@ void Site::dispatch(const Target& target, const HttpRequest& request,
     case Area::identify:
       return handle_document({identify_document}, target, request, respond);
     case Area::values:
+      if (request.method == "POST") return handle_posted_values(target, request, respond);
+      if (is_all || target.path.find('/', 1) == target.path.rfind('/')) {
+        return handle_document({value_tables_document, nullptr, false}, target, request, respond);
+      }
       return handle_document({values_document}, target, request, respond);
     case Area::ogc:
       return handle_document({ogc_document, parse_ogc_picture}, target, request, respond);
@@ -493,6 +509,58 @@ HttpResponse Site::answer_posted_style(const HttpRequest& request) const {
   return response;
 }
 
+// A table takes milliseconds to read, so that the worker of documents does it.
+void Site::handle_posted_values(const Target& target, const HttpRequest& request,
+                                const Respond& respond) const {
+  const auto refuse = [&respond](const Problem& problem) { respond(problem_response(problem)); };
+  if (options_.posted_values == 0) {
+    return refuse({403, "This server keeps no tables that are posted."});
+  }
+  const auto pairs = decode_query(target.query);
+  if (!pairs) return refuse(malformed_target());
+  const auto query = parse_table_query(*pairs);
+  if (!query) return refuse(query.problem());
+  auto base = base_url(request);
+  if (!base) return refuse(base.problem());
+  const auto dataset = data_.get();
+  if (dataset == nullptr) return refuse(still_loading());
+  if (!request.content_encoding.empty() && request.content_encoding != "identity") {
+    return refuse({415, "A table is sent as it is, and not compressed.", "Content-Encoding",
+                   request.content_encoding, "no such header"});
+  }
+  const auto format = table_format(request.content_type, request.body);
+  if (!format) return refuse(format.problem());
+  const auto bytes = static_cast<double>(request.body.size());
+  const auto address = limited_address(request.client);
+  if (const auto pause = values_limit_->take(address, RateLimit::Clock::now(), bytes)) {
+    return respond(problem_response(
+        {429, "These are more tables than one address may post. Ask again."}, *pause));
+  }
+  const ReadValuesOptions options{query->columns, options_.values_rows};
+  auto id = std::make_shared<std::string>();
+  const auto make = [body = std::make_shared<const std::string>(request.body), format = *format,
+                     options, query = *query, dataset, base = *base, values = values_,
+                     id]() -> Result<Document> {
+    auto read = read_values(*body, format, options);
+    if (!read) return std::move(read).problem();
+    const auto table = values->post(*std::move(read));
+    if (!table) return table.problem();
+    *id = (*table)->id();
+    return table_document(*id, *table, query, *dataset, base);
+  };
+  documents_->submit(dataset, {}, make,
+                     [respond, id, base = *base](const DocumentWorker::Answer& made) {
+                       if (!made) return respond(problem_response(made.problem()));
+                       HttpResponse response;
+                       response.status = 201;
+                       response.headers = {{"Location", fmt::format("{}/values/{}", base, *id)},
+                                           {"Content-Type", "application/json"},
+                                           {"Cache-Control", "no-store"}};
+                       response.body = bytes_of(*made);
+                       respond(std::move(response));
+                     });
+}
+
 HttpResponse Site::answer_file(const Target& target, const HttpRequest& request) const {
   const auto path = percent_decode(target.path, Plus::literal);
   if (!path) return problem_response(malformed_target());
@@ -559,7 +627,8 @@ void Site::handle_document(const Documents& documents, const Target& target,
   if (dataset == nullptr) return respond(problem_response(still_loading()));
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
-  std::string key = fmt::format("{} {}", *base, request.target);
+  std::string key =
+      documents.may_be_kept ? fmt::format("{} {}", *base, request.target) : std::string();
   const DocumentRequest asked{*dataset,           *styles_,         *options_.fonts,
                               *std::move(base),   std::move(*path), *std::move(query),
                               options_.map_pixels};
@@ -663,6 +732,26 @@ void Site::handle_window(const WindowRequest& window, const HttpRequest& request
                          const Respond& respond) const {
   auto dataset = data_.get();
   if (dataset == nullptr) return respond(problem_response(still_loading()));
+  if (!has_to_look(window, *dataset)) {
+    return draw_window(window, std::move(dataset), request, respond);
+  }
+  // Joins and classes of a whole layer take longer than sockets can wait.
+  if (auto refusal = find_impatience(request, kDocumentCost)) return respond(*std::move(refusal));
+  const auto look = [window, dataset]() -> Result<Document> {
+    const auto planned = plan_window(window, dataset);
+    if (!planned) return planned.problem();
+    return Document{};
+  };
+  documents_->submit(
+      dataset, {}, look,
+      [this, window, dataset, request, respond](const DocumentWorker::Answer& looked) {
+        if (!looked) return respond(problem_response(looked.problem()));
+        draw_window(window, dataset, request, respond);
+      });
+}
+
+void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Dataset> dataset,
+                       const HttpRequest& request, const Respond& respond) const {
   auto planned = plan_window(window, std::move(dataset));
   if (!planned) {
     return respond(problem_response(planned.problem()));

@@ -31,6 +31,7 @@
 #include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_service.h"
 #include "server/tiles/window_request.h"
+#include "server/values/value_book.h"
 
 namespace trapeze {
 
@@ -68,6 +69,9 @@ struct SiteOptions {
   /// Styles by name, and the memory in bytes for those that are posted.
   std::map<std::string, StyleQuery> styles = {};
   std::size_t posted_styles = StyleBook::kDefaultBudget;
+  /// Rows of a table that is posted, and the memory in bytes for all of them.
+  std::size_t values_rows = defaults::kValuesRows;
+  std::size_t posted_values = std::size_t{defaults::kPostedValuesMegabytes} << 20;
 };
 
 class Site {
@@ -84,6 +88,7 @@ class Site {
   struct Documents {
     Result<Document> (*make)(const DocumentRequest& request);
     std::optional<Result<PictureRequest>> (*find_picture)(const DocumentRequest& request) = nullptr;
+    bool may_be_kept = true;  // while the data is the same
   };
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
@@ -100,6 +105,8 @@ class Site {
                      const Respond& respond) const;
   HttpResponse answer_file(const Target& target, const HttpRequest& request) const;
   HttpResponse answer_posted_style(const HttpRequest& request) const;
+  void handle_posted_values(const Target& target, const HttpRequest& request,
+                            const Respond& respond) const;
   void handle_tiles(const Target& target, const HttpRequest& request, const Respond& respond) const;
   void handle_document(const Documents& documents, const Target& target, const HttpRequest& request,
                        const Respond& respond) const;
@@ -109,6 +116,9 @@ class Site {
                       const Respond& respond) const;
   void handle_window(const WindowRequest& window, const HttpRequest& request,
                      const Respond& respond) const;
+  /// The same once everything is known about the layers that the style asks for.
+  void draw_window(const WindowRequest& window, std::shared_ptr<const Dataset> dataset,
+                   const HttpRequest& request, const Respond& respond) const;
   HttpResponse answer_metrics() const;
   /// The response to a client that has asked for too much lately; null if it has not. Counts what
   /// it asks for now.
@@ -125,12 +135,14 @@ class Site {
   const StaticFiles files_;
   const std::unique_ptr<RateLimit> draw_limit_;
   const std::unique_ptr<RateLimit> cost_limit_;
-  const std::unique_ptr<RateLimit> post_limit_;  // in bytes of styles
+  const std::unique_ptr<RateLimit> post_limit_;    // in bytes of styles
+  const std::unique_ptr<RateLimit> values_limit_;  // in bytes of tables
   const CurrentDataset& data_;
   TileService& tiles_;
   TileCache& cache_;
   const std::unique_ptr<KnownTargets> known_targets_;
   const std::shared_ptr<KnownFingerprints> known_fingerprints_;  // with answers that come late
+  const std::shared_ptr<ValueBook> values_;
   const std::unique_ptr<StyleBook> styles_;
   const std::unique_ptr<DocumentWorker> documents_;  // last, as it uses the others
 };

@@ -52,6 +52,7 @@ bool Classing::is_plain() const {
 std::string Classing::key() const {
   std::string text = fmt::format("field {}", field);
   for (const auto& value : values) text += " " + key_of(value);
+  if (joined != nullptr) text += " joined " + joined->key();
   if (!alike.empty()) text += fmt::format(" alike {}", fmt::join(alike, ","));
   for (const double number : breaks) text += fmt::format(" <{}", number);
   if (!ids.empty()) text += fmt::format(" ids {}", fmt::join(ids, ","));
@@ -63,7 +64,7 @@ std::string Classing::key() const {
 }
 
 FeatureClassifier::FeatureClassifier(const Classing& classing, const FeatureTable& features)
-    : classing_(classing), features_(features) {
+    : classing_(classing), features_(features), attributes_(features, classing.joined) {
   for (std::size_t i = 0; i < classing.values.size(); ++i) {
     if (!classing.values[i]) continue;
     const auto* text = std::get_if<std::string>(&*classing.values[i]);
@@ -79,7 +80,7 @@ std::uint8_t FeatureClassifier::class_of(std::uint32_t row) const {
     return static_cast<std::uint8_t>(classing_.class_of_highlighted());
   }
   if (classing_.field < 0) return 0;
-  return class_of_value(features_.value(row, classing_.field));
+  return class_of_value(attributes_.value(row, classing_.field));
 }
 
 std::uint8_t FeatureClassifier::class_of_value(const Value& value) const {

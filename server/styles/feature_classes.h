@@ -17,6 +17,7 @@
 #include "core/layer/feature_table.h"
 #include "server/base/lru_map.h"
 #include "server/styles/filter.h"
+#include "server/values/attributes.h"
 
 namespace trapeze {
 
@@ -26,6 +27,8 @@ namespace trapeze {
 /// that of highlighted features.
 struct Classing {
   int field = -1;  // number of the property that values or breaks are about; -1: none
+  /// Values by which features can be classed and filtered beside their attributes; null: none.
+  std::shared_ptr<const JoinedValues> joined;
   /// Class i is that of the value; null: of the features that have none.
   std::vector<std::optional<FilterLiteral>> values;
   /// The class that stands for class i of `values`: those that look alike are drawn as one.
@@ -60,6 +63,7 @@ class FeatureClassifier {
 
   const Classing& classing_;
   const FeatureTable& features_;
+  const Attributes attributes_;
   std::unordered_map<std::string_view, std::uint8_t> texts_;
 };
 

@@ -511,26 +511,25 @@ std::variant<std::shared_ptr<const Filter>, Filter::Mistake> Filter::parse(std::
   }
 }
 
-Result<BoundFilter> BoundFilter::bind(std::shared_ptr<const Filter> filter,
-                                      const FeatureTable& features) {
-  auto root = bind_node(filter->root(), features);
+Result<BoundFilter> BoundFilter::bind(std::shared_ptr<const Filter> filter, Attributes attributes) {
+  auto root = bind_node(filter->root(), attributes);
   if (!root) return std::move(root).problem();
-  return BoundFilter(std::move(filter), features, *std::move(root));
+  return BoundFilter(std::move(filter), std::move(attributes), *std::move(root));
 }
 
 Result<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,
-                                                 const FeatureTable& features) {
+                                                 const Attributes& attributes) {
   Node bound;
   bound.source = &node;
   for (const FilterNode& operand : node.operands) {
-    auto inner = bind_node(operand, features);
+    auto inner = bind_node(operand, attributes);
     if (!inner) return std::move(inner).problem();
     bound.operands.push_back(*std::move(inner));
   }
   if (!node.operands.empty()) return bound;
-  bound.field = features.field_index(node.property);
-  if (bound.field < 0) return unknown_property("filter", node.property, features);
-  const Field& field = features.fields()[static_cast<std::size_t>(bound.field)];
+  bound.field = attributes.field_index(node.property);
+  if (bound.field < 0) return unknown_property("filter", node.property, attributes);
+  const Field& field = attributes.field(bound.field);
   if (!can_compare(field, node)) {
     const std::string takes = field.type == FieldType::text ? "text in single quotes" : "a number";
     return Problem{400, fmt::format("The property {} is compared with {}.", field.name, takes),
@@ -560,7 +559,7 @@ BoundFilter::Truth BoundFilter::evaluate(const Node& node, std::uint32_t row) co
     default:
       break;
   }
-  const Value value = features_->value(row, node.field);
+  const Value value = attributes_.value(row, node.field);
   const bool is_null = std::holds_alternative<std::monostate>(value);
   if (node.source->op == FilterOperator::is_null) return is_null ? Truth::yes : Truth::no;
   if (is_null) return Truth::unknown;
@@ -594,13 +593,17 @@ std::string single_quoted(std::string_view text) {
 }
 
 Problem unknown_property(std::string_view parameter, const std::string& property,
-                         const FeatureTable& features) {
+                         const Attributes& attributes) {
   constexpr std::size_t kMaxNames = 30;
+  const FeatureTable& features = attributes.features();
   std::string names;
   for (std::size_t i = 0; i < features.fields().size() && i < kMaxNames; ++i) {
     names += (i == 0 ? "" : ", ") + features.fields()[i].name;
   }
   if (features.fields().size() > kMaxNames) names += ", ... (all are in /catalog)";
+  if (attributes.joined() != nullptr) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", kJoinedName);
+  }
   if (names.empty()) names = "none: the layer has no properties";
   return {400, fmt::format("There is no property \"{}\" to {} by.", property, parameter),
           std::string(parameter), property, names};

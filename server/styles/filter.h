@@ -20,6 +20,7 @@
 #include "core/layer/feature_table.h"
 #include "server/base/result.h"
 #include "server/styles/like_pattern.h"
+#include "server/values/attributes.h"
 
 namespace trapeze {
 
@@ -73,13 +74,13 @@ class Filter {
   std::string text_;
 };
 
-/// A filter whose properties are fields of a table. Refers to the table, which must outlive it.
+/// A filter whose properties are attributes of features, or values joined to them. Refers to the
+/// features, which must outlive it.
 class BoundFilter {
  public:
   /// The problem, 400, names a property that there is not, with those there are, or one that is
   /// compared with what it cannot be.
-  static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter,
-                                  const FeatureTable& features);
+  static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter, Attributes attributes);
 
   /// The same over another table that has the same fields.
   BoundFilter over(const FeatureTable& features) const {
@@ -102,16 +103,16 @@ class BoundFilter {
     std::vector<Node> operands;
   };
 
-  BoundFilter(std::shared_ptr<const Filter> filter, const FeatureTable& features, Node root)
-      : filter_(std::move(filter)), features_(&features), root_(std::move(root)) {}
+  BoundFilter(std::shared_ptr<const Filter> filter, Attributes attributes, Node root)
+      : filter_(std::move(filter)), attributes_(std::move(attributes)), root_(std::move(root)) {}
 
-  static Result<Node> bind_node(const FilterNode& node, const FeatureTable& features);
+  static Result<Node> bind_node(const FilterNode& node, const Attributes& attributes);
   Truth evaluate(const Node& node, std::uint32_t row) const;
   Truth evaluate_all(const Node& node, std::uint32_t row) const;
   Truth evaluate_any(const Node& node, std::uint32_t row) const;
 
   std::shared_ptr<const Filter> filter_;  // in which the nodes are
-  const FeatureTable* features_;
+  Attributes attributes_;
   Node root_;
 };
 
@@ -120,6 +121,6 @@ std::string single_quoted(std::string_view text);
 
 /// The problem of a parameter that names a property which the layer has not.
 Problem unknown_property(std::string_view parameter, const std::string& property,
-                         const FeatureTable& features);
+                         const Attributes& attributes);
 
 }  // namespace trapeze

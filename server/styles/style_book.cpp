@@ -29,8 +29,10 @@ std::size_t memory_of_text(std::string_view canonical_text) {
 Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers,
                                           std::span<const std::string_view> others) const {
   auto style = StyleQuery::parse(pairs, layers, others);
-  if (!style || named == nullptr) return style;
-  return style->over(*named, layers);
+  if (!style) return style;
+  StyleQuery made = named == nullptr ? *std::move(style) : style->over(*named, layers);
+  if (tables == nullptr) return made;
+  return std::move(made).with_tables([this](const std::string& id) { return tables->find(id); });
 }
 
 Result<StyleLink> StyledQuery::link_for(std::span<const std::string> layers,
@@ -46,21 +48,22 @@ std::string StyleLink::query() const {
   return fmt::format("style={}{}{}", name, text.empty() ? "" : "&", text);
 }
 
-StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget)
-    : named_(shared(std::move(named))), posted_(budget) {}
+StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget,
+                     std::shared_ptr<const ValueBook> tables)
+    : named_(shared(std::move(named))), tables_(std::move(tables)), posted_(budget) {}
 
 Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
-  if (asked == query.end()) return StyledQuery{std::move(query), nullptr};
+  if (asked == query.end()) return StyledQuery{std::move(query), nullptr, {}, tables_};
   const std::string name = asked->second;
   if (std::any_of(asked + 1, query.end(), is_style)) {
     return Problem{400, "The parameter style is given twice.", "style", name, "one name, once"};
   }
-  if (name == kDefaultName) return StyledQuery{std::move(query), nullptr};
+  if (name == kDefaultName) return StyledQuery{std::move(query), nullptr, {}, tables_};
   auto style = find(name);
   if (style == nullptr) return unknown(name);
-  return StyledQuery{std::move(query), std::move(style), name};
+  return StyledQuery{std::move(query), std::move(style), name, tables_};
 }
 
 Problem StyleBook::unknown(const std::string& name) const {
@@ -109,6 +112,10 @@ std::shared_ptr<const StyleQuery> StyleBook::find(std::string_view name) const {
   const std::lock_guard lock(mutex_);
   const auto* style = posted_.find(std::string(name));
   return style == nullptr ? nullptr : *style;
+}
+
+std::shared_ptr<const ValueTable> StyleBook::find_table(const std::string& id) const {
+  return tables_ == nullptr ? nullptr : tables_->find(id);
 }
 
 std::vector<std::string> StyleBook::names() const {

@@ -19,6 +19,7 @@
 #include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/styles/style_parameters.h"
+#include "server/values/value_book.h"
 
 namespace trapeze {
 
@@ -35,11 +36,12 @@ struct StyleLink {
 /// A query, and the style that it names.
 struct StyledQuery {
   std::vector<QueryPair> pairs;
-  std::shared_ptr<const StyleQuery> named;  // null: none, or the one that sets nothing
-  std::string name = {};                    // of that style
+  std::shared_ptr<const StyleQuery> named;       // null: none, or the one that sets nothing
+  std::string name = {};                         // of that style
+  std::shared_ptr<const ValueBook> tables = {};  // that were posted; null: none were
 
-  /// What the pairs set and, where they are silent, the named style. Problems, and the names of
-  /// `others`, are those of StyleQuery::parse().
+  /// What the pairs set and, where they are silent, the named style, with the tables that were
+  /// posted. Problems, and the names of `others`, are those of StyleQuery::parse().
   Result<StyleQuery> style_for(std::span<const std::string> layers,
                                std::span<const std::string_view> others = {}) const;
   /// The same for links; with the same problems.
@@ -51,8 +53,10 @@ class StyleBook {
  public:
   /// `named` are kept as long as the book; `budget`, in bytes, is for those that are posted. Of
   /// these, the ones not asked for longest go first.
+  /// Styles find the tables that they name in `tables`, which may be null.
   explicit StyleBook(std::map<std::string, StyleQuery> named = {},
-                     std::size_t budget = kDefaultBudget);
+                     std::size_t budget = kDefaultBudget,
+                     std::shared_ptr<const ValueBook> tables = nullptr);
 
   /// The query with the style that its `style` names. The problem, 400, is a style that there is
   /// not.
@@ -69,6 +73,8 @@ class StyleBook {
 
   /// Null if there is none of that name or id.
   std::shared_ptr<const StyleQuery> find(std::string_view name) const;
+  /// A table that was posted; null if there is none of that id.
+  std::shared_ptr<const ValueTable> find_table(const std::string& id) const;
   /// Of the configuration, in order.
   std::vector<std::string> names() const;
   /// Bytes held by posted styles.
@@ -85,6 +91,7 @@ class StyleBook {
   Problem unknown(const std::string& name) const;
 
   const std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> named_;
+  const std::shared_ptr<const ValueBook> tables_;                          // null: none
   mutable std::mutex mutex_;                                               // guards posted_
   mutable LruMap<std::string, std::shared_ptr<const StyleQuery>> posted_;  // by id
 };

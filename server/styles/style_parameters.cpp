@@ -25,6 +25,7 @@ constexpr std::size_t kMaxClasses = 253;  // by value: with two more, and one no
 constexpr std::size_t kMaxBreaks = 63;
 constexpr std::size_t kMaxIds = 256;
 constexpr std::size_t kMaxNameLength = 128;
+constexpr std::size_t kMaxTextLength = 32;
 
 using Type = ParameterType;
 
@@ -41,13 +42,14 @@ constexpr std::array kParameters = {
                    .description = "colour of the tile below all layers"},
     StyleParameter{.id = ParameterId::breaks,
                    .name = "breaks",
-                   .type = Type::ascending,
+                   .type = Type::breaks,
                    .min = -1e300,
                    .max = 1e300,
                    .max_items = kMaxBreaks,
                    .default_text = "no classes",
                    .description = "where classes of the numbers of color-by part: a number is in "
-                                  "the class above each break that it reaches"},
+                                  "the class above each break that it reaches; or the rule by "
+                                  "which to part the numbers of all of the layer"},
     StyleParameter{.id = ParameterId::classes,
                    .name = "classes",
                    .type = Type::classes,
@@ -109,6 +111,22 @@ constexpr std::array kParameters = {
                    .max_items = kMaxIds,
                    .default_text = "all features",
                    .description = "ids of the only features that are drawn"},
+    StyleParameter{.id = ParameterId::join,
+                   .name = "join",
+                   .type = Type::name,
+                   .default_text = "the property that is called as the key of the table",
+                   .description = "property whose value is the key of a polygon in the table of "
+                                  "values"},
+    StyleParameter{.id = ParameterId::label_format,
+                   .name = "label-format",
+                   .type = Type::format,
+                   .default_text = "as many digits as it takes",
+                   .description = "how the legend writes numbers"},
+    StyleParameter{.id = ParameterId::no_data_color,
+                   .name = "no-data-color",
+                   .type = Type::colour,
+                   .default_text = "the fill",
+                   .description = "colour of polygons that have no value to be coloured by"},
     StyleParameter{.id = ParameterId::opacity,
                    .name = "opacity",
                    .type = Type::number,
@@ -221,6 +239,19 @@ constexpr std::array kParameters = {
                    .default_text = "strict",
                    .description = "strict keeps boundaries from crossing each other, fast "
                                   "simplifies without that test"},
+    StyleParameter{.id = ParameterId::units,
+                   .name = "units",
+                   .type = Type::text,
+                   .max_items = kMaxTextLength,
+                   .default_text = "none",
+                   .description = "what the legend writes behind numbers"},
+    StyleParameter{.id = ParameterId::values,
+                   .name = "values",
+                   .type = Type::table,
+                   .default_text = "none",
+                   .description =
+                       "table of values by the keys of polygons, posted to /values or of "
+                       "the configuration: color-by and filter call them value"},
 };
 
 constexpr bool is_in_order() {
@@ -257,7 +288,7 @@ std::optional<ParameterValue> parse_numbers(const StyleParameter& parameter,
   for (const std::string_view part : split(text, ',')) {
     const auto number = parse_number(part, parameter.min, parameter.max);
     if (!number || numbers.size() == parameter.max_items) return std::nullopt;
-    if (parameter.type == Type::ascending && !numbers.empty() && *number <= numbers.back()) {
+    if (parameter.type == Type::breaks && !numbers.empty() && *number <= numbers.back()) {
       return std::nullopt;
     }
     numbers.push_back(*number);
@@ -389,6 +420,17 @@ std::optional<ParameterValue> parse_name(std::string_view text) {
   return std::string(text);
 }
 
+std::optional<ParameterValue> parse_breaks(const StyleParameter& parameter, std::string_view text) {
+  if (const auto rule = parse_break_rule(text)) return *rule;
+  return parse_numbers(parameter, text);
+}
+
+std::optional<ParameterValue> parse_text(const StyleParameter& parameter, std::string_view text) {
+  if (text.empty() || text.size() > parameter.max_items) return std::nullopt;
+  if (has_control_character(text)) return std::nullopt;
+  return std::string(text);
+}
+
 std::optional<ParameterValue> parse_filter(std::string_view text) {
   auto parsed = Filter::parse(text);
   if (auto* filter = std::get_if<0>(&parsed)) return std::move(*filter);
@@ -433,6 +475,9 @@ struct Formatter {
   std::string operator()(const std::shared_ptr<const Filter>& filter) const {
     return filter->text();
   }
+  std::string operator()(const BreakRule& rule) const { return break_rule_text(rule); }
+  std::string operator()(const NumberFormat& format) const { return number_format_text(format); }
+  std::string operator()(const TableChoice& choice) const { return choice.name; }
 };
 
 std::string written_name(const StyleSetting& setting) {
@@ -537,8 +582,8 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
       return parse_number(text, parameter.min, parameter.max);
     case Type::numbers:
       return parse_dashes(parameter, text);
-    case Type::ascending:
-      return parse_numbers(parameter, text);
+    case Type::breaks:
+      return parse_breaks(parameter, text);
     case Type::word:
       return parse_word(text, parameter.words);
     case Type::words:
@@ -555,6 +600,13 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
       return parse_filter(text);
     case Type::style:
       if (is_url_name(text)) return std::string(text);
+      break;
+    case Type::format:
+      return parse_number_format(text);
+    case Type::text:
+      return parse_text(parameter, text);
+    case Type::table:
+      if (is_url_name(text)) return TableChoice{std::string(text)};
       break;
   }
   return std::nullopt;
@@ -574,9 +626,12 @@ std::string describe_values(const StyleParameter& parameter) {
     case Type::numbers:
       return fmt::format("1 to {} numbers from {} to {}, not all 0, separated by commas",
                          parameter.max_items, parameter.min, parameter.max);
-    case Type::ascending:
-      return fmt::format("1 to {} numbers, each greater than the one before, separated by commas",
-                         parameter.max_items);
+    case Type::breaks:
+      return fmt::format(
+          "1 to {} numbers, each greater than the one before, separated by commas; or one of {} "
+          "with "
+          "a number of classes from 2 to {}, such as quantile:5; or stddev",
+          parameter.max_items, "equal, jenks, pretty, quantile", kMostRuledClasses);
     case Type::word:
       return fmt::format("one of {}", fmt::join(parameter.words, ", "));
     case Type::words:
@@ -600,6 +655,13 @@ std::string describe_values(const StyleParameter& parameter) {
           kMaxFilterLength);
     case Type::style:
       return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
+    case Type::format:
+      return "a format such as ,.1f (commas between thousands, digits after the point), .0% (a "
+             "hundred times as much) or .3s (digits in all, with k, M, G for thousands)";
+    case Type::text:
+      return fmt::format("1 to {} bytes of text", parameter.max_items);
+    case Type::table:
+      return "the id that POST /values has given, or the name of a table of the configuration";
   }
   return {};
 }
@@ -657,6 +719,14 @@ StyleQuery StyleQuery::over(const StyleQuery& style, std::span<const std::string
   }
   std::ranges::sort(both.settings_, {}, order_of);
   return both;
+}
+
+StyleQuery StyleQuery::with_tables(const FindTable& find) && {
+  for (StyleSetting& setting : settings_) {
+    auto* choice = std::get_if<TableChoice>(&setting.value);
+    if (choice != nullptr && choice->table == nullptr) choice->table = find(choice->name);
+  }
+  return std::move(*this);
 }
 
 bool StyleQuery::sets(const StyleSetting& setting) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,9 @@
 #include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/styles/filter.h"
+#include "server/values/class_breaks.h"
+#include "server/values/number_format.h"
+#include "server/values/value_table.h"
 
 namespace trapeze {
 
@@ -32,6 +36,9 @@ enum class ParameterId : std::uint8_t {
   highlight_fill,
   highlight_stroke,
   ids,
+  join,
+  label_format,
+  no_data_color,
   opacity,
   pattern,
   pattern_angle,
@@ -49,21 +56,26 @@ enum class ParameterId : std::uint8_t {
   stroke_width,
   style,
   topology,
+  units,
+  values,
 };
 
 enum class ParameterType : std::uint8_t {
   colour,
   number,
-  numbers,    // separated by commas
-  ascending,  // numbers, each greater than the one before
-  word,       // one of StyleParameter::words
-  words,      // some of them, separated by commas, in any order
-  name,       // of a property
-  ramp,       // the name of a ramp of colours
-  ids,        // integers, separated by commas, in any order
-  classes,    // value:colour, separated by commas
-  filter,     // CQL2 text
-  style,      // the name of a style
+  numbers,  // separated by commas
+  breaks,   // numbers, each greater than the one before, or a BreakRule
+  word,     // one of StyleParameter::words
+  words,    // some of them, separated by commas, in any order
+  name,     // of a property
+  ramp,     // the name of a ramp of colours
+  ids,      // integers, separated by commas, in any order
+  classes,  // value:colour, separated by commas
+  filter,   // CQL2 text
+  style,    // the name of a style
+  format,   // a NumberFormat
+  text,     // a few words
+  table,    // the name or id of a ValueTable
 };
 
 struct StyleParameter {
@@ -93,10 +105,19 @@ struct ColourClass {
   friend bool operator==(const ColourClass&, const ColourClass&) = default;
 };
 
+/// A table by its name or id, and the table itself once it was found among those that are posted.
+struct TableChoice {
+  std::string name;
+  std::shared_ptr<const ValueTable> table = {};
+
+  friend bool operator==(const TableChoice& a, const TableChoice& b) { return a.name == b.name; }
+};
+
 /// Words are in the order of the table, each once, separated by commas; ids ascend, each once.
 using ParameterValue =
     std::variant<Rgba, double, std::string, std::vector<double>, std::vector<std::int64_t>,
-                 std::vector<ColourClass>, std::shared_ptr<const Filter>>;
+                 std::vector<ColourClass>, std::shared_ptr<const Filter>, BreakRule, NumberFormat,
+                 TableChoice>;
 
 /// The parameters that requests can set, in order of names.
 std::span<const StyleParameter> style_parameters();
@@ -148,6 +169,10 @@ class StyleQuery {
   /// setting for one layer is not silenced by one for all. Rules that put features into classes are
   /// taken as a whole or not at all.
   StyleQuery over(const StyleQuery& style, std::span<const std::string> layers) const;
+  /// The same with the tables that `find` has for the names of settings; it answers with null for a
+  /// name that it does not know.
+  using FindTable = std::function<std::shared_ptr<const ValueTable>(const std::string& name)>;
+  StyleQuery with_tables(const FindTable& find) &&;
   /// The settings as a query has them, not encoded.
   std::vector<QueryPair> pairs() const;
   /// The canonical query string: equal styles written differently give the same text.

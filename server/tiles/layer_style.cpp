@@ -8,7 +8,10 @@
 #include <cmath>
 #include <optional>
 
+#include "server/base/nearest_name.h"
+#include "server/base/problem.h"
 #include "server/styles/colour_ramps.h"
+#include "server/values/attributes.h"
 
 namespace trapeze {
 namespace {
@@ -49,7 +52,9 @@ class LayerSettings {
     const ParameterValue* value = query_.find(layer_, id);
     return value == nullptr ? nullptr : &std::get<T>(*value);
   }
-  bool has(ParameterId id) const { return query_.find(layer_, id) != nullptr; }
+  /// Null if it is not set.
+  const ParameterValue* find_value(ParameterId id) const { return query_.find(layer_, id); }
+  bool has(ParameterId id) const { return find_value(id) != nullptr; }
 
   template <typename T>
   T value_or(ParameterId id, T otherwise) const {
@@ -175,12 +180,84 @@ std::optional<FilterLiteral> read_as(FieldType type, const std::string& text) {
 /// What a layer's style is made of, step by step.
 struct Making {
   LayerSettings settings;
+  const ServedLayer& served;
   const FeatureTable& features;
+  Looking looking = Looking::for_drawing;
   double fill_opacity = 1;
   Rgba others = kTransparent;  // with the opacity already
   LayerStyle style = {};
   std::vector<Rgba> fills = {};  // of the classes by value
+
+  std::shared_ptr<DerivedValues> own_derived = {};  // where the layer keeps nothing
+
+  Attributes attributes() const { return {features, style.classing.joined}; }
+  DerivedValues& derived() {
+    if (served.derived != nullptr) return *served.derived;
+    if (own_derived == nullptr) own_derived = std::make_shared<DerivedValues>();
+    return *own_derived;
+  }
 };
+
+// ---- joined values
+
+Problem unknown_table(const std::string& name, const ServedLayer& served) {
+  std::vector<std::string> known;
+  if (served.tables != nullptr) {
+    for (const auto& [each, table] : *served.tables) known.push_back(each);
+  }
+  const std::string of_config =
+      known.empty() ? "" : fmt::format("one of {}, or ", fmt::join(known, ", "));
+  return {
+      404,
+      fmt::format("There is no table of that name{} Posted tables are given up when others need "
+                  "their place: post it again.",
+                  suggestion_or_stop(name, known)),
+      "values", name, of_config + "an id that POST /values has given"};
+}
+
+/// Null if there is none of that name.
+std::shared_ptr<const ValueTable> find_table(const TableChoice& choice, const ServedLayer& served) {
+  if (served.tables != nullptr) {
+    const auto named = served.tables->find(choice.name);
+    if (named != served.tables->end()) return named->second.table;
+  }
+  return choice.table;
+}
+
+/// The number of the attribute that is the key, or -1.
+int field_to_join(const LayerSettings& settings, const ValueTable& table,
+                  const FeatureTable& features) {
+  const auto* name = settings.find<std::string>(ParameterId::join);
+  return features.field_index(name == nullptr ? table.names().key : *name);
+}
+
+std::optional<Problem> make_joined(Making& making) {
+  const auto* choice = making.settings.find<TableChoice>(ParameterId::values);
+  const auto* attribute = making.settings.find<std::string>(ParameterId::join);
+  if (choice == nullptr) {
+    if (attribute == nullptr) return std::nullopt;
+    return Problem{400, "A property to join by needs a table to join: values.", "join", *attribute,
+                   "values beside it"};
+  }
+  const auto table = find_table(*choice, making.served);
+  if (table == nullptr) return unknown_table(choice->name, making.served);
+  const int field = field_to_join(making.settings, *table, making.features);
+  if (field < 0) {
+    Problem problem = unknown_property(
+        "join", attribute == nullptr ? table->names().key : *attribute, making.features);
+    if (attribute == nullptr) {
+      problem.detail += " The key of the table is called so: say by join which property has it.";
+    }
+    return problem;
+  }
+  auto joined = making.derived().join(making.served.revision, *making.served.layer, field, table);
+  if (!joined) return std::move(joined).problem();
+  making.style.classing.joined = *std::move(joined);
+  making.style.join_attribute = making.features.fields()[static_cast<std::size_t>(field)].name;
+  return std::nullopt;
+}
+
+// ---- classes by value
 
 /// Many values in few colours are as few passes as there are colours.
 void make_alike(Making& making) {
@@ -190,6 +267,13 @@ void make_alike(Making& making) {
     alike.push_back(static_cast<std::uint8_t>(first - making.fills.begin()));
   }
   making.style.classing.alike = std::move(alike);
+}
+
+/// What has no value, where it is told apart from all others.
+std::optional<Rgba> no_data_colour(const Making& making) {
+  const auto* colour = making.settings.find<Rgba>(ParameterId::no_data_color);
+  if (colour == nullptr) return std::nullopt;
+  return with_opacity(*colour, making.fill_opacity);
 }
 
 std::optional<Problem> make_values(Making& making, const Field& field) {
@@ -215,19 +299,80 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
     making.style.classing.values.push_back(std::move(value));
     making.fills.push_back(colour);
   }
+  const auto& values = making.style.classing.values;
+  const bool has_null =
+      std::ranges::any_of(values, [](const auto& value) { return !value.has_value(); });
+  if (const auto colour = no_data_colour(making); colour && !has_null) {
+    constexpr std::size_t kMostBeside = 252;  // as a byte numbers classes
+    if (values.size() > kMostBeside) {
+      return Problem{400,
+                     fmt::format("There are at most {} classes beside no-data-color.", kMostBeside),
+                     "no-data-color", to_hex(*colour), "null: among the classes"};
+    }
+    making.style.classing.values.emplace_back(std::nullopt);
+    making.fills.push_back(*colour);
+  }
   make_alike(making);
   return std::nullopt;
+}
+
+/// Of the attribute of that number, which holds numbers.
+std::shared_ptr<const ValueSpread> spread_of_field(Making& making, int field) {
+  if (field == making.attributes().joined_index()) {
+    return making.derived().spread(making.served.revision, *making.style.classing.joined);
+  }
+  return making.derived().spread(making.served.revision, *making.served.layer, field);
+}
+
+std::vector<double> ruled_breaks(Making& making, const BreakRule& rule) {
+  const Classing& classing = making.style.classing;
+  if (classing.field == making.attributes().joined_index()) {
+    return making.derived().breaks(making.served.revision, *classing.joined, rule);
+  }
+  return making.derived().breaks(making.served.revision, *making.served.layer, classing.field,
+                                 rule);
+}
+
+/// Numbers that are all the same are one class; where there are none, nothing has a value.
+void make_undivided(Making& making, const std::string& ramp) {
+  Classing& classing = making.style.classing;
+  const auto spread = spread_of_field(making, classing.field);
+  if (spread->is_empty()) {
+    classing.field = -1;
+    return;
+  }
+  classing.breaks = {spread->least()};  // below which there is nothing
+  const auto colours = ramp_colours(ramp, 1);
+  making.fills.assign(2, with_opacity(colours ? colours->front() : kBlack, making.fill_opacity));
 }
 
 std::optional<Problem> make_breaks(Making& making, const Field& field) {
   const LayerSettings& settings = making.settings;
   if (field.type == FieldType::text) {
-    return Problem{400,
-                   fmt::format("The property {} holds text, which breaks cannot part.", field.name),
-                   "color-by", field.name, "a property of numbers, or classes instead of breaks"};
+    const JoinedValues* joined = making.style.classing.joined.get();
+    const bool is_joined =
+        joined != nullptr && making.style.classing.field == making.attributes().joined_index();
+    return Problem{
+        400,
+        is_joined
+            ? fmt::format("The values of the table are words, such as \"{}\", which "
+                          "breaks cannot part.",
+                          echoed(joined->table().first_word()))
+            : fmt::format("The property {} holds text, which breaks cannot part.", field.name),
+        "color-by", field.name, "a property of numbers, or classes instead of breaks"};
   }
-  const auto& breaks = *settings.find<std::vector<double>>(ParameterId::breaks);
+  // All others than numbers have none.
+  making.others = no_data_colour(making).value_or(making.others);
   const auto& ramp = *settings.find<std::string>(ParameterId::ramp);
+  const ParameterValue& setting = *settings.find_value(ParameterId::breaks);
+  const auto* rule = std::get_if<BreakRule>(&setting);
+  making.style.origin->rule = rule == nullptr ? std::nullopt : std::optional(*rule);
+  const std::vector<double> breaks =
+      rule == nullptr ? std::get<std::vector<double>>(setting) : ruled_breaks(making, *rule);
+  if (breaks.empty()) {
+    make_undivided(making, ramp);
+    return std::nullopt;
+  }
   const auto colours = ramp_colours(ramp, breaks.size() + 1);
   if (!colours) {
     return Problem{400,
@@ -246,12 +391,20 @@ std::optional<Problem> make_classes(Making& making) {
   if (auto problem = find_contradiction(making.settings)) return problem;
   const auto* property = making.settings.find<std::string>(ParameterId::color_by);
   if (property == nullptr) return std::nullopt;
-  const int number = making.features.field_index(*property);
-  if (number < 0) return unknown_property("color-by", *property, making.features);
+  const Attributes attributes = making.attributes();
+  const int number = attributes.field_index(*property);
+  if (number < 0) return unknown_property("color-by", *property, attributes);
   making.style.classing.field = number;
-  const Field& field = making.features.fields()[static_cast<std::size_t>(number)];
-  return making.settings.has(ParameterId::classes) ? make_values(making, field)
-                                                   : make_breaks(making, field);
+  making.style.origin = ClassOrigin{*property, std::nullopt};
+  const Field& field = attributes.field(number);
+  auto problem = making.settings.has(ParameterId::classes) ? make_values(making, field)
+                                                           : make_breaks(making, field);
+  if (problem) return problem;
+  const bool is_wanted = making.style.origin->rule || making.looking == Looking::for_legend;
+  if (is_wanted && field.type != FieldType::text) {
+    making.style.origin->spread = spread_of_field(making, number);
+  }
+  return std::nullopt;
 }
 
 std::optional<Problem> make_selection(Making& making) {
@@ -261,7 +414,7 @@ std::optional<Problem> make_selection(Making& making) {
   classing.highlighted_ids = making.settings.value_or(ParameterId::highlight, Ids());
   const auto* filter = making.settings.find<std::shared_ptr<const Filter>>(ParameterId::filter);
   if (filter == nullptr) return std::nullopt;
-  auto bound = BoundFilter::bind(*filter, making.features);
+  auto bound = BoundFilter::bind(*filter, making.attributes());
   if (!bound) return std::move(bound).problem();
   classing.filter = std::make_shared<const BoundFilter>(*std::move(bound));
   return std::nullopt;
@@ -314,18 +467,50 @@ Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& co
 }
 
 Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
-                               std::size_t position) {
+                               std::size_t position, Looking looking) {
   const LayerConfig& config = served.config;
-  Making making{LayerSettings(style, config.name), served.layer->features()};
+  Making making{LayerSettings(style, config.name), served, served.layer->features(), looking};
   making.fill_opacity = making.settings.value_or(ParameterId::fill_opacity, 1.0);
   making.others = with_opacity(fill_of(making.settings, config, position), making.fill_opacity);
+  if (auto problem = make_joined(making)) return std::move(*problem);
   if (auto problem = make_classes(making)) return std::move(*problem);
   if (auto problem = make_selection(making)) return std::move(*problem);
   making.style.stroke = stroke_of(making.settings);
   making.style.pattern = pattern_of(making.settings);
   making.style.opacity = making.settings.value_or(ParameterId::opacity, 1.0);
+  making.style.units = making.settings.value_or(ParameterId::units, std::string());
+  const auto* format = making.settings.find<NumberFormat>(ParameterId::label_format);
+  if (format != nullptr) making.style.label_format = *format;
   make_paints(making);
   return std::move(making.style);
+}
+
+bool names_values(const StyleQuery& style, const std::string& layer) {
+  return std::ranges::any_of(style.settings(), [&layer](const StyleSetting& setting) {
+    return (setting.layer.empty() || setting.layer == layer) &&
+           (std::holds_alternative<TableChoice>(setting.value) ||
+            std::holds_alternative<BreakRule>(setting.value));
+  });
+}
+
+bool has_to_look(const StyleQuery& style, const ServedLayer& served) {
+  if (served.derived == nullptr) return false;  // it would be looked at again
+  const LayerSettings settings(style, served.config.name);
+  const FeatureTable& features = served.layer->features();
+  const auto* choice = settings.find<TableChoice>(ParameterId::values);
+  const auto table = choice == nullptr ? nullptr : find_table(*choice, served);
+  const int key = table == nullptr ? -1 : field_to_join(settings, *table, features);
+  const DerivedValues& derived = *served.derived;
+  if (key >= 0 && !derived.has_join(served.revision, key, *table)) return true;
+  const ParameterValue* breaks = settings.find_value(ParameterId::breaks);
+  const auto* rule = breaks == nullptr ? nullptr : std::get_if<BreakRule>(breaks);
+  const auto* property = settings.find<std::string>(ParameterId::color_by);
+  if (rule == nullptr || property == nullptr) return false;
+  if (key >= 0 && *property == kJoinedName) {
+    return !derived.has_breaks(served.revision, *table, key, *rule);
+  }
+  const int field = features.field_index(*property);
+  return field >= 0 && !derived.has_breaks(served.revision, field, *rule);
 }
 
 Rgba default_fill(const LayerConfig& config, std::size_t position) {

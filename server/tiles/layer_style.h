@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,9 @@
 #include "server/data/dataset.h"
 #include "server/styles/feature_classes.h"
 #include "server/styles/style_parameters.h"
+#include "server/values/class_breaks.h"
+#include "server/values/joined_values.h"
+#include "server/values/value_spread.h"
 
 namespace trapeze {
 
@@ -26,12 +31,24 @@ struct ClassPaint {
   friend bool operator==(const ClassPaint&, const ClassPaint&) = default;
 };
 
+/// Where classes come from, for legends.
+struct ClassOrigin {
+  std::string attribute;          // by which features are coloured
+  std::optional<BreakRule> rule;  // by which its numbers were parted
+  /// Of its numbers, in all of the layer; null where it holds texts, or they were not looked at.
+  std::shared_ptr<const ValueSpread> spread = {};
+};
+
 struct LayerStyle {
   std::vector<ClassPaint> paints;  // by number of class, one for each; at least one
   Stroke stroke;
   Pattern pattern;
   double opacity = 1;  // of fill, pattern and outline together
   Classing classing;
+  std::optional<ClassOrigin> origin = {};  // of classes by value; nothing of what it says is drawn
+  std::optional<NumberFormat> label_format = {};
+  std::string units = {};
+  std::string join_attribute = {};  // by which classing.joined is joined
 
   /// How features are drawn that are in no class by value.
   const ClassPaint& paint_of_others() const { return paints[classing.class_of_others()]; }
@@ -47,10 +64,23 @@ struct LayerStyle {
 /// problem, 400, is a parameter that is locked.
 Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& config);
 
-/// `style` is complete, and `position` that of the layer in the dataset. The problem, 400, is a
-/// parameter that does not fit the layer, or contradicts another.
+enum class Looking : std::uint8_t {
+  for_drawing,  // at as little as it takes
+  for_legend,   // ClassOrigin::spread is there whatever parts the numbers
+};
+
+/// `style` is complete, and `position` that of the layer in the dataset. The problem is 400 for a
+/// parameter that does not fit the layer, or contradicts another, and 404 for a table of values
+/// that there is not. Joins and classes that were not found out before take time of the features.
 Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
-                               std::size_t position);
+                               std::size_t position, Looking looking = Looking::for_drawing);
+
+/// Whether the style says something of that layer for which all of its features have to be known: a
+/// table to join, or a rule for breaks. Most say nothing like that.
+bool names_values(const StyleQuery& style, const std::string& layer);
+
+/// Whether layer_style() has to find out more about the layer than fits between two requests.
+bool has_to_look(const StyleQuery& style, const ServedLayer& served);
 
 /// What fills the layer at `position` of the dataset if a request does not say.
 Rgba default_fill(const LayerConfig& config, std::size_t position);

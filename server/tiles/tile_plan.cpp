@@ -126,6 +126,18 @@ Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> d
   return plan_window(window_of(std::move(request)), std::move(dataset));
 }
 
+bool has_to_look(const WindowRequest& request, const Dataset& dataset) {
+  return std::ranges::any_of(request.layers, [&](const std::string& name) {
+    const auto layer = dataset.find(name);
+    if (!layer) return false;
+    const ServedLayer& served = dataset.layers()[*layer];
+    if (!names_values(request.style, name) && !names_values(served.config.style, name))
+      return false;
+    const auto query = complete_style(request.style, served.config);
+    return query && has_to_look(*query, served);
+  });
+}
+
 Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const Dataset> dataset) {
   TilePlan plan{std::move(dataset),
                 request.view,

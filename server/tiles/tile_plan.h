@@ -61,6 +61,8 @@ struct TilePlan {
 /// The problem is 404 for a layer that is not in the dataset, 400 for a style that does not fit its
 /// layer.
 Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const Dataset> dataset);
+/// Whether plan_window() has to find out first what takes time of all features of a layer.
+bool has_to_look(const WindowRequest& request, const Dataset& dataset);
 /// The same of the window that is a tile.
 Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> dataset);
 

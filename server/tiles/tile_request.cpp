@@ -79,7 +79,10 @@ Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& q
   if (!layers) return std::move(layers).problem();
   auto style = query.link_for(*layers);
   if (!style) return std::move(style).problem();
-  return TilesRequest(TileJsonRequest{*std::move(layers), *std::move(style), stem->scale});
+  auto full = query.style_for(*layers);
+  if (!full) return std::move(full).problem();
+  return TilesRequest(
+      TileJsonRequest{*std::move(layers), *std::move(style), stem->scale, *std::move(full)});
 }
 
 bool has_style(std::span<const std::string> path) {

@@ -41,6 +41,7 @@ struct TileJsonRequest {
   std::vector<std::string> layers;
   StyleLink style;
   int scale = 1;
+  StyleQuery full_style = {};  // what the link leads to
 };
 
 using TilesRequest = std::variant<TileRequest, TileJsonRequest>;

@@ -134,7 +134,8 @@ void check_headers(const HttpResponse& response) {
 }
 
 void check_response(const HttpResponse& response) {
-  constexpr std::array kStatuses = {200, 201, 204, 304, 400, 404, 405, 409, 414, 501};
+  constexpr std::array kStatuses = {200, 201, 204, 304, 400, 404, 405,
+                                    409, 413, 414, 415, 429, 501};
   require(std::ranges::find(kStatuses, response.status) != kStatuses.end(),
           "status " + std::to_string(response.status));
   check_headers(response);
@@ -145,12 +146,27 @@ void check_response(const HttpResponse& response) {
   check_body(response);
 }
 
-/// Who has it already is told so; a style that was posted is there.
+/// The layer is drawn by the values of a table that was posted, or it is said why not.
+void check_table(FuzzedSite& site, const std::string& id, const HttpRequest& request) {
+  for (const char* rest : {"&join=name&color-by=value&breaks=jenks:4&ramp=Reds",
+                           "&join=rank&color-by=value&classes=*:red&filter=value+IS+NULL"}) {
+    for (const char* target : {"/tiles/land/3/4/4.png", "/legend/land.json"}) {
+      const HttpResponse drawn =
+          site.handle({"GET", target + std::string("?values=") + id + rest, request.host, {}});
+      require(drawn.status == 200 || drawn.status == 400, "a posted table cannot be used");
+      check_response(drawn);
+    }
+  }
+}
+
+/// Who has it already is told so; a style or a table that was posted is there.
 void check_again(FuzzedSite& site, const HttpRequest& request, const HttpResponse& response) {
   if (response.status == 201) {
     const std::string location(response.header("Location"));
     const HttpResponse posted = site.handle({"GET", location, request.host, {}});
-    require(posted.status == 200, "a posted style is not where it should be");
+    require(posted.status == 200, "what was posted is not where it should be");
+    const std::size_t table = location.find("/values/");
+    if (table != std::string::npos) check_table(site, location.substr(table + 8), request);
   }
   const std::string tag(response.header("ETag"));
   if (response.status != 200 || tag.empty()) return;

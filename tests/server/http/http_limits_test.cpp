@@ -1,9 +1,11 @@
 // Limits of the server, and clients that keep to no rules.
 #include <gmock/gmock.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <regex>
@@ -187,6 +189,87 @@ TEST(HttpLimitsTest, ABodyThatNobodyAskedForIsNotTheNextRequest) {
               "\r\n\r\n" + smuggled + "GET /health HTTP/1.1\r\nHost: a\r\n\r\n");
   EXPECT_EQ(client.receive().status, 405);
   EXPECT_EQ(client.receive().status, 200);
+}
+
+/// A server that takes long bodies at /values only.
+HttpServerOptions with_long_bodies() {
+  HttpServerOptions options;
+  options.body_limit = 100;
+  options.long_body_path = "/values";
+  options.long_body_limit = 5000;
+  options.max_connections_per_address = 100;
+  return options;
+}
+
+std::string table_of(std::size_t bytes) {
+  std::string table = "key,value\n";
+  for (int i = 0; table.size() + 20 < bytes; ++i) table += "key" + std::to_string(i) + ",1\n";
+  return table;
+}
+
+std::string post(const std::string& target, const std::string& body) {
+  return "POST " + target +
+         " HTTP/1.1\r\nHost: a\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+         body;
+}
+
+TEST(HttpLimitsTest, OnlyTablesMayBeLong) {
+  RunningServer server(with_long_bodies());
+  const auto answer_to = [&server](const std::string& request) {
+    RawClient client(server.port());
+    client.send(request);
+    return client.receive();
+  };
+  EXPECT_EQ(answer_to(post("/values", table_of(4000))).status, 201);
+  EXPECT_EQ(answer_to(post("/values?key=key", table_of(4000))).status, 201);
+  const RawResponse long_table = answer_to(post("/values", table_of(6000)));
+  EXPECT_EQ(long_table.status, 413);
+  EXPECT_THAT(long_table.body, HasSubstr("5000 bytes"));
+  const RawResponse long_style =
+      answer_to(post("/styles", "{\"fill\": \"" + std::string(200, 'a')));
+  EXPECT_EQ(long_style.status, 413);
+  EXPECT_THAT(long_style.body, HasSubstr("100 bytes"));
+  EXPECT_EQ(answer_to(post("/values/x", table_of(4000))).status, 413);
+  // In chunks, whose length nobody knows beforehand.
+  const std::string table = table_of(4000);
+  const std::string head = "POST /values HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
+  std::string chunks;
+  for (std::size_t i = 0; i < table.size(); i += 256) {
+    const std::string chunk = table.substr(i, 256);
+    char size[16];
+    std::snprintf(size, sizeof size, "%zx\r\n", chunk.size());
+    chunks += size + chunk + "\r\n";
+  }
+  EXPECT_EQ(answer_to(head + chunks + "0\r\n\r\n").status, 201);
+  EXPECT_EQ(answer_to(head + chunks + "7d0\r\n" + std::string(2000, 'a') + "\r\n0\r\n\r\n").status,
+            413);
+}
+
+TEST(HttpLimitsTest, ThereIsRoomForAFewLongBodiesAtOnce) {
+  RunningServer server(with_long_bodies());
+  const std::string request = post("/values", table_of(4000));
+  // Three of one address are on their way, and do not come to an end.
+  std::vector<std::unique_ptr<RawClient>> slow;
+  for (int i = 0; i < 3; ++i) {
+    slow.push_back(std::make_unique<RawClient>(server.port()));
+    slow.back()->send(request.substr(0, request.size() - 1));
+  }
+  const auto status_from = [&server, &request](const std::string& from) {
+    RawClient client(server.port(), from);
+    client.send(request);
+    return client.receive().status;
+  };
+  for (int i = 0; i < 100 && status_from("127.0.0.1") != 503; ++i)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(status_from("127.0.0.1"), 503);
+  EXPECT_EQ(status_from("127.0.0.2"), 201);
+  slow.front()->send(request.substr(request.size() - 1));
+  EXPECT_EQ(slow.front()->receive().status, 201);
+  EXPECT_EQ(status_from("127.0.0.1"), 201);
+  slow.clear();
+  for (int i = 0; i < 100 && status_from("127.0.0.1") != 201; ++i)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(status_from("127.0.0.1"), 201);
 }
 
 TEST(HttpLimitsTest, WhenToldToStopItGoesOnForTheDelayButIsNotReady) {

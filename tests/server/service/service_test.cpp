@@ -91,7 +91,8 @@ class ServiceTest : public ::testing::Test {
       named[0].style = testing::style_of("fill=f00");
       return named;
     };
-    service_ = std::make_unique<Service>(config_, LayerSource{layers, ""});
+    service_ =
+        std::make_unique<Service>(config_, LayerSource{layers, "", [this] { return tables_; }});
     thread_ = std::thread([this] { service_->run(); });
     ASSERT_TRUE(holds_within(10s, [this] { return get("/ready").status == 200; }));
   }
@@ -116,6 +117,7 @@ class ServiceTest : public ::testing::Test {
                               ::testing::UnitTest::GetInstance()->current_test_info()->name();
   const std::string file_ = folder_ + "/shape.geojson";
   std::function<void()> before_reading_;  // in the thread that reads
+  std::map<std::string, ValueTableConfig> tables_;
   Config config_;
   std::unique_ptr<Service> service_;
   std::thread thread_;
@@ -219,6 +221,28 @@ TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheirFileHasChanged) {
   EXPECT_TRUE(holds_within(10s, [&] { return tag() != old_tag; }));
   std::this_thread::sleep_for(200ms);
   EXPECT_TRUE(tells("trapeze_data_loads_total{result=\"succeeded\"} 2")) << "once is enough";
+}
+
+TEST_F(ServiceTest, ReadsTablesOfValuesAgainWhenTheirFileHasChanged) {
+  const auto write = [this](const std::string& table) {
+    std::ofstream(folder_ + "/ranks.csv.new") << table;
+    std::filesystem::rename(folder_ + "/ranks.csv.new", folder_ + "/ranks.csv");
+  };
+  const std::string target =
+      std::string(kTile) + "?values=ranks&color-by=value&classes=1:lime,2:blue";
+  const auto tag_now = [&] { return get(target).headers.at("etag"); };
+  write("rank,colour\n1,1\n");
+  tables_["ranks"].file = folder_ + "/ranks.csv";
+  config_.server.watch_ms = 20;
+  start();
+  const std::string before = tag_now();
+  write("rank,colour\n1,2\n");
+  EXPECT_TRUE(holds_within(10s, [&] { return tag_now() != before; }));
+  const std::string after = tag_now();
+  // What is no table leaves the old one in place.
+  write("rank,colour\n1,2\n1,1\n");
+  EXPECT_TRUE(holds_within(10s, [this] { return tells("trapeze_data_load_failed 1"); }));
+  EXPECT_EQ(tag_now(), after);
 }
 
 TEST_F(ServiceTest, ReadsItsLayersAgainWhenTheWriteAheadLogOfAFileHasChanged) {

@@ -1,0 +1,232 @@
+#include "server/values/class_breaks.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace trapeze {
+namespace {
+
+/// Ascending, each once, and only where they part something.
+std::vector<double> parting(std::vector<double> breaks, const ValueSpread& spread) {
+  std::erase_if(breaks,
+                [&spread](double at) { return !(at > spread.least() && at <= spread.greatest()); });
+  std::ranges::sort(breaks);
+  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
+  return breaks;
+}
+
+std::vector<double> equal_breaks(int classes, const ValueSpread& spread) {
+  std::vector<double> breaks;
+  for (int i = 1; i < classes; ++i) {
+    const double share = static_cast<double>(i) / classes;
+    breaks.push_back(spread.least() * (1 - share) + spread.greatest() * share);
+  }
+  return breaks;
+}
+
+/// Each at the first number of the class above it.
+std::vector<double> quantile_breaks(int classes, const ValueSpread& spread) {
+  std::vector<double> breaks;
+  std::size_t value = 0;
+  std::size_t before = 0;  // numbers that are less than that value
+  for (int i = 1; i < classes; ++i) {
+    const std::size_t rank =
+        static_cast<std::size_t>(i) * spread.count / static_cast<std::size_t>(classes);
+    while (before + spread.counts[value] <= rank) before += spread.counts[value++];
+    // Below the least number there would be nothing: so many are the same that they are a class.
+    const std::size_t next = std::max<std::size_t>(value, 1);
+    if (next < spread.values.size()) breaks.push_back(spread.values[next]);
+  }
+  return breaks;
+}
+
+std::vector<double> stddev_breaks(const ValueSpread& spread) {
+  constexpr int kMostDeviations = 3;
+  const auto count = static_cast<long double>(spread.count);
+  long double sum = 0;
+  for (std::size_t i = 0; i < spread.values.size(); ++i) {
+    sum += static_cast<long double>(spread.values[i]) * spread.counts[i];
+  }
+  const long double mean = sum / count;
+  long double squares = 0;
+  for (std::size_t i = 0; i < spread.values.size(); ++i) {
+    const long double distance = spread.values[i] - mean;
+    squares += distance * distance * spread.counts[i];
+  }
+  const long double deviation = std::sqrt(squares / count);
+  std::vector<double> breaks;
+  for (int i = -kMostDeviations; i <= kMostDeviations; ++i) {
+    breaks.push_back(static_cast<double>(mean + i * deviation));
+  }
+  return breaks;
+}
+
+std::vector<double> pretty_breaks(int classes, const ValueSpread& spread) {
+  const double width = (spread.greatest() / 2 - spread.least() / 2) / classes * 2;
+  if (!(width > 0)) return {};
+  auto exponent = static_cast<int>(std::floor(std::log10(width)));
+  double digit = 1;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double candidate : {1.0, 2.0, 5.0, 10.0}) {
+    const double distance =
+        std::abs(std::log10(candidate) - (std::log10(width) - static_cast<double>(exponent)));
+    if (distance < nearest) digit = candidate;
+    nearest = std::min(nearest, distance);
+  }
+  if (digit == 10) {
+    digit = 1;
+    ++exponent;
+  }
+  // 3 / 10 is 0.3, and 3 * 0.1 is not.
+  const double power = std::pow(10.0, std::abs(exponent));
+  const auto multiple = [&](double count) {
+    return exponent < 0 ? count * digit / power : count * digit * power;
+  };
+  std::vector<double> breaks;
+  const double first = std::floor(spread.least() / multiple(1));
+  for (double i = 0; i <= 2 * classes + 2; ++i) breaks.push_back(multiple(first + i));
+  return breaks;
+}
+
+/// Numbers in ascending groups, with sums that tell what a class of neighbours costs.
+class JenksGroups {
+ public:
+  explicit JenksGroups(const ValueSpread& spread) {
+    const std::size_t count = std::min(spread.values.size(), kMostJenksValues);
+    // Not to lose digits of numbers that are near each other and far from 0.
+    const long double origin = spread.values[spread.values.size() / 2];
+    for (std::size_t group = 0; group < count; ++group) {
+      const std::size_t begin = group * spread.values.size() / count;
+      const std::size_t end = (group + 1) * spread.values.size() / count;
+      first_.push_back(spread.values[begin]);
+      long double weight = 0;
+      long double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        weight += spread.counts[i];
+        sum += spread.counts[i] * (spread.values[i] - origin);
+      }
+      weights_.push_back(weights_.back() + weight);
+      sums_.push_back(sums_.back() + sum);
+      squares_.push_back(squares_.back() + sum * (sum / weight));
+    }
+  }
+
+  std::size_t size() const { return first_.size(); }
+  double first_value(std::size_t group) const { return first_[group]; }
+  /// The squared distances of the numbers of groups `begin` to `end` - 1 from their mean.
+  long double cost(std::size_t begin, std::size_t end) const {
+    const long double sum = sums_[end] - sums_[begin];
+    return squares_[end] - squares_[begin] - sum * (sum / (weights_[end] - weights_[begin]));
+  }
+
+ private:
+  std::vector<double> first_;
+  std::vector<long double> weights_{0};  // before each group
+  std::vector<long double> sums_{0};
+  std::vector<long double> squares_{0};
+};
+
+/// Fisher's dynamic programme: the best ways to part the first groups, with one class more at a
+/// time. The last class of a longer beginning never begins earlier than that of a shorter one, so
+/// that the middle one halves the search for the others.
+class JenksClasses {
+ public:
+  JenksClasses(const JenksGroups& groups, int classes) : groups_(groups) {
+    const std::size_t count = groups.size();
+    for (std::size_t end = 0; end <= count; ++end)
+      best_.push_back(end == 0 ? 0 : groups.cost(0, end));
+    for (int i = 1; i < classes; ++i) {
+      begins_.emplace_back(count + 1, 0);
+      next_ = best_;
+      search(static_cast<std::size_t>(i) + 1, count, static_cast<std::size_t>(i), count - 1);
+      best_ = next_;
+    }
+  }
+
+  /// Where all classes but the first begin.
+  std::vector<double> breaks() const {
+    std::vector<double> breaks;
+    std::size_t end = groups_.size();
+    for (auto begins = begins_.rbegin(); begins != begins_.rend(); ++begins) {
+      end = (*begins)[end];
+      breaks.push_back(groups_.first_value(end));
+    }
+    return breaks;
+  }
+
+ private:
+  /// For beginnings of `first` to `last` groups, whose last class begins within the two others.
+  void search(std::size_t first, std::size_t last, std::size_t least, std::size_t greatest) {
+    if (first > last) return;
+    const std::size_t middle = first + (last - first) / 2;
+    long double lowest = std::numeric_limits<long double>::infinity();
+    std::size_t best = least;
+    for (std::size_t begin = least; begin <= std::min(greatest, middle - 1); ++begin) {
+      const long double cost = best_[begin] + groups_.cost(begin, middle);
+      if (cost >= lowest) continue;
+      lowest = cost;
+      best = begin;
+    }
+    next_[middle] = lowest;
+    begins_.back()[middle] = static_cast<std::uint32_t>(best);
+    search(first, middle - 1, least, best);
+    search(middle + 1, last, best, greatest);
+  }
+
+  const JenksGroups& groups_;
+  std::vector<long double> best_;  // by the number of groups that are parted
+  std::vector<long double> next_;
+  std::vector<std::vector<std::uint32_t>> begins_;  // of the last class; by classes, then as best_
+};
+
+std::vector<double> jenks_breaks(int classes, const ValueSpread& spread) {
+  const JenksGroups groups(spread);
+  const auto most = static_cast<int>(std::min<std::size_t>(groups.size(), kMostRuledClasses));
+  return JenksClasses(groups, std::min(classes, most)).breaks();
+}
+
+}  // namespace
+
+std::optional<BreakRule> parse_break_rule(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const auto method = kBreakMethodNames.find(text.substr(0, colon));
+  if (!method) return std::nullopt;
+  BreakRule rule{*method};
+  if (colon == std::string_view::npos) return rule;
+  const std::string_view count = text.substr(colon + 1);
+  const auto [end, error] =
+      std::from_chars(count.data(), count.data() + count.size(), rule.classes);
+  const bool is_count = error == std::errc() && end == count.data() + count.size() &&
+                        rule.classes >= 2 && rule.classes <= kMostRuledClasses;
+  if (!is_count || *method == BreakMethod::stddev) return std::nullopt;
+  return rule;
+}
+
+std::string break_rule_text(const BreakRule& rule) {
+  const std::string_view name = kBreakMethodNames.name_of(rule.method);
+  if (rule.method == BreakMethod::stddev) return std::string(name);
+  return fmt::format("{}:{}", name, rule.classes);
+}
+
+std::vector<double> class_breaks(const BreakRule& rule, const ValueSpread& spread) {
+  if (spread.is_empty()) return {};
+  switch (rule.method) {
+    case BreakMethod::equal:
+      return parting(equal_breaks(rule.classes, spread), spread);
+    case BreakMethod::jenks:
+      return parting(jenks_breaks(rule.classes, spread), spread);
+    case BreakMethod::pretty:
+      return parting(pretty_breaks(rule.classes, spread), spread);
+    case BreakMethod::quantile:
+      return parting(quantile_breaks(rule.classes, spread), spread);
+    case BreakMethod::stddev:
+      return parting(stddev_breaks(spread), spread);
+  }
+  return {};
+}
+
+}  // namespace trapeze

@@ -1,0 +1,51 @@
+// Tables of numbers as people have them in spreadsheets, and how the server takes them.
+
+/** What the columns of a pasted table are called; [] if there is no line of names. */
+export function columns_of(text) {
+  const [line = ""] = text.trim().split(/\r?\n|\r/, 1);
+  const delimiter = ["\t", ";", ","].find((one) => line.includes(one));
+  if (!delimiter) return [];
+  return line.split(delimiter).map((name) => name.trim().replace(/^"(.*)"$/, "$1").replaceAll('""', '"'));
+}
+
+/**
+ * Posts a table, to be joined to a layer. @returns {table}: what the server says of it, as POST /values
+ * answers; or {problem: words for people}.
+ * @param columns {key, value}: their names
+ * @param join the attribute of the layer that is the key
+ */
+export async function post_table(base, text, columns, layer, join) {
+  const query = new URLSearchParams({ ...columns, layer, join });
+  let response;
+  try {
+    response = await fetch(new URL(`values?${query}`, base), {
+      method: "POST",
+      headers: { "Content-Type": "text/csv; charset=utf-8" },
+      body: text,
+    });
+  } catch {
+    return { problem: "The server cannot be reached." };
+  }
+  const told = await response.json().catch(() => null);
+  if (response.ok && typeof told?.id === "string") return { table: told };
+  return {
+    problem: typeof told?.detail === "string" ? told.detail
+      : `The server answered with status ${response.status}.`,
+  };
+}
+
+/** How a table fits a layer, in words. */
+export function fit_in_words({ type, first_word, rows_without_key, joins }) {
+  const { matched = 0, unmatched = 0, unmatched_keys = [], features_without_value = 0 } = joins?.[0] ?? {};
+  const parts = [`${matched} ${matched === 1 ? "row matches" : "rows match"}.`];
+  if (unmatched > 0) {
+    const more = unmatched > unmatched_keys.length ? ", …" : "";
+    parts.push(`${unmatched} ${unmatched === 1 ? "does" : "do"} not: ${unmatched_keys.join(", ")}${more}.`);
+  }
+  if (rows_without_key > 0) parts.push(`${rows_without_key} have no key.`);
+  if (features_without_value > 0) parts.push(`${features_without_value} shapes have no value.`);
+  if (type === "string") {
+    parts.push(`The values are words, such as "${first_word}": only numbers have classes here.`);
+  }
+  return parts.join(" ");
+}
