@@ -57,6 +57,7 @@ struct PrepareArguments {
   CoverageArguments coverage;
   SourceSelection selection;  // of each file
   SkipLimit max_skipped;      // of each file
+  std::vector<std::string> crs;  // systems to prepare for besides Web Mercator
 };
 int run_prepare(const PrepareArguments& arguments);
 

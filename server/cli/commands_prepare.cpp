@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/source/source_stamp.h"
+#include "core/io/source/target_grid.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
@@ -39,7 +41,7 @@ std::string earlier_file(const std::string& reuse, const std::string& output) {
 
 /// Nothing, and why, if there is nothing to take over from the file; it may be missing in a folder.
 EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
-                             const LayerOptions& options) {
+                             const LayerOptions& options, const std::string& grid) {
   if (file.empty()) return {};
   if (!std::filesystem::exists(file)) {
     if (file != reuse) return {nullptr, nullptr, "is not there"};
@@ -48,7 +50,7 @@ EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
   if (!is_prepared_file(file)) {
     throw std::runtime_error(file + ": is no prepared file to take over from");
   }
-  return open_earlier_layer(file, options);
+  return open_earlier_layer(file, options, grid);
 }
 
 LoadedLayer load(const std::string& file, const LoadOptions& how, const EarlierPrepared& earlier) {
@@ -78,7 +80,7 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   // Before the file is read, so that a change from here on is noticed now or later.
   const SourceStamp source = stamp_source(file);
   const std::string earlier_name = earlier_file(reuse, output);
-  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization);
+  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization, how.grid);
   const LoadedLayer loaded = load(file, how, earlier);
   if (earlier.file != nullptr && !earlier.file->is_whole()) {
     throw std::runtime_error(earlier_name + ": was written into while it was read");
@@ -90,7 +92,7 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   if (const std::string excess = find_excess(loaded.report, max_skipped); !excess.empty()) {
     throw std::runtime_error(excess + "; `trapeze check` tells which");
   }
-  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source);
+  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source, how.grid);
   const LoadReport& report = loaded.report;
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
@@ -106,6 +108,21 @@ void prepare(const std::string& file, const LoadOptions& how, SkipLimit max_skip
   }
 }
 
+/// That of Web Mercator, which has no name, and those of the systems.
+std::vector<std::string> grids_or_throw(const std::vector<std::string>& names) {
+  std::vector<std::string> grids = {""};
+  for (const std::string& name : names) {
+    if (name == kBuiltCrs) continue;
+    try {
+      find_target_grid(name);
+    } catch (const std::exception& error) {
+      throw UsageError(fmt::format("--crs: {}", error.what()));
+    }
+    grids.push_back(name);
+  }
+  return grids;
+}
+
 }  // namespace
 
 int run_prepare(const PrepareArguments& arguments) {
@@ -114,16 +131,22 @@ int run_prepare(const PrepareArguments& arguments) {
   apply(arguments.coverage, how.generalization);
   how.selection = arguments.selection;
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
+  const std::vector<std::string> grids = grids_or_throw(arguments.crs);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
-    try {
-      prepare(layer.file, how, arguments.max_skipped, output.string(), arguments.reuse);
-    } catch (const std::exception& error) {
-      // Reported here and not by main, so that the files after this one are prepared too.
-      fmt::print(stderr, "trapeze: {}\n", error.what());
-      is_all_prepared = false;
+    for (const std::string& grid : grids) {
+      try {
+        how.grid = grid;
+        prepare(layer.file, how, arguments.max_skipped,
+                grid.empty() ? output.string() : prepared_on_grid(output.string(), grid),
+                arguments.reuse);
+      } catch (const std::exception& error) {
+        // Reported here and not by main, so that the files after this one are prepared too.
+        fmt::print(stderr, "trapeze: {}\n", error.what());
+        is_all_prepared = false;
+      }
     }
   }
   return is_all_prepared ? 0 : 1;

@@ -41,7 +41,7 @@ std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
   const std::size_t pairs =
       (is_plain(paint.style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
   if (pairs == 0) return 0;
-  const std::size_t features = plan.dataset->layers()[paint.layer].layer->features().size();
+  const std::size_t features = plan.dataset->layers_on_all_grids()[paint.layer].layer->features().size();
   const std::uint64_t cost = trapezoids + trapezoids * pairs / features;
   const double each = static_cast<double>(pairs) / static_cast<double>(features);
   const double depth = std::min(depth_of(paint.style), each);
@@ -60,6 +60,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
   cost += cost_of_cuts(trapezoids, plan, paint);
+  if (view.projection == Projection::plate_carree) cost += shapes * kSidesPerProjectedTrapezoid;
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + layer.estimate_horizontal_edges(selection);

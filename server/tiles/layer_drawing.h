@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/grid/cancellation.h"
@@ -15,6 +16,7 @@
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
+#include "core/mesh/plate_carree_mesh.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
 #include "render/mask/stroke.h"
@@ -26,7 +28,20 @@
 namespace trapeze {
 
 /// The share of ink for the outlines of loops, by their size.
-using InkOfLoops = std::array<double, kLoopSizes>;
+class InkOfLoops {
+ public:
+  /// In a picture of that scale. The stroke is referred to.
+  InkOfLoops(const Stroke& stroke, const View& view, double scale);
+
+  /// Where the grid has that y.
+  double of(LoopSize size, std::int32_t y) const;
+
+ private:
+  const Stroke& stroke_;
+  View view_;
+  double scale_;
+  std::array<double, kLoopSizes> by_size_{};  // where pixels are alike in all of the picture
+};
 
 /// What the drawings of one tile have in common. The memory is kept from tile to tile.
 struct DrawingTools {
@@ -37,6 +52,8 @@ struct DrawingTools {
   std::vector<TrapezoidRange> ranges;
   ClassShapes shapes;
   std::vector<Box> places;
+  PlateCarreeMesh plate_carree;  // for outlines
+  std::vector<PlateCarreeMesh::PointOnWay> way;
 };
 
 /// What of the layer is looked at: what lies in the view, and near it as far as outlines reach.
@@ -112,6 +129,7 @@ class LayerDrawing {
     std::vector<MeshEdge> made_edges;
     std::vector<MeshTrapezoid> made_trapezoids;
     TrapezoidRange all_made;
+    PlateCarreeMesh projected;  // all of it, if the picture is in plate carree
     std::vector<MeshPart> parts;
     Digest digest;  // of the mask, if it is drawn
     Mask mask;
@@ -120,17 +138,23 @@ class LayerDrawing {
     void add_place(const Box& place, bool is_hole);
     void add_patch(const ClassPatch& patch);
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
+    void project(const View& view);
   };
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
     std::vector<std::uint32_t> sides;  // edges of the mesh, before they are taken once each
     std::vector<OutlineEdge> edges;
+    // In plate carree the edges are between points of their own, some of which are vertices.
+    std::vector<Point> points;
+    std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
     // Of features that others lie over: what is seen of them, between points of its own.
     std::vector<SeenEdge> seen;
     std::vector<Point> seen_points;
     std::vector<OutlineEdge> seen_edges;
     Mask mask;
+
+    std::uint32_t point_of(std::uint32_t vertex, Point place);
   };
 
   // A trapezoid with the feature that it is a part of, and the class of that.
@@ -144,6 +168,7 @@ class LayerDrawing {
   /// The only one of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
+  bool is_projected() const { return view_.projection == Projection::plate_carree; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
   ClassDrawing& new_drawing(std::uint8_t number);
@@ -178,7 +203,14 @@ class LayerDrawing {
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
   void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
                     std::vector<SideOf>& in_common) const;
-  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) const;
+  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines, DrawingTools& tools) const;
+  void project_side(const OutlineEdge& line, Lines& lines, DrawingTools& tools) const;
+  void project_seen(const OutlineEdge& line, const SeenEdge& seen, Lines& lines,
+                    DrawingTools& tools) const;
+  void append_way(const OutlineEdge& line, double length, std::uint32_t first, std::uint32_t last,
+                  std::span<const PlateCarreeMesh::PointOnWay> way, std::vector<Point>& points,
+                  std::vector<OutlineEdge>& edges) const;
+  std::span<const Point> points_of(const Lines& lines) const;
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;

@@ -254,7 +254,7 @@ std::shared_ptr<const FeatureClasses> TilePainter::classes_for(const TilePlan& p
                                                                const LayerPaint& paint) {
   const Classing& classing = paint.style.classing;
   if (classing.is_plain()) return nullptr;
-  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  const ServedLayer& served = plan.dataset->layers_on_all_grids()[paint.layer];
   return classes_->find(served.revision, classing, served.layer->features());
 }
 

@@ -21,7 +21,10 @@ struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
   LayerOptions generalization = {};
   SourceSelection selection = {};
-  /// A layer of which to take over what is built of the same rings, or null: the result is the same
+  /// The reference system on whose grid the layer is built, see find_target_grid(); empty: Web
+  /// Mercator.
+  std::string grid = {};
+  /// A layer, on the same grid, of which to take over what is built of the same rings, or null: the result is the same
   /// and is there sooner. Nothing is taken over of one that was built with other options. It was
   /// built by the same program: see build_fingerprint().
   std::shared_ptr<const Layer> earlier = {};

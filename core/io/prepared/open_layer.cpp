@@ -18,7 +18,8 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              "`trapeze prepare`");
   }
   return open_prepared_layer(
-      path, {options.weights, options.prepared_from, options.coverage, options.close_gaps});
+      path, {options.weights, options.prepared_from, options.coverage, options.close_gaps,
+             options.grid});
 }
 
 LayerOptions layer_options(const OpenOptions& options) {
@@ -100,6 +101,7 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   load.selection = options.selection;
   load.progress = options.progress;
   load.earlier = options.earlier;
+  load.grid = options.grid;
   return load_layer(path, load);
 }
 
