@@ -1,6 +1,6 @@
-// Plate carree: the map of the world in which degrees are squares, beside Web Mercator. West and east
-// are the same in both, so that a cell is as wide; north and south differ, but not by where on a
-// parallel a place is: what is horizontal stays so, and trapezoids stay trapezoids but for their
+// Plate carree: the map of the world in which degrees are squares, beside Web Mercator. West and
+// east are the same in both, so that a cell is as wide; north and south differ, but not by where on
+// a parallel a place is: what is horizontal stays so, and trapezoids stay trapezoids but for their
 // sides, which become curves.
 //
 // How far such a curve is from its chord. Let c be cells per radian. A side has x in proportion to

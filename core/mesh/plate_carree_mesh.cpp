@@ -16,8 +16,7 @@ std::int64_t cut_before(std::int64_t y, std::int64_t height) {
 }  // namespace
 
 std::int32_t PlateCarreeRows::row_of(std::int64_t y) {
-  const std::size_t place =
-      static_cast<std::uint64_t>(y) * 0x9e3779b97f4a7c15u >> (64 - kBits);
+  const std::size_t place = static_cast<std::uint64_t>(y) * 0x9e3779b97f4a7c15u >> (64 - kBits);
   Known& known = known_[place];
   if (known.y != y) {
     known = {y, static_cast<std::int32_t>(

@@ -2,8 +2,8 @@
 //
 // Points go where they belong, rounded to cells. Edges that are so high that they would not be
 // straight (see plate_carree.h) are cut at certain rows of the grid, the same in all pictures of
-// that resolution, and trapezoids with them: so neighbours still share their sides, nothing overlaps
-// and nothing gapes. A side is never farther from its curve than kMostCurved of a row.
+// that resolution, and trapezoids with them: so neighbours still share their sides, nothing
+// overlaps and nothing gapes. A side is never farther from its curve than kMostCurved of a row.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -18,7 +18,8 @@
 
 namespace trapeze {
 
-/// From y of the grid to rounded y of plate carree. Remembers some, as vertices come more than once.
+/// From y of the grid to rounded y of plate carree. Remembers some, as vertices come more than
+/// once.
 class PlateCarreeRows {
  public:
   std::int32_t row_of(std::int64_t y);
@@ -44,9 +45,9 @@ class PlateCarreeMesh {
   /// Adds trapezoids, as far as they lie in the box.
   void add(const MeshView& mesh, std::span<const TrapezoidRange> ranges);
 
-  /// Of an edge, or a piece of one: the points between which it is drawn, from end to end, as far as
-  /// they matter to the box; nothing if it does not. Replaces `points`, which have shares of the way
-  /// from one end to the other, ascending.
+  /// Of an edge, or a piece of one: the points between which it is drawn, from end to end, as far
+  /// as they matter to the box; nothing if it does not. Replaces `points`, which have shares of the
+  /// way from one end to the other, ascending.
   struct PointOnWay {
     Point place;
     double share = 0;

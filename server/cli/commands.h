@@ -55,8 +55,8 @@ struct PrepareArguments {
   std::string reuse;   // a prepared file, or a folder of them; empty: nothing is taken over
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;
-  SourceSelection selection;  // of each file
-  SkipLimit max_skipped;      // of each file
+  SourceSelection selection;     // of each file
+  SkipLimit max_skipped;         // of each file
   std::vector<std::string> crs;  // systems to prepare for besides Web Mercator
 };
 int run_prepare(const PrepareArguments& arguments);

@@ -351,9 +351,10 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->required()
       ->type_name("DIR");
   prepare
-      ->add_option("--crs", arguments.crs,
-                   "Reference systems to prepare for besides EPSG:3857, such as EPSG:2056: each is a "
-                   "file of its own, which ends in .EPSG-2056.trapeze")
+      ->add_option(
+          "--crs", arguments.crs,
+          "Reference systems to prepare for besides EPSG:3857, such as EPSG:2056: each is a "
+          "file of its own, which ends in .EPSG-2056.trapeze")
       ->delimiter(',')
       ->type_name("NAME,...");
   prepare

@@ -47,7 +47,7 @@ struct LayerConfig {
   std::optional<int> detail_zoom;  // up to which its data is true; unset: unknown
   std::string group;               // of layers that belong together; empty: none
   std::string title_attribute;     // what its features are called by; empty: found by its name
-  std::vector<std::string> crs;    // systems that it is built for, kBuiltCrs among them; empty: that
+  std::vector<std::string> crs;  // systems that it is built for, kBuiltCrs among them; empty: that
   std::string grid;  // of these the one whose grid it is on, see with_grids(); empty: kBuiltCrs
 
   const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }

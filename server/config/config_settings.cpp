@@ -412,7 +412,8 @@ void append_server(std::vector<Setting<Config>>& all) {
       "a list of files",
       [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
       same,
-      "tile matrix sets besides those that are built in, as JSON of the OGC standard: tiles are served "
+      "tile matrix sets besides those that are built in, as JSON of the OGC standard: tiles are "
+      "served "
       "of layers whose crs names their reference system");
   sets.type = SettingType::paths;
   all.push_back(std::move(sets));
@@ -625,10 +626,12 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "title or label, in any case of letters"),
       list<LayerConfig>(
           "crs", [](auto& layer) -> auto& { return layer.crs; },
-          "a list of reference systems such as [\"EPSG:3857\", \"EPSG:2056\"], EPSG:3857 among them",
+          "a list of reference systems such as [\"EPSG:3857\", \"EPSG:2056\"], EPSG:3857 among "
+          "them",
           [](const std::string& name) { return name.empty() ? std::nullopt : std::optional(name); },
           same,
-          "the reference systems that it is built for, on a grid of its own each, which takes as much "
+          "the reference systems that it is built for, on a grid of its own each, which takes as "
+          "much "
           "memory again; maps in EPSG:4326 and CRS:84 are made of EPSG:3857; not set: EPSG:3857"),
       weights_setting(),
       coverage_setting(),

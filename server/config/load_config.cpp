@@ -278,7 +278,8 @@ class ConfigReader {
       if (std::find(layer.crs.begin(), name, *name) != name) cannot(*name + " is named twice");
       if (*name == kBuiltCrs) continue;
       if (*name == "EPSG:4326" || *name == "CRS:84") {
-        cannot(fmt::format("{} needs no grid of its own: its maps are made of {}", *name, kBuiltCrs));
+        cannot(
+            fmt::format("{} needs no grid of its own: its maps are made of {}", *name, kBuiltCrs));
         continue;
       }
       try {

@@ -147,8 +147,8 @@ class IdentifiedFeatures {
   std::size_t bytes_left_ = kMaxIdentifiedBytes;
 };
 
-/// Of all points of an outline; nothing if PROJ cannot tell, or where there may be a pole within it,
-/// of which they do not tell.
+/// Of all points of an outline; nothing if PROJ cannot tell, or where there may be a pole within
+/// it, of which they do not tell.
 std::optional<GeographicBounds> bounds_from_grid(const Rings& outline, const std::string& grid) {
   std::vector<double> x;
   std::vector<double> y;

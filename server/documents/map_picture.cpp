@@ -165,8 +165,9 @@ Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
   if (!sides) return sides.problem();
   const auto view = map_view(*sides, request, name->scale, (*system)->projection);
   if (!view) return view.problem();
-  return WindowRequest{*std::move(layers), *view,           static_cast<double>(name->scale), {},
-                       name->format,       request.path[1], *system};
+  return WindowRequest{
+      *std::move(layers), *view,  static_cast<double>(name->scale), {}, name->format,
+      request.path[1],    *system};
 }
 
 Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {

@@ -36,12 +36,12 @@ std::optional<WindowSides> parse_window_in_degrees(std::string_view text);
 /// Which of the two axes a box has first: east, or that of the authority of the system.
 enum class AxisOrder : std::uint8_t { east_first, of_authority };
 
-/// In units of the system, as they are: "west,south,east,north", or "south,west,north,east". Nothing
-/// as above.
+/// In units of the system, as they are: "west,south,east,north", or "south,west,north,east".
+/// Nothing as above.
 std::optional<WindowSides> parse_window_in(const MapSystem& system, std::string_view text,
                                            AxisOrder order);
-/// The same, but in degrees, a window whose west is east of its east goes over the antimeridian, and
-/// latitudes are at most 90.
+/// The same, but in degrees, a window whose west is east of its east goes over the antimeridian,
+/// and latitudes are at most 90.
 std::optional<WindowSides> parse_window_around(const MapSystem& system, std::string_view text,
                                                AxisOrder order);
 

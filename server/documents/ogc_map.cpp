@@ -36,8 +36,8 @@ Result<MapSystemPtr> system_of(const DocumentRequest& request, std::string_view 
 }
 
 /// Of all layers together.
-Result<WindowSides> sides_of_layers(const std::vector<std::string>& layers,
-                                    const MapSystem& system, const DocumentRequest& request) {
+Result<WindowSides> sides_of_layers(const std::vector<std::string>& layers, const MapSystem& system,
+                                    const DocumentRequest& request) {
   const auto summary = summarize_layers(layers, request.dataset);
   if (!summary) return summary.problem();
   Box box = summary->box;
@@ -75,18 +75,19 @@ std::optional<WindowSides> sides_on_plane(const MapSystem& degrees, const Window
   return WindowSides{west, north, east, south};
 }
 
-Result<WindowSides> sides_of(const std::vector<std::string>& layers,
-                             const MapSystem& system, const DocumentRequest& request) {
+Result<WindowSides> sides_of(const std::vector<std::string>& layers, const MapSystem& system,
+                             const DocumentRequest& request) {
   const auto of_box = system_of(request, "bbox-crs", crs84());
   if (!of_box) return of_box.problem();
   const std::string* text = request.find("bbox");
   if (text == nullptr) return sides_of_layers(layers, system, request);
   const bool is_other_plane = (*of_box)->grid != system.grid;
   if (is_other_plane && !(*of_box)->is_in_degrees) {
-    return Problem{400,
-                   fmt::format("A box of a map in {0} is in degrees, or in {0} as well: bbox-crs={1}.",
-                               system.name, system.uri),
-                   "bbox-crs", (*of_box)->uri, system.uri};
+    return Problem{
+        400,
+        fmt::format("A box of a map in {0} is in degrees, or in {0} as well: bbox-crs={1}.",
+                    system.name, system.uri),
+        "bbox-crs", (*of_box)->uri, system.uri};
   }
   auto sides = parse_window_around(**of_box, *text, AxisOrder::of_authority);
   if (sides && is_other_plane) {

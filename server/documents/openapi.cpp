@@ -123,10 +123,10 @@ Json components_json(const DocumentRequest& request) {
   parameters["path-y"] = path_parameter("y", "Row, from the north", index_schema());
   parameters["path-collectionId"] =
       path_parameter("collectionId", "Name of a layer", {{"type", "string"}});
-  parameters["path-tileMatrixSetId"] =
-      path_parameter("tileMatrixSetId", "Tile matrix set",
-                     {{"type", "string"}, {"enum", ids_of_sets(request)}});
-  parameters["path-tileMatrix"] = path_parameter("tileMatrix", "Matrix of the set", {{"type", "string"}});
+  parameters["path-tileMatrixSetId"] = path_parameter(
+      "tileMatrixSetId", "Tile matrix set", {{"type", "string"}, {"enum", ids_of_sets(request)}});
+  parameters["path-tileMatrix"] =
+      path_parameter("tileMatrix", "Matrix of the set", {{"type", "string"}});
   parameters["path-tileRow"] = path_parameter("tileRow", "Row, from the north", index_schema());
   parameters["path-tileCol"] = path_parameter("tileCol", "Column, from the west", index_schema());
   for (const auto& [name, words] :

@@ -235,10 +235,11 @@ Result<MapSystemPtr> system_in(const KeyValuePairs& pairs, WmsVersion version,
 /// What BBOX takes.
 std::string words_of_box(const MapSystem& system, AxisOrder order) {
   const bool is_north_first = order == AxisOrder::of_authority && system.is_north_first;
-  return fmt::format("{} in {}, separated by commas, the west less than the east and the south less "
-                     "than the north",
-                     is_north_first ? "south, west, north and east" : "west, south, east and north",
-                     system.is_in_degrees ? "degrees" : "metres");
+  return fmt::format(
+      "{} in {}, separated by commas, the west less than the east and the south less "
+      "than the north",
+      is_north_first ? "south, west, north and east" : "west, south, east and north",
+      system.is_in_degrees ? "degrees" : "metres");
 }
 
 Result<int> pixels_in(const KeyValuePairs& pairs, std::string_view key) {
@@ -289,8 +290,12 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   }
   auto style = style_of(std::move(query), *layers, pairs, request.styles);
   if (!style) return std::move(style).problem();
-  return WindowRequest{*std::move(layers), *view,           *scale,
-                       *std::move(style),  TileFormat::png, fmt::format("{}", *pairs["BBOX"]),
+  return WindowRequest{*std::move(layers),
+                       *view,
+                       *scale,
+                       *std::move(style),
+                       TileFormat::png,
+                       fmt::format("{}", *pairs["BBOX"]),
                        *system};
 }
 
@@ -356,9 +361,10 @@ Result<WmsRequest> info_of(const KeyValuePairs& pairs, const DocumentRequest& re
                        name);
   }
   const auto place = place_at(window->view, *column + 0.5, *row + 0.5);
-  const double zoom = std::clamp<double>(window->system->zoom_of(window->view, window->scale), 0, kMaxZoom);
-  PlaceQuery query{*std::move(layers), place.value_or(Point{}), zoom, std::move(window->style),
-                   place ? *count : 0, window->system};
+  const double zoom =
+      std::clamp<double>(window->system->zoom_of(window->view, window->scale), 0, kMaxZoom);
+  PlaceQuery query{*std::move(layers),       place.value_or(Point{}), zoom,
+                   std::move(window->style), place ? *count : 0,      window->system};
   return WmsRequest(
       WmsFeatureInfoRequest{std::move(query), format->format, std::string(format->content_type)});
 }

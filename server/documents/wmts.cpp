@@ -66,9 +66,8 @@ std::string limits_xml(const ServedLayer& served, const TileMatrixSet& set) {
 
 /// At one of its scales at least.
 bool is_drawn_in(const ServedLayer& served, const TileMatrixSet& set) {
-  return std::ranges::any_of(set.matrices, [&served](const TileMatrix& matrix) {
-    return has_tiles_of(served, matrix);
-  });
+  return std::ranges::any_of(
+      set.matrices, [&served](const TileMatrix& matrix) { return has_tiles_of(served, matrix); });
 }
 
 std::string style_xml(const std::string& layer, std::string_view style,

@@ -115,7 +115,6 @@ Result<std::size_t> matrix_in(const TileMatrixSet& set, const std::string& name)
                  404);
 }
 
-
 Result<std::vector<std::string>> layers_of(const std::string& list, const Dataset& dataset) {
   auto layers = parse_layer_list(list);
   if (!layers) {
@@ -132,7 +131,6 @@ Result<std::vector<std::string>> layers_of(const std::string& list, const Datase
   }
   return layers;
 }
-
 
 /// Those of all layers together; nothing at scales that none of them has.
 std::optional<TileLimits> limits_of(std::span<const std::string> layers, const TileMatrixSet& set,

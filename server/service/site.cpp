@@ -260,11 +260,10 @@ std::string bounds_text(const WindowRequest& window) {
   const MapSystem& system = *window.system;
   const auto [west, south, east, north] = system.bounds_of(window.view);
   const int digits = system.is_in_degrees ? 8 : 3;
-  return system.is_north_first
-             ? fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", south, west, north, east,
-                           digits)
-             : fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", west, south, east, north,
-                           digits);
+  return system.is_north_first ? fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", south, west,
+                                             north, east, digits)
+                               : fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", west, south,
+                                             east, north, digits);
 }
 
 std::uint64_t pixels_of(const View& view) {
@@ -532,8 +531,9 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   if (dataset == nullptr) return false;
   const auto known = known_targets_->find(dataset, request.target);
   if (known == nullptr) return false;
-  const bool is_whole = std::ranges::all_of(
-      known->layers, [&](std::size_t layer) { return dataset->layers_on_all_grids()[layer].is_whole(); });
+  const bool is_whole = std::ranges::all_of(known->layers, [&](std::size_t layer) {
+    return dataset->layers_on_all_grids()[layer].is_whole();
+  });
   if (!is_whole) return false;
   auto held = find_held(request, *known);
   if (held) respond(*std::move(held));
@@ -562,10 +562,9 @@ void Site::handle_document(const Documents& documents, const Target& target,
   auto base = base_url(request);
   if (!base) return respond(problem_response(base.problem()));
   std::string key = fmt::format("{} {}", *base, request.target);
-  const DocumentRequest asked{*dataset,           *styles_,         *options_.fonts,
-                              *std::move(base),   std::move(*path), *std::move(query),
-                              options_.map_pixels,
-                              *options_.sets};
+  const DocumentRequest asked{
+      *dataset,         *styles_,          *options_.fonts,     *std::move(base),
+      std::move(*path), *std::move(query), options_.map_pixels, *options_.sets};
   if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
     Result<PictureRequest>& found = *picture;
     return found ? handle_picture(*std::move(found), request, respond)
@@ -605,9 +604,10 @@ std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
                                      "to 2^zoom - 1.",
                                      options_.max_zoom)};
     if (tile.set != web_mercator_quad()) {
-      problem.detail = fmt::format("There is no such tile here: its pixels are smaller than those "
-                                   "of zoom {} of Web Mercator.",
-                                   options_.max_zoom);
+      problem.detail = fmt::format(
+          "There is no such tile here: its pixels are smaller than those "
+          "of zoom {} of Web Mercator.",
+          options_.max_zoom);
     }
     problem.code = ows::kTileOutOfRange;
     return problem;
@@ -666,15 +666,15 @@ void Site::handle_picture(PictureRequest asked, const HttpRequest& request,
     return handle_window(window_of(std::move(*tile)), request, respond);
   }
   const auto& window = std::get<WindowRequest>(asked);
-  handle_window(window, request,
-                [respond, bounds = bounds_text(window), system = window.system](
-                    HttpResponse answer) {
-                  if (answer.problem == nullptr) {
-                    answer.headers.emplace_back("Content-Bbox", bounds);
-                    answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", system->uri));
-                  }
-                  respond(std::move(answer));
-                });
+  handle_window(
+      window, request,
+      [respond, bounds = bounds_text(window), system = window.system](HttpResponse answer) {
+        if (answer.problem == nullptr) {
+          answer.headers.emplace_back("Content-Bbox", bounds);
+          answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", system->uri));
+        }
+        respond(std::move(answer));
+      });
 }
 
 void Site::handle_window(const WindowRequest& window, const HttpRequest& request,

@@ -41,7 +41,8 @@ std::uint64_t cost_of_cuts(std::uint64_t trapezoids, const TilePlan& plan,
   const std::size_t pairs =
       (is_plain(paint.style) ? overlaps.pairs_along() : overlaps.pairs().size()) / 2;
   if (pairs == 0) return 0;
-  const std::size_t features = plan.dataset->layers_on_all_grids()[paint.layer].layer->features().size();
+  const std::size_t features =
+      plan.dataset->layers_on_all_grids()[paint.layer].layer->features().size();
   const std::uint64_t cost = trapezoids + trapezoids * pairs / features;
   const double each = static_cast<double>(pairs) / static_cast<double>(features);
   const double depth = std::min(depth_of(paint.style), each);

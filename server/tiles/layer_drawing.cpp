@@ -50,9 +50,9 @@ double length_between(Point a, Point b) {
   return std::sqrt(x * x + y * y);
 }
 
-/// Of Web Mercator: where polygons were cut off, nothing ends: along the antimeridian, and the other edges of the
-/// square of Web Mercator. Files were cut there before, and their cuts rounded and simplified:
-/// no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
+/// Of Web Mercator: where polygons were cut off, nothing ends: along the antimeridian, and the
+/// other edges of the square of Web Mercator. Files were cut there before, and their cuts rounded
+/// and simplified: no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
 bool is_on_frame(Point a, Point b) {
   constexpr std::int32_t kStrip = 430'000;  // cells: from 85.0449 degrees on
   const auto is_pole = [](Point p) { return p.y <= kGridMin + kStrip || p.y >= kGridMax - kStrip; };
@@ -188,8 +188,7 @@ Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, con
                       : with_margin(view.box(), reach * view.longer_side());
   // Dust that many features share has no class.
   const bool has_classes = !paint.style.classing.is_plain();
-  return {box, paint.level, plan.pixel_level(),
-          has_classes ? SmallPolygons::drop : paint.small};
+  return {box, paint.level, plan.pixel_level(), has_classes ? SmallPolygons::drop : paint.small};
 }
 
 bool is_plain(const LayerStyle& style) {

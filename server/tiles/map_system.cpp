@@ -111,16 +111,15 @@ const MapSystemPtr& crs84() {
 }
 
 const MapSystemPtr& epsg4326() {
-  static const MapSystemPtr system =
-      make({.name = "EPSG:4326",
-            .other_names = {},
-            .uri = "http://www.opengis.net/def/crs/EPSG/0/4326",
-            .urn = "urn:ogc:def:crs:EPSG::4326",
-            .projection = Projection::plate_carree,
-            .is_north_first = true,
-            .is_in_degrees = true,
-            .half_side = 180,
-            .metres_per_unit = kMetresPerDegree});
+  static const MapSystemPtr system = make({.name = "EPSG:4326",
+                                           .other_names = {},
+                                           .uri = "http://www.opengis.net/def/crs/EPSG/0/4326",
+                                           .urn = "urn:ogc:def:crs:EPSG::4326",
+                                           .projection = Projection::plate_carree,
+                                           .is_north_first = true,
+                                           .is_in_degrees = true,
+                                           .half_side = 180,
+                                           .metres_per_unit = kMetresPerDegree});
   return system;
 }
 
@@ -199,10 +198,10 @@ const ServedLayer* served_in(const Dataset& dataset, std::string_view layer,
 
 Problem not_built(const std::string& layer, const MapSystem& system, const Dataset& dataset) {
   const std::string names = names_of(map_systems_of(dataset, layer));
-  return {400,
-          fmt::format("The layer \"{}\" is not built for {}, but for {}.", layer, system.name,
-                      names),
-          "crs", system.name, names};
+  return {
+      400,
+      fmt::format("The layer \"{}\" is not built for {}, but for {}.", layer, system.name, names),
+      "crs", system.name, names};
 }
 
 }  // namespace trapeze

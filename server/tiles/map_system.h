@@ -29,10 +29,10 @@ struct SystemBounds {
 };
 
 struct MapSystem {
-  std::string name = {};                 // as clients write it: "EPSG:3857"
+  std::string name = {};                      // as clients write it: "EPSG:3857"
   std::vector<std::string> other_names = {};  // that are understood as well
-  std::string uri = {};                  // of the OGC
-  std::string urn = {};                  // of the OGC, as WMTS has it
+  std::string uri = {};                       // of the OGC
+  std::string urn = {};                       // of the OGC, as WMTS has it
   Projection projection = Projection::mercator;
   bool is_north_first = false;  // whether the authority has the axis from south to north first
   bool is_in_degrees = false;   // or else in units of a plane

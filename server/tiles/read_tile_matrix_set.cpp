@@ -112,8 +112,8 @@ std::string crs_in(const Object& object) {
 void read_origin(const Object& object, const MapSystem& system, const std::string& where,
                  TileMatrix& matrix) {
   const Object& origin = get(object, {"pointOfOrigin", "topLeftCorner"}, where);
-  const bool is_pair = origin.is_array() && origin.size() == 2 && origin[0].is_number() &&
-                       origin[1].is_number();
+  const bool is_pair =
+      origin.is_array() && origin.size() == 2 && origin[0].is_number() && origin[1].is_number();
   if (!is_pair) fail(where + ": pointOfOrigin is no pair of numbers");
   matrix.west = origin[system.is_north_first ? 1 : 0].get<double>();
   matrix.origin_y = origin[system.is_north_first ? 0 : 1].get<double>();
@@ -129,8 +129,8 @@ void read_scale(const Object& object, const MapSystem& system, const std::string
   constexpr double kMost = 1e12;
   matrix.scale_denominator = number_in(object, "scaleDenominator", 1e-3, kMost, where);
   const double fit = matrix.scale_denominator * kMetresPerPixel / system.metres_per_unit;
-  matrix.cell_size = object.contains("cellSize") ? number_in(object, "cellSize", 1e-12, kMost, where)
-                                                 : fit;
+  matrix.cell_size =
+      object.contains("cellSize") ? number_in(object, "cellSize", 1e-12, kMost, where) : fit;
   if (std::abs(matrix.cell_size - fit) > kMostUnfit * fit) {
     fail(fmt::format("{}: cellSize {} does not fit scaleDenominator {}, of which it would be {}",
                      where, matrix.cell_size, matrix.scale_denominator, fit));
@@ -180,7 +180,8 @@ TileMatrixSetPtr parse_tile_matrix_set(std::string_view json) {
   }
   for (std::size_t i = 0; i < matrices.size(); ++i) {
     TileMatrix matrix = read_matrix(matrices[i], *set.system, i);
-    if (set.find(matrix.id) != nullptr) fail(fmt::format("two tile matrices are \"{}\"", matrix.id));
+    if (set.find(matrix.id) != nullptr)
+      fail(fmt::format("two tile matrices are \"{}\"", matrix.id));
     set.matrices.push_back(std::move(matrix));
   }
   return std::make_shared<const TileMatrixSet>(std::move(set));

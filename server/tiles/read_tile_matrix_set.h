@@ -20,8 +20,8 @@ TileMatrixSetPtr parse_tile_matrix_set(std::string_view json);
 /// The same of a file, which the error names.
 TileMatrixSetPtr read_tile_matrix_set(const std::string& path);
 
-/// Those that are built in, and those of the files. Throws as read_tile_matrix_set() does, or if two
-/// have the same id.
+/// Those that are built in, and those of the files. Throws as read_tile_matrix_set() does, or if
+/// two have the same id.
 TileMatrixSets tile_matrix_sets_with(const std::vector<std::string>& files);
 
 }  // namespace trapeze

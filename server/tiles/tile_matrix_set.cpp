@@ -58,8 +58,12 @@ std::string uri_of_set(const std::string& id) {
 
 TileMatrixSetPtr european_laea_quad() {
   const std::string id = "EuropeanETRS89_LAEAQuad";
-  return quad_tree_of({id, "Lambert Azimuthal Equal Area ETRS89 for Europe", uri_of_set(id), "",
-                       map_system_of_grid("EPSG:3035"), {}},
+  return quad_tree_of({id,
+                       "Lambert Azimuthal Equal Area ETRS89 for Europe",
+                       uri_of_set(id),
+                       "",
+                       map_system_of_grid("EPSG:3035"),
+                       {}},
                       2'000'000, 5'500'000, 17'578.125, 15);
 }
 
@@ -129,10 +133,10 @@ TileLimits TileMatrixSet::limits_of(const Box& box, std::size_t matrix, double p
   };
   const double width = tiles.tile_width * tiles.cell_size;
   const double height = tiles.tile_height * tiles.cell_size;
-  const double first = tiles.is_from_south ? bounds.south - tiles.origin_y
-                                           : tiles.origin_y - bounds.north;
-  const double last = tiles.is_from_south ? bounds.north - tiles.origin_y
-                                          : tiles.origin_y - bounds.south;
+  const double first =
+      tiles.is_from_south ? bounds.south - tiles.origin_y : tiles.origin_y - bounds.north;
+  const double last =
+      tiles.is_from_south ? bounds.north - tiles.origin_y : tiles.origin_y - bounds.south;
   return {tile_at(first - margin, height, tiles.height),
           tile_at(last + margin, height, tiles.height),
           tile_at(bounds.west - margin - tiles.west, width, tiles.width),
@@ -177,8 +181,8 @@ const TileMatrixSets& TileMatrixSets::built_in() {
     };
     add([] { return european_laea_quad(); });
     add([] {
-      return polar_quad("UPSArcticWGS84Quad", "Universal Polar Stereographic WGS 84 Quad for Arctic",
-                        "EPSG:5041");
+      return polar_quad("UPSArcticWGS84Quad",
+                        "Universal Polar Stereographic WGS 84 Quad for Arctic", "EPSG:5041");
     });
     add([] {
       return polar_quad("UPSAntarcticWGS84Quad",

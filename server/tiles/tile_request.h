@@ -81,8 +81,8 @@ std::string scale_suffix(int scale);
 Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y,
                              const TileMatrixSet& set = *web_mercator_quad());
 
-/// The problem to answer with, 404, for the id of a tile matrix set that there is not, and not among
-/// these, which there are.
+/// The problem to answer with, 404, for the id of a tile matrix set that there is not, and not
+/// among these, which there are.
 Problem unknown_tile_matrix_set(std::string_view id, const std::string& names);
 /// The same for a tile that the set does not have.
 Problem no_such_tile(const TileMatrixSet& set);

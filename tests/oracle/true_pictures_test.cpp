@@ -191,8 +191,7 @@ TEST_P(TrueInDegreesTest, AreTrueInEveryStyleAtEveryZoom) {
 
 INSTANTIATE_TEST_SUITE_P(Layers, TrueInDegreesTest,
                          ::testing::Values(Real{{"europe_countries"}, "iso_a3"},
-                                           Real{{"lands_complex"}, "name"},
-                                           Real{{"malta_natural"}},
+                                           Real{{"lands_complex"}, "name"}, Real{{"malta_natural"}},
                                            Real{{"usa48_land", "us_counties"}}),
                          [](const auto& test) { return name_of(test.param); });
 

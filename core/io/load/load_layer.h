@@ -24,9 +24,9 @@ struct LoadOptions {
   /// The reference system on whose grid the layer is built, see find_target_grid(); empty: Web
   /// Mercator.
   std::string grid = {};
-  /// A layer, on the same grid, of which to take over what is built of the same rings, or null: the result is the same
-  /// and is there sooner. Nothing is taken over of one that was built with other options. It was
-  /// built by the same program: see build_fingerprint().
+  /// A layer, on the same grid, of which to take over what is built of the same rings, or null: the
+  /// result is the same and is there sooner. Nothing is taken over of one that was built with other
+  /// options. It was built by the same program: see build_fingerprint().
   std::shared_ptr<const Layer> earlier = {};
   /// Called from the thread that called load_layer now and then, with about the share of the time
   /// that has gone, reading and building alike: in [0, 1] and never falling, or < 0 while unknown;

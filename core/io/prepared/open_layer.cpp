@@ -17,9 +17,8 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              ": is prepared already; select from its source with the options of "
                              "`trapeze prepare`");
   }
-  return open_prepared_layer(
-      path, {options.weights, options.prepared_from, options.coverage, options.close_gaps,
-             options.grid});
+  return open_prepared_layer(path, {options.weights, options.prepared_from, options.coverage,
+                                    options.close_gaps, options.grid});
 }
 
 LayerOptions layer_options(const OpenOptions& options) {

@@ -31,8 +31,9 @@ double metres_of_degrees(Position point, Position from, Position to);
 /// Adds points to the edges of `ring.before` and maps all of them into `ring.after`, so that no
 /// curve is farther than `most` from the chord that is drawn in its place. Edges are halved; each
 /// half is looked at in three points, at which curves without a bend, and those with one in their
-/// middle, show at least three quarters of how far they are. Where an edge is cut does not depend on
-/// its direction, so that neighbours stay neighbours. False if a point has no place after the map.
+/// middle, show at least three quarters of how far they are. Where an edge is cut does not depend
+/// on its direction, so that neighbours stay neighbours. False if a point has no place after the
+/// map.
 bool cut_edges(MappedRing& ring, const PointMap& map, DistanceFromChord distance, double most);
 
 }  // namespace trapeze

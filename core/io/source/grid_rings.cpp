@@ -56,9 +56,9 @@ bool GridRings::project(const PositionRing& ring, std::vector<PositionRing>& mad
   const double most = east->x;
   for (const double shift : {0.0, -360.0, 360.0}) {
     // All the way round, what is beyond 180 degrees is where it is without a turn.
-    const bool is_seen = grid_->goes_around() ? shift == 0
-                                              : least + shift < grid_->east &&
-                                                    most + shift > grid_->west;
+    const bool is_seen = grid_->goes_around()
+                             ? shift == 0
+                             : least + shift < grid_->east && most + shift > grid_->west;
     if (!is_seen) continue;
     PositionRing part = cut;
     for (Position& p : part) p.x += shift;

@@ -240,8 +240,8 @@ bool RingReader::map_to_lonlat(std::vector<double>& x, std::vector<double>& y) {
 // Where edges are straight on a plane, they are curves in degrees. What cannot be cut is left as it
 // is, to be told of where all of it is brought to degrees.
 void RingReader::cut_source_edges(FeatureRings& feature) {
-  const bool is_plane = crs_.kind == SourceCrs::Kind::projected ||
-                        crs_.kind == SourceCrs::Kind::web_mercator;
+  const bool is_plane =
+      crs_.kind == SourceCrs::Kind::projected || crs_.kind == SourceCrs::Kind::web_mercator;
   if (!is_plane) return;
   const PointMap map = [this](std::vector<double>& x, std::vector<double>& y) {
     return map_to_lonlat(x, y);

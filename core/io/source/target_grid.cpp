@@ -16,10 +16,10 @@
 namespace trapeze {
 namespace {
 
-constexpr int kSamples = 64;           // of the area, in both directions
-constexpr double kMostAround = 30;     // degrees
-constexpr double kRoom = 1.001;        // of the square, so that nothing lies on its edge
-constexpr double kMostGrowth = 16;     // of the square, by what lies around the area of use
+constexpr int kSamples = 64;        // of the area, in both directions
+constexpr double kMostAround = 30;  // degrees
+constexpr double kRoom = 1.001;     // of the square, so that nothing lies on its edge
+constexpr double kMostGrowth = 16;  // of the square, by what lies around the area of use
 
 struct Area {
   double west = 0;
@@ -89,10 +89,13 @@ double side_of(const Area& sides) {
   return std::max(sides.east - sides.west, sides.north - sides.south);
 }
 
+/// Around a pole, eastings too grow towards the north, or the south.
 bool is_northing_first(const OGRSpatialReference& reference) {
   OGRAxisOrientation orientation = OAO_Other;
-  const char* axis = reference.GetAxis(nullptr, 0, &orientation);
-  return orientation == OAO_North || (axis != nullptr && std::string(axis).starts_with("North"));
+  const char* name = reference.GetAxis(nullptr, 0, &orientation);
+  const std::string axis = name == nullptr ? "" : name;
+  if (axis.starts_with("East")) return false;
+  return axis.starts_with("North") || orientation == OAO_North;
 }
 
 std::shared_ptr<const TargetGrid> make_grid(const std::string& name) {

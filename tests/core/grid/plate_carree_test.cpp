@@ -39,8 +39,7 @@ TEST(PlateCarreeTest, SidesOfStraightHeightAreNearTheirChords) {
   for (int i = 0; i < 3'000; ++i) {
     const double most = std::exp2(std::uniform_real_distribution<double>(-3, 20)(random));
     const auto height = static_cast<double>(straight_height(most));
-    const double y =
-        std::uniform_real_distribution<double>(kGridMin, kGridMax - height)(random);
+    const double y = std::uniform_real_distribution<double>(kGridMin, kGridMax - height)(random);
     const double from = plate_carree_from_mercator(y);
     const double to = plate_carree_from_mercator(y + height);
     for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {

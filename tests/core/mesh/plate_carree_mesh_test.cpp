@@ -98,13 +98,13 @@ TEST(PlateCarreeMeshTest, SidesAreNearTheirCurves) {
     for (const MeshTrapezoid& t : view.trapezoids) {
       const EdgeLine side(view, t.right);
       for (const double part : {0.0, 0.3, 0.5, 0.8, 1.0}) {
-        const double row = view.vertices[t.top].y +
-                           part * (static_cast<double>(view.vertices[t.bottom].y) -
-                                   view.vertices[t.top].y);
+        const double row =
+            view.vertices[t.top].y +
+            part * (static_cast<double>(view.vertices[t.bottom].y) - view.vertices[t.top].y);
         const double y = mercator_from_plate_carree(row);
         // From where the side is to where the edge is, in cells of plate carree, upwards.
-        const double off = std::abs(side.x_at(row) - edge.x_at(y)) /
-                           (slope * mercator_stretch(y) + 1);
+        const double off =
+            std::abs(side.x_at(row) - edge.x_at(y)) / (slope * mercator_stretch(y) + 1);
         worst = std::max(worst, off / kCellsPerRow);
       }
     }
