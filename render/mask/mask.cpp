@@ -5,6 +5,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/grid/plate_carree.h"
+
 namespace trapeze {
 namespace {
 
@@ -36,6 +38,13 @@ Sides sides_of(const View& view) {
           y + std::ceil((view.first_row + view.height) * rows)};
 }
 
+/// Of a picture in plate carree: all cells of the grid that it may show, where points are rounded
+/// to cells of either kind.
+Sides in_mercator(const Sides& sides) {
+  return {sides.west, std::floor(mercator_from_plate_carree(sides.north - 1)), sides.east,
+          std::ceil(mercator_from_plate_carree(sides.south + 1))};
+}
+
 }  // namespace
 
 View View::of_tile(const TileId& tile, int scale) {
@@ -54,17 +63,56 @@ View View::band(int row, int rows) const {
   return band;
 }
 
+double View::longer_side() const {
+  const double longer = cells_per_pixel * (stretch > 1 ? stretch : 1);
+  if (projection != Projection::plate_carree) return longer;
+  const Box shown = box();
+  if (shown.is_empty()) return longer;
+  const auto farthest = static_cast<double>(std::max(std::abs(shown.min_y), std::abs(shown.max_y)));
+  return std::max(cells_per_pixel, cells_per_row() * mercator_stretch(farthest));
+}
+
+double View::side_at(double y) const {
+  const double side = cells_per_pixel * std::sqrt(stretch);
+  return projection == Projection::plate_carree ? side * std::sqrt(mercator_stretch(y)) : side;
+}
+
 Box View::box() const {
-  const Sides sides = sides_of(*this);
+  Sides sides = sides_of(*this);
+  if (projection == Projection::plate_carree) sides = in_mercator(sides);
   if (is_off_grid(sides.west, sides.east) || is_off_grid(sides.north, sides.south)) return Box{};
   return Box{clamp_to_grid(sides.west), clamp_to_grid(sides.north), clamp_to_grid(sides.east),
              clamp_to_grid(sides.south)};
 }
 
+Box View::box_around(double pixels) const {
+  if (box().is_empty()) return {};
+  const int more = static_cast<int>(std::ceil(pixels));
+  View around = *this;
+  around.origin_x -= static_cast<std::int64_t>(std::ceil(more * cells_per_pixel));
+  around.width += 2 * more + 1;
+  around.first_row -= more;
+  around.height += 2 * more;
+  return around.box();
+}
+
+double View::row_from_y(double y) const {
+  const bool is_projected = projection == Projection::plate_carree;
+  const double cell = is_projected ? plate_carree_from_mercator(y) : y;
+  return (cell - static_cast<double>(origin_y)) / cells_per_row() - first_row;
+}
+
+double View::y_from_row(double row) const {
+  const double cell = static_cast<double>(origin_y) + (first_row + row) * cells_per_row();
+  return projection == Projection::plate_carree ? mercator_from_plate_carree(cell) : cell;
+}
+
 bool View::is_on_world() const {
   const Sides sides = sides_of(*this);
-  return std::min(sides.west, sides.north) >= kGridMin &&
-         std::max(sides.east, sides.south) <= kGridMax;
+  const bool is_projected = projection == Projection::plate_carree;
+  const double end = is_projected ? plate_carree_from_mercator(kGridMax) : kGridMax;
+  return sides.west >= kGridMin && sides.north >= -end && sides.east <= kGridMax &&
+         sides.south <= end;
 }
 
 void View::check() const {

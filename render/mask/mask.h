@@ -24,6 +24,13 @@ namespace trapeze {
 constexpr int kTilePixels = 256;          // pixels along a side of a tile at scale 1
 constexpr int kMaxPicturePixels = 16384;  // at most, along either side of a picture
 
+/// What the cells of a picture are.
+enum class Projection : std::uint8_t {
+  mercator,      // those of the grid
+  plate_carree,  // of equal degrees, see plate_carree.h; boxes and lengths are told in the grid's
+  plane,         // those of the grid of another reference system, which does not repeat
+};
+
 /// What a picture shows. Pixel (column, row) is the rectangle of cells that begins at
 /// origin + (column * cells_per_pixel, (first_row + row) * cells_per_row()); row 0 is the
 /// northernmost.
@@ -35,6 +42,7 @@ struct View {
   int height = kTilePixels;
   double stretch = 1;  // of a pixel: its cells from north to south over those from west to east
   int first_row = 0;   // of a band: the rows between the origin and it
+  Projection projection = Projection::mercator;
 
   /// A tile of 256 * scale pixels a side. `tile` is valid, 1 <= scale <= 64.
   static View of_tile(const TileId& tile, int scale = 1);
@@ -45,13 +53,23 @@ struct View {
 
   /// Cells of a pixel from north to south.
   double cells_per_row() const { return cells_per_pixel * stretch; }
-  /// The shorter and the longer side of a pixel, in cells.
+  /// The shorter and the longer side of a pixel, in cells of the grid: no side of any pixel is
+  /// shorter, or longer. In plate carree a degree of latitude has 1 / cos(latitude) times as many
+  /// of them as one of longitude.
   double shorter_side() const { return cells_per_pixel * (stretch < 1 ? stretch : 1); }
-  double longer_side() const { return cells_per_pixel * (stretch > 1 ? stretch : 1); }
+  double longer_side() const;
+  /// The side of a square as large as a pixel where the grid has that y.
+  double side_at(double y) const;
 
   /// All grid points whose cells the picture may show, in cells; empty if the picture lies wholly
   /// off the world.
   Box box() const;
+  /// The same with so many pixels around it.
+  Box box_around(double pixels) const;
+  /// Where a y of the grid lies in the picture, in rows, and the other way round; off the world,
+  /// far from all of the grid.
+  double row_from_y(double y) const;
+  double y_from_row(double row) const;
   /// Whether nothing of it lies off the world.
   bool is_on_world() const;
 

@@ -19,7 +19,7 @@ struct Position {
 
 Position position_of(Point p, const View& view) {
   return {static_cast<double>(p.x - view.origin_x) / view.cells_per_pixel,
-          static_cast<double>(p.y - view.origin_y) / view.cells_per_row() - view.first_row};
+          view.row_from_y(static_cast<double>(p.y))};
 }
 
 /// Clips the segment to the picture and a pixel around it; false if nothing is left.
@@ -80,7 +80,7 @@ Position on_edge(const MeshView& mesh, std::uint32_t edge, std::uint32_t vertex,
       a.y == b.y ? 0 : (static_cast<double>(y) - a.y) / (static_cast<double>(b.y) - a.y);
   return {(static_cast<double>(a.x - view.origin_x) + share * (static_cast<double>(b.x) - a.x)) /
               view.cells_per_pixel,
-          static_cast<double>(y - view.origin_y) / view.cells_per_row() - view.first_row};
+          view.row_from_y(static_cast<double>(y))};
 }
 
 template <class Visit>

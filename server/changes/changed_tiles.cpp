@@ -132,7 +132,7 @@ class Comparison {
   }
 
   static const std::string& name_of(const TilePlan& plan, const LayerPaint& paint) {
-    return plan.dataset->layers()[paint.layer].config.name;
+    return plan.dataset->layers_on_all_grids()[paint.layer].config.name;
   }
 
   const LayerChanges* changes_of(const TilePlan& plan, const LayerPaint& paint) const {

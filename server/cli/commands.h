@@ -59,6 +59,7 @@ struct PrepareArguments {
   SkipLimit max_skipped;          // of each file, or each part of one
   std::string part;               // I/N, or A-B/N; empty: files are not divided
   std::vector<std::string> join;  // parts, of which an overview is made, and nothing else is done
+  std::vector<std::string> crs;   // systems to prepare for besides Web Mercator
 };
 int run_prepare(const PrepareArguments& arguments);
 

@@ -9,7 +9,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+<<<<<<< HEAD
 #include <utility>
+=======
+>>>>>>> grids
 #include <vector>
 
 #include "core/io/file/mapped_file.h"
@@ -19,6 +22,7 @@
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/source_stamp.h"
+#include "core/io/source/target_grid.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
@@ -85,7 +89,7 @@ std::string earlier_file(const std::string& reuse, const std::string& output) {
 
 /// Nothing, and why, if there is nothing to take over from the file; it may be missing in a folder.
 EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
-                             const LayerOptions& options) {
+                             const LayerOptions& options, const std::string& grid) {
   if (file.empty()) return {};
   if (!std::filesystem::exists(file)) {
     if (file != reuse) return {nullptr, nullptr, "is not there"};
@@ -94,7 +98,7 @@ EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
   if (!is_prepared_file(file)) {
     throw std::runtime_error(file + ": is no prepared file to take over from");
   }
-  return open_earlier_layer(file, options);
+  return open_earlier_layer(file, options, grid);
 }
 
 LoadedLayer load(const std::string& file, const LoadOptions& how, const EarlierPrepared& earlier) {
@@ -127,7 +131,7 @@ SourceStamp stamp_or_throw(const std::string& file) {
 void prepare(const std::string& file, const SourceStamp& source, const LoadOptions& how,
              SkipLimit max_skipped, const std::string& output, const std::string& reuse) {
   const std::string earlier_name = earlier_file(reuse, output);
-  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization);
+  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization, how.grid);
   const LoadedLayer loaded = load(file, how, earlier);
   if (earlier.file != nullptr && !earlier.file->is_whole()) {
     throw std::runtime_error(earlier_name + ": was written into while it was read");
@@ -139,7 +143,7 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   if (const std::string excess = find_excess(loaded.report, max_skipped); !excess.empty()) {
     throw std::runtime_error(excess + "; `trapeze check` tells which");
   }
-  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source);
+  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source, how.grid);
   const LoadReport& report = loaded.report;
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
@@ -155,6 +159,7 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   }
 }
 
+<<<<<<< HEAD
 std::shared_ptr<const SourceDivision> divide(const std::string& file, const LoadOptions& how,
                                              std::uint32_t count) {
   std::shared_ptr<const SourceDivision> division;
@@ -229,6 +234,21 @@ int run_join(const PrepareArguments& arguments) {
   }
   join(files, output.string());
   return 0;
+=======
+/// That of Web Mercator, which has no name, and those of the systems.
+std::vector<std::string> grids_or_throw(const std::vector<std::string>& names) {
+  std::vector<std::string> grids = {""};
+  for (const std::string& name : names) {
+    if (name == kBuiltCrs) continue;
+    try {
+      find_target_grid(name);
+    } catch (const std::exception& error) {
+      throw UsageError(fmt::format("--crs: {}", error.what()));
+    }
+    grids.push_back(name);
+  }
+  return grids;
+>>>>>>> grids
 }
 
 }  // namespace
@@ -243,10 +263,12 @@ int run_prepare(const PrepareArguments& arguments) {
   std::optional<PartRange> parts;
   if (!arguments.part.empty()) parts = parts_or_throw(arguments.part);
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
+  const std::vector<std::string> grids = grids_or_throw(arguments.crs);
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
+<<<<<<< HEAD
     try {
       if (parts) {
         prepare_parts(layer, how, *parts, arguments);
@@ -258,6 +280,19 @@ int run_prepare(const PrepareArguments& arguments) {
       // Reported here and not by main, so that the files after this one are prepared too.
       fmt::print(stderr, "trapeze: {}\n", error.what());
       is_all_prepared = false;
+=======
+    for (const std::string& grid : grids) {
+      try {
+        how.grid = grid;
+        prepare(layer.file, how, arguments.max_skipped,
+                grid.empty() ? output.string() : prepared_on_grid(output.string(), grid),
+                arguments.reuse);
+      } catch (const std::exception& error) {
+        // Reported here and not by main, so that the files after this one are prepared too.
+        fmt::print(stderr, "trapeze: {}\n", error.what());
+        is_all_prepared = false;
+      }
+>>>>>>> grids
     }
   }
   return is_all_prepared ? 0 : 1;

@@ -374,6 +374,13 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
                    "Make an overview of all these parts for low zooms, and do nothing else")
       ->type_name("PART ...");
   prepare
+      ->add_option(
+          "--crs", arguments.crs,
+          "Reference systems to prepare for besides EPSG:3857, such as EPSG:2056: each is a "
+          "file of its own, which ends in .EPSG-2056.trapeze")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  prepare
       ->add_option("--reuse", arguments.reuse,
                    "A file prepared before, or the folder of such files, perhaps that of --output: "
                    "polygons, and groups of polygons with shared borders, that have not changed "

@@ -22,6 +22,9 @@
 
 namespace trapeze {
 
+/// The reference system that every layer is built for.
+inline constexpr const char* kBuiltCrs = "EPSG:3857";
+
 struct LayerConfig {
   std::string name;           // is_url_name() holds
   std::string file;           // empty only if `prepared` is set
@@ -44,6 +47,8 @@ struct LayerConfig {
   std::optional<int> detail_zoom;  // up to which its data is true; unset: unknown
   std::string group;               // of layers that belong together; empty: none
   std::string title_attribute;     // what its features are called by; empty: found by its name
+  std::vector<std::string> crs;  // systems that it is built for, kBuiltCrs among them; empty: that
+  std::string grid;  // of these the one whose grid it is on, see with_grids(); empty: kBuiltCrs
 
   const std::string& file_to_open() const { return prepared.empty() ? file : prepared; }
   /// Whether it is built without the topological consistency test as well: also if its own style
@@ -77,6 +82,7 @@ struct ServerConfig {
   // Host headers that are answered; empty: all. "*.name" stands for all below a name; what is
   // written without a port holds for every port. Not looked at if there is a public_url.
   std::vector<std::string> allowed_hosts;
+  std::vector<std::string> tile_matrix_sets;  // files of more of them, see read_tile_matrix_set()
   std::string web_root;  // folder in the place of the viewer of the program; empty: none
   bool metrics = true;   // whether /metrics is there; it always is at the admin address
   std::vector<AddressRange> trusted_proxies;  // whose X-Forwarded-For is believed

@@ -407,6 +407,16 @@ void append_server(std::vector<Setting<Config>>& all) {
       "a list of names of hosts, with or without a port, \"*.\" before them for all below",
       host_pattern, same,
       "without public_url: the Host headers that are answered; an empty list answers all"));
+  auto sets = list<Config>(
+      "server.tile_matrix_sets", [](auto& c) -> auto& { return c.server.tile_matrix_sets; },
+      "a list of files",
+      [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
+      same,
+      "tile matrix sets besides those that are built in, as JSON of the OGC standard: tiles are "
+      "served "
+      "of layers whose crs names their reference system");
+  sets.type = SettingType::paths;
+  all.push_back(std::move(sets));
   all.push_back(path<Config>(
       "server.web_root", [](auto& c) -> auto& { return c.server.web_root; },
       "a folder whose files are served in the place of the viewer of the program; empty: none"));
@@ -648,6 +658,15 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           "title_attribute", [](auto& layer) -> auto& { return layer.title_attribute; },
           "the attribute that features are called by; not set: one named name, name:en, name_en, "
           "title or label, in any case of letters"),
+      list<LayerConfig>(
+          "crs", [](auto& layer) -> auto& { return layer.crs; },
+          "a list of reference systems such as [\"EPSG:3857\", \"EPSG:2056\"], EPSG:3857 among "
+          "them",
+          [](const std::string& name) { return name.empty() ? std::nullopt : std::optional(name); },
+          same,
+          "the reference systems that it is built for, on a grid of its own each, which takes as "
+          "much "
+          "memory again; maps in EPSG:4326 and CRS:84 are made of EPSG:3857; not set: EPSG:3857"),
       weights_setting(),
       coverage_setting(),
       close_gaps_setting(),

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/source/target_grid.h"
 #include "server/base/nearest_name.h"
 #include "server/base/url.h"
 #include "server/config/config_settings.h"
@@ -249,6 +250,7 @@ class ConfigReader {
                        layer.name));
     }
     if (!layer.live_query.empty()) check_live(table, layer);
+    check_crs(table, layer);
     if (layer.min_zoom > layer.max_zoom) {
       fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
     }
@@ -263,6 +265,34 @@ class ConfigReader {
     if (!layer.prepared.empty()) cannot("it is prepared");
     if (layer.selection.layer.empty()) cannot("it needs a source_layer, the table that is asked");
     if (layer.has_fast_topology()) cannot("a layer without the topology test is built whole");
+  }
+
+  void check_crs(const toml::table& table, LayerConfig& layer) {
+    if (layer.crs.empty()) return;
+    const toml::node& node = table.get("crs") == nullptr ? table : *table.get("crs");
+    const auto cannot = [&](const std::string& why) {
+      fail(node, fmt::format("layer \"{}\": crs: {}", layer.name, why));
+    };
+    if (std::ranges::find(layer.crs, kBuiltCrs) == layer.crs.end()) {
+      cannot(fmt::format("{} has to be among them: places and bounds are told by it", kBuiltCrs));
+    }
+    for (auto name = layer.crs.begin(); name != layer.crs.end(); ++name) {
+      if (std::find(layer.crs.begin(), name, *name) != name) cannot(*name + " is named twice");
+      if (*name == kBuiltCrs) continue;
+      if (*name == "EPSG:4326" || *name == "CRS:84") {
+        cannot(
+            fmt::format("{} needs no grid of its own: its maps are made of {}", *name, kBuiltCrs));
+        continue;
+      }
+      try {
+        find_target_grid(*name);
+      } catch (const std::exception& error) {
+        cannot(error.what());
+      }
+    }
+    if (layer.crs.size() == 1) return;
+    if (!layer.live_query.empty()) cannot("a layer with a live_query is built for one system only");
+    if (layer.close_gaps.value_or(0) > 0) cannot("gaps are closed for one system only");
   }
 
   void keep(LayerConfig layer, const toml::source_position& position) {

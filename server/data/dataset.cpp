@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <numeric>
@@ -112,7 +113,10 @@ class SharedProgress {
     if (told_ == nullptr) return;
     std::vector<LayerProgress> nothing_read;
     nothing_read.reserve(layers.size());
-    for (const LayerConfig& layer : layers) nothing_read.push_back({layer.name, layer.title, 0});
+    for (const LayerConfig& layer : layers) {
+      const std::string of_grid = layer.grid.empty() ? "" : " in " + layer.grid;
+      nothing_read.push_back({layer.name + of_grid, layer.title + of_grid, 0});
+    }
     told_->begin(std::move(nothing_read));
   }
 
@@ -166,7 +170,7 @@ bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
   return a.file_to_open() == b.file_to_open() && how_a.weights == how_b.weights &&
          how_a.coverage == how_b.coverage && how_a.close_gaps == how_b.close_gaps &&
          how_a.selection == how_b.selection && how_a.prepared_from == how_b.prepared_from &&
-         a.has_fast_topology() == b.has_fast_topology();
+         how_a.grid == how_b.grid && a.has_fast_topology() == b.has_fast_topology();
 }
 
 /// The layer as it was read before, if it would be the same now.
@@ -174,7 +178,7 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
   if (previous == nullptr) return std::nullopt;
   const std::string state = state_of_sources(layer);
   if (state.empty()) return std::nullopt;
-  for (const ServedLayer& served : previous->layers()) {
+  for (const ServedLayer& served : previous->layers_on_all_grids()) {
     if (served.source_state == state && are_read_the_same(served.config, layer) &&
         served.is_whole() && served.whole == nullptr) {
       ServedLayer kept = served;
@@ -188,8 +192,8 @@ std::optional<ServedLayer> unchanged_layer(const LayerConfig& layer, const Datas
 /// The layer as it is served now; null if it is not.
 const ServedLayer* find_served(const LayerConfig& layer, const Dataset* previous) {
   if (previous == nullptr) return nullptr;
-  const auto position = previous->find(layer.name);
-  return position ? &previous->layers()[*position] : nullptr;
+  const auto position = previous->find(layer.name, layer.grid);
+  return position ? &previous->layers_on_all_grids()[*position] : nullptr;
 }
 
 /// In words, that a layer has lost most of what is served of it; empty if not.
@@ -265,6 +269,7 @@ OpenOptions how_to_open(const LayerConfig& layer) {
   options.close_gaps = layer.close_gaps;
   options.selection = layer.selection;
   options.prepared_from = layer.prepared.empty() ? "" : layer.file;
+  options.grid = layer.grid;
   return options;
 }
 
@@ -277,6 +282,31 @@ std::size_t ServedLayer::trapezoids() const {
 std::size_t ServedLayer::memory_of_tested() const {
   if (parts != nullptr) return parts->file_size();
   return layer->memory() + layer->features().memory();
+}
+
+std::string prepared_on_grid(const std::string& prepared, const std::string& grid) {
+  std::string of_grid = grid;
+  std::ranges::replace(of_grid, ':', '-');
+  std::filesystem::path path(prepared);
+  const std::string ending = path.extension().string();
+  return path.replace_extension(of_grid + ending).string();
+}
+
+std::vector<LayerConfig> with_grids(const std::vector<LayerConfig>& layers) {
+  std::vector<LayerConfig> all = layers;
+  for (const LayerConfig& layer : layers) {
+    for (const std::string& name : layer.crs) {
+      if (name == kBuiltCrs) continue;
+      LayerConfig& more = all.emplace_back(layer);
+      more.grid = name;
+      if (!layer.prepared.empty()) more.prepared = prepared_on_grid(layer.prepared, name);
+    }
+  }
+  return all;
+}
+
+std::string ServedLayer::label() const {
+  return config.grid.empty() ? config.name : fmt::format("{} in {}", config.name, config.grid);
 }
 
 std::size_t ServedLayer::memory() const {
@@ -313,9 +343,10 @@ std::uint64_t revision_of(const Layer& layer) {
   return hash.value();
 }
 
-std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& layers,
+std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& configured,
                                              const Dataset* previous, LayersToRead* told,
                                              std::shared_ptr<const NamedTables> tables) {
+  const std::vector<LayerConfig> layers = with_grids(configured);
   // All at once: while one layer is at a step for one core, another one uses the others.
   SharedProgress progress(layers, told);
   std::vector<ServedLayer> served(layers.size());
@@ -350,7 +381,10 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& lay
 }
 
 Dataset::Dataset(std::vector<ServedLayer> layers, std::shared_ptr<const NamedTables> tables)
-    : layers_(std::move(layers)), tables_(std::move(tables)) {
+    : layers_(std::move(layers)),
+      on_mercator_(static_cast<std::size_t>(std::ranges::count_if(
+          layers_, [](const ServedLayer& layer) { return layer.config.grid.empty(); }))),
+      tables_(std::move(tables)) {
   std::shared_ptr<DerivedValues> derived;
   for (const ServedLayer& layer : layers_) {
     if (tables_ == nullptr) tables_ = layer.tables;
@@ -362,6 +396,7 @@ Dataset::Dataset(std::vector<ServedLayer> layers, std::shared_ptr<const NamedTab
     layer.tables = tables_;
     layer.derived = derived;
     hash.add(layer.config.name);
+    if (!layer.config.grid.empty()) hash.add(layer.config.grid);
     hash.add(layer.revision);
   }
   for (const auto& [name, named] : this->tables()) {
@@ -376,11 +411,21 @@ const NamedTables& Dataset::tables() const {
   return tables_ == nullptr ? none : *tables_;
 }
 
-std::optional<std::size_t> Dataset::find(std::string_view name) const {
+std::optional<std::size_t> Dataset::find(std::string_view name, std::string_view grid) const {
   for (std::size_t i = 0; i < layers_.size(); ++i) {
-    if (layers_[i].config.name == name) return i;
+    if (layers_[i].config.name == name && layers_[i].config.grid == grid) return i;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> Dataset::grids() const {
+  std::vector<std::string> grids;
+  for (const ServedLayer& layer : std::span(layers_).subspan(on_mercator_)) {
+    if (std::ranges::find(grids, layer.config.grid) == grids.end()) {
+      grids.push_back(layer.config.grid);
+    }
+  }
+  return grids;
 }
 
 }  // namespace trapeze

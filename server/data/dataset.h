@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,8 @@ struct ServedLayer {
   const Layer* layer_for(Topology topology) const {
     return topology == Topology::strict ? layer.get() : untested.get();
   }
+  /// For people: its name, and its grid if that is another than that of Web Mercator.
+  std::string label() const;
   /// Of all of its parts.
   LayerSize size() const { return parts == nullptr ? layer->size() : parts->size(); }
   /// Versions of trapezoids, horizontal edges and dust among them.
@@ -82,6 +85,12 @@ Problem damaged_layer(const ServedLayer& layer);
 /// loaded the same layer.
 std::uint64_t revision_of(const Layer& layer);
 
+/// The layers, and after them all of the other grids that their configuration names. On those, a
+/// prepared file is looked for beside the prepared one, see prepared_on_grid().
+std::vector<LayerConfig> with_grids(const std::vector<LayerConfig>& layers);
+/// The name of a prepared file for another grid: "land.EPSG-2056.trapeze" of "land.trapeze".
+std::string prepared_on_grid(const std::string& prepared, const std::string& grid);
+
 /// What of a layer's configuration decides how its file is read.
 OpenOptions how_to_open(const LayerConfig& layer);
 
@@ -97,18 +106,23 @@ class Dataset {
   /// `previous` draws of the layer of that name, of whose source the same was selected.
   /// `told`, if it is not null, is told how far each layer is. `tables` are those of the
   /// configuration; null: those of `previous`.
-  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& layers,
+  static std::shared_ptr<const Dataset> load(const std::vector<LayerConfig>& configured,
                                              const Dataset* previous = nullptr,
                                              LayersToRead* told = nullptr,
                                              std::shared_ptr<const NamedTables> tables = nullptr);
 
-  /// `tables` that are null are those that the layers have.
+  /// Layers on other grids come last. `tables` that are null are those that the layers have.
   explicit Dataset(std::vector<ServedLayer> layers,
                    std::shared_ptr<const NamedTables> tables = nullptr);
 
-  const std::vector<ServedLayer>& layers() const { return layers_; }
-  /// Position of the layer of that name.
-  std::optional<std::size_t> find(std::string_view name) const;
+  /// On the grid of Web Mercator, which is where every layer is.
+  std::span<const ServedLayer> layers() const { return std::span(layers_).first(on_mercator_); }
+  /// The same, and then those on the grids of other reference systems.
+  const std::vector<ServedLayer>& layers_on_all_grids() const { return layers_; }
+  /// Position, in both, of the layer of that name; on another grid, in the second.
+  std::optional<std::size_t> find(std::string_view name, std::string_view grid = {}) const;
+  /// The names of the other grids that there are layers on, each once, in the order of the layers.
+  std::vector<std::string> grids() const;
   /// Those of the configuration.
   const NamedTables& tables() const;
   /// Hex digits that change when any layer's or table's name or contents change, and only then:
@@ -117,6 +131,7 @@ class Dataset {
 
  private:
   std::vector<ServedLayer> layers_;
+  std::size_t on_mercator_ = 0;
   std::shared_ptr<const NamedTables> tables_;  // null: none
   std::string generation_;
 };

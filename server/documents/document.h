@@ -14,6 +14,7 @@
 #include "server/base/url.h"
 #include "server/data/dataset.h"
 #include "server/styles/style_book.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 
@@ -25,6 +26,7 @@ struct DocumentRequest {
   std::vector<std::string> path;  // decoded segments, untrusted
   std::vector<QueryPair> query;   // untrusted
   std::uint64_t map_pixels = defaults::kMapPixels;  // that a picture of a window may have
+  const TileMatrixSets& sets = TileMatrixSets::built_in();
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/io/source/target_grid.h"
 #include "core/layer/features_at.h"
 #include "core/layer/part_at.h"
 #include "render/mask/mask.h"
@@ -69,9 +70,7 @@ Result<PlaceQuery> parse_request(const DocumentRequest& request) {
 
 Level level_of(const PlaceQuery& request, const StyleQuery& style, const std::string& layer) {
   if (!request.zoom) return 0;
-  const double cells_per_pixel =
-      static_cast<double>(kGridSize) / std::exp2(*request.zoom) / kTilePixels;
-  return nearest_level(tolerance_in_pixels(style, layer) * cells_per_pixel);
+  return nearest_level(tolerance_in_pixels(style, layer) * request.system->cells_at(*request.zoom));
 }
 
 bool is_drawn(const PlaceQuery& request, const LayerConfig& config) {
@@ -113,7 +112,8 @@ Json properties_json(const FeatureTable& features, std::uint32_t row) {
 /// The features of an answer.
 class IdentifiedFeatures {
  public:
-  explicit IdentifiedFeatures(Point place) : place_(place) {}
+  explicit IdentifiedFeatures(const PlaceQuery& query)
+      : place_(query.place), system_(query.system) {}
 
   void add(const ServedLayer& served, const Layer& layer, std::uint32_t row) {
     if (++matched_ > kMaxIdentified) return;
@@ -143,17 +143,41 @@ class IdentifiedFeatures {
   void add_bounds(Json& json, const Layer& layer, std::uint32_t row) const;
 
   Point place_;
+  MapSystemPtr system_;
   Json features_ = Json::array();
   std::size_t matched_ = 0;
   std::size_t left_out_ = 0;
   std::size_t bytes_left_ = kMaxIdentifiedBytes;
 };
 
+/// Of all points of an outline; nothing if PROJ cannot tell, or where there may be a pole within
+/// it, of which they do not tell.
+std::optional<GeographicBounds> bounds_from_grid(const Rings& outline, const std::string& grid) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const Point p : outline.points) {
+    x.push_back(p.x);
+    y.push_back(p.y);
+  }
+  const auto target = find_target_grid(grid);
+  if (x.empty() || target->goes_around()) return std::nullopt;
+  GridTransform transform(*target);
+  if (!transform.to_lonlat(x, y)) return std::nullopt;
+  const auto [west, east] = std::ranges::minmax(x);
+  const auto [south, north] = std::ranges::minmax(y);
+  return GeographicBounds{round_degrees(west), round_degrees(south), round_degrees(east),
+                          round_degrees(north)};
+}
+
 void IdentifiedFeatures::add_bounds(Json& json, const Layer& layer, std::uint32_t row) const {
   Rings outline;
   layer.append_outline(row, outline);
   Box box;
   for (const Point p : outline.points) box.include(p);
+  if (!system_->grid.empty()) {
+    if (const auto bounds = bounds_from_grid(outline, system_->grid)) json["bbox"] = *bounds;
+    return;
+  }
   json["bbox"] = bounds_in_degrees(box);
   const Box part = part_at(outline, place_);
   if (part != box) json["part_bbox"] = bounds_in_degrees(part);
@@ -221,11 +245,13 @@ Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
 }
 
 Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
-  IdentifiedFeatures features(query.place);
+  IdentifiedFeatures features(query);
   for (auto name = query.layers.rbegin(); name != query.layers.rend(); ++name) {
     const auto position = dataset.find(*name);
     if (!position) return unknown_layer(*name, dataset);
-    const ServedLayer& served = dataset.layers()[*position];
+    const ServedLayer* found = served_in(dataset, *name, *query.system);
+    if (found == nullptr) return not_built(*name, *query.system, dataset);
+    const ServedLayer& served = *found;
     if (!served.is_whole()) return damaged_layer(served);
     const auto found = find_features(query, served, *position);
     if (!found) return found.problem();

@@ -15,6 +15,7 @@
 #include "server/data/dataset.h"
 #include "server/documents/document.h"
 #include "server/styles/style_parameters.h"
+#include "server/tiles/map_system.h"
 
 namespace trapeze {
 
@@ -28,6 +29,7 @@ struct PlaceQuery {
   std::optional<double> zoom;  // nothing: by the true polygons
   StyleQuery style;
   std::size_t most_of_layer = std::numeric_limits<std::size_t>::max();  // features
+  MapSystemPtr system = web_mercator();  // on whose grid the place is
 };
 
 enum class IdentifyFormat : std::uint8_t { json, text, html };

@@ -19,7 +19,6 @@ namespace {
 constexpr std::array<std::string_view, 4> kOwnParameters = {"bbox", "crs", "height", "width"};
 constexpr std::string_view kPattern =
     "/map/{layers}.png?bbox=W,S,E,N or /map/{layers}/{lon},{lat},{zoom}/{width}x{height}.png";
-constexpr std::string_view kMetres = "EPSG:3857";
 constexpr int kUsualSide = 1024;  // of the longer side, in pixels of scale 1
 
 using FourNumbers = std::array<double, 4>;
@@ -41,6 +40,21 @@ std::optional<WindowSides> sides_between(GridPosition south_west, GridPosition n
   const WindowSides sides{south_west.x, north_east.y, north_east.x, south_west.y};
   if (!(sides.width() > 0 && sides.height() > 0)) return std::nullopt;
   return sides;
+}
+
+std::optional<WindowSides> sides_between(const MapSystem& system, const SystemBounds& bounds) {
+  return sides_between(system.cells_from(bounds.west, bounds.south),
+                       system.cells_from(bounds.east, bounds.north));
+}
+
+std::optional<SystemBounds> parse_bounds(const MapSystem& system, std::string_view text,
+                                         AxisOrder order) {
+  const double middle = std::max(std::abs(system.middle_x), std::abs(system.middle_y));
+  const auto numbers = parse_four(text, middle + 2 * system.half_side * kMostWorlds);
+  if (!numbers) return std::nullopt;
+  const auto [a, b, c, d] = *numbers;
+  const bool is_north_first = order == AxisOrder::of_authority && system.is_north_first;
+  return is_north_first ? SystemBounds{b, a, d, c} : SystemBounds{a, b, c, d};
 }
 
 /// "{lon},{lat},{zoom}".
@@ -83,10 +97,10 @@ Problem bad_value(std::string_view parameter, const std::string& value, std::str
 
 Problem bad_window(const std::string& value) {
   return bad_value("bbox", value,
-                   fmt::format("west, south, east and north, separated by commas, in degrees or in "
-                               "metres of {}, not narrower than a centimetre and at most {} worlds "
+                   fmt::format("west, south, east and north, separated by commas, in degrees or as "
+                               "crs says, not narrower than a centimetre and at most {} worlds "
                                "away",
-                               kMetres, kMostWorlds));
+                               kMostWorlds));
 }
 
 Problem too_large() {
@@ -94,15 +108,22 @@ Problem too_large() {
           "width", "", fmt::format("1 to {}", kMaxPicturePixels)};
 }
 
-Result<WindowSides> sides_of(const DocumentRequest& request) {
+Result<MapSystemPtr> system_of(const DocumentRequest& request) {
   const std::string* crs = request.find("crs");
-  if (crs != nullptr && *crs != kMetres) {
-    return bad_value("crs", *crs, fmt::format("{}; without it, bbox is in degrees", kMetres));
-  }
+  if (crs == nullptr) return web_mercator();
+  if (auto system = find_map_system(*crs, request.dataset)) return system;
+  return bad_value("crs", *crs,
+                   fmt::format("{}; without it, maps are in EPSG:3857 and bbox is in degrees",
+                               names_of(map_systems_of(request.dataset))));
+}
+
+/// Eastings are first whatever the system is, as they are without one.
+Result<WindowSides> sides_of(const MapSystem& system, const DocumentRequest& request) {
   const std::string* text = request.find("bbox");
   const std::string value = text == nullptr ? std::string() : *text;
-  const auto sides =
-      crs != nullptr ? parse_window_in_metres(value) : parse_window_in_degrees(value);
+  const auto sides = request.find("crs") != nullptr
+                         ? parse_window_around(system, value, AxisOrder::east_first)
+                         : parse_window_in_degrees(value);
   if (!sides) return bad_window(value);
   return *sides;
 }
@@ -138,12 +159,15 @@ Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
   if (!name) return name.problem();
   auto layers = parse_layer_list(name->stem);
   if (!layers) return std::move(layers).problem();
-  const auto sides = sides_of(request);
+  const auto system = system_of(request);
+  if (!system) return system.problem();
+  const auto sides = sides_of(**system, request);
   if (!sides) return sides.problem();
-  const auto view = map_view(*sides, request, name->scale);
+  const auto view = map_view(*sides, request, name->scale, (*system)->projection);
   if (!view) return view.problem();
-  return WindowRequest{*std::move(layers), *view,          static_cast<double>(name->scale), {},
-                       name->format,       request.path[1]};
+  return WindowRequest{
+      *std::move(layers), *view,  static_cast<double>(name->scale), {}, name->format,
+      request.path[1],    *system};
 }
 
 Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {
@@ -193,11 +217,21 @@ std::optional<WindowSides> parse_window_in_degrees(std::string_view text) {
                        grid_from_lonlat({east, on_map(north)}));
 }
 
-std::optional<WindowSides> parse_window_in_metres(std::string_view text) {
-  const auto numbers = parse_four(text, 2 * kMercatorHalfSide * kMostWorlds);
-  if (!numbers) return std::nullopt;
-  const auto [west, south, east, north] = *numbers;
-  return sides_between(grid_from_metres(west, south), grid_from_metres(east, north));
+std::optional<WindowSides> parse_window_in(const MapSystem& system, std::string_view text,
+                                           AxisOrder order) {
+  const auto bounds = parse_bounds(system, text, order);
+  return bounds ? sides_between(system, *bounds) : std::nullopt;
+}
+
+std::optional<WindowSides> parse_window_around(const MapSystem& system, std::string_view text,
+                                               AxisOrder order) {
+  auto bounds = parse_bounds(system, text, order);
+  if (!bounds) return std::nullopt;
+  if (system.is_in_degrees) {
+    if (std::abs(bounds->south) > 90 || std::abs(bounds->north) > 90) return std::nullopt;
+    if (bounds->west > bounds->east) bounds->east += 360;
+  }
+  return sides_between(system, *bounds);
 }
 
 std::optional<int> parse_pixels(std::string_view text) {
@@ -208,13 +242,14 @@ std::optional<int> parse_pixels(std::string_view text) {
   return is_one ? std::optional(pixels) : std::nullopt;
 }
 
-Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale) {
+Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, int scale,
+                      Projection projection) {
   const auto size = size_of(sides, request);
   if (!size) return size.problem();
   const int width = size->width * scale;
   const int height = size->height * scale;
   if (std::max(width, height) > kMaxPicturePixels) return too_large();
-  const auto view = view_of_window(sides, width, height);
+  const auto view = view_of_window(sides, width, height, projection);
   const std::string* box = request.find("bbox");
   if (!view) return bad_window(box == nullptr ? std::string() : *box);
   return *view;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/grid/web_mercator.h"
 #include "server/base/json_text.h"
@@ -12,7 +15,7 @@
 #include "server/documents/ogc_map.h"
 #include "server/documents/openapi.h"
 #include "server/documents/routes.h"
-#include "server/documents/tile_matrix_set.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
@@ -58,11 +61,6 @@ Json link(std::string_view relation, std::string_view type, std::string_view tit
 
 Problem nothing_here() {
   return {404, "There is nothing here. The beginning is /ogc."};
-}
-
-Problem unknown_matrix_set(const std::string& name) {
-  return {404, "There is no such tile matrix set.", "tileMatrixSet", name,
-          std::string(kTileMatrixSet)};
 }
 
 /// A resource below /ogc that has tiles: one collection, or the dataset with all or some of them.
@@ -116,8 +114,8 @@ std::string tiles_url(const DocumentRequest& request, const TiledResource& resou
   return fmt::format("{}/ogc{}/map/tiles", request.base_url, resource.path);
 }
 
-std::string matrix_set_url(const DocumentRequest& request) {
-  return fmt::format("{}/ogc/tileMatrixSets/{}", request.base_url, kTileMatrixSet);
+std::string matrix_set_url(const TileMatrixSet& set, const DocumentRequest& request) {
+  return fmt::format("{}/ogc/tileMatrixSets/{}", request.base_url, set.id);
 }
 
 Json landing_page(const DocumentRequest& request) {
@@ -152,9 +150,13 @@ Json collection_json(const ServedLayer& served, const DocumentRequest& request) 
   if (!config.attribution.empty()) json["attribution"] = config.attribution;
   const Box& box = served.layer->bounds();
   const GeographicBounds bounds = box.is_empty() ? kWorldBounds : bounds_in_degrees(box);
-  json["extent"] = {{"spatial", {{"bbox", Json::array({Json(bounds)})}, {"crs", kDegreesCrsUri}}}};
+  json["extent"] = {{"spatial", {{"bbox", Json::array({Json(bounds)})}, {"crs", crs84()->uri}}}};
   json["dataType"] = "map";
-  json["crs"] = Json::array({kTileCrsUri});
+  json["crs"] = Json::array();
+  for (const MapSystemPtr& system : map_systems_of(request.dataset, config.name)) {
+    json["crs"].push_back(system->uri);
+  }
+  json["storageCrs"] = web_mercator()->uri;
   json["links"] =
       Json::array({link("self", kJsonType, "This layer", url),
                    link(kMapRelation, kPngType, "A map", url + "/map"),
@@ -172,11 +174,37 @@ Json collections_json(const DocumentRequest& request) {
 }
 
 /// What the list of tilesets and the tileset itself both say.
-Json tileset_head(const LayerSummary& summary) {
-  return {{"title", summary.title},
-          {"dataType", "map"},
-          {"crs", kTileCrsUri},
-          {"tileMatrixSetURI", kTileMatrixSetUri}};
+Json tileset_head(const LayerSummary& summary, const TileMatrixSet& set) {
+  Json json = {{"title", summary.title}, {"dataType", "map"}, {"crs", set.system->uri}};
+  if (!set.uri.empty()) json["tileMatrixSetURI"] = set.uri;
+  return json;
+}
+
+/// The matrices at whose scales some layer is drawn.
+std::vector<std::size_t> matrices_of(const LayerSummary& summary, const TileMatrixSet& set) {
+  std::vector<std::size_t> matrices;
+  for (std::size_t i = 0; i < set.matrices.size(); ++i) {
+    const double zoom = set.matrices[i].zoom();
+    if (zoom >= summary.min_zoom && std::floor(zoom) <= summary.max_zoom) matrices.push_back(i);
+  }
+  return matrices;
+}
+
+/// Those that have tiles of all layers.
+std::vector<TileMatrixSetPtr> sets_of(const TiledResource& resource,
+                                      const DocumentRequest& request) {
+  std::vector<TileMatrixSetPtr> sets = request.sets.of(request.dataset);
+  std::erase_if(sets, [&](const TileMatrixSetPtr& set) {
+    return std::ranges::any_of(resource.layers, [&](const std::string& layer) {
+      return served_in(request.dataset, layer, *set->system) == nullptr;
+    });
+  });
+  return sets;
+}
+
+TileMatrixSetPtr find_set(const std::string& id, std::span<const TileMatrixSetPtr> sets) {
+  const auto found = std::ranges::find(sets, id, &TileMatrixSet::id);
+  return found == sets.end() ? nullptr : *found;
 }
 
 Result<Json> tilesets_json(const TiledResource& resource, const DocumentRequest& request) {
@@ -185,103 +213,139 @@ Result<Json> tilesets_json(const TiledResource& resource, const DocumentRequest&
   const auto query = query_of(resource, request);
   if (!query) return query.problem();
   const std::string url = tiles_url(request, resource);
-  const std::string tileset_url = fmt::format("{}/{}{}", url, kTileMatrixSet, *query);
-  Json tileset = tileset_head(*summary);
-  tileset["links"] = Json::array(
-      {link("self", kJsonType, "The tileset", tileset_url),
-       link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request))});
+  Json tilesets = Json::array();
+  for (const TileMatrixSetPtr& set : sets_of(resource, request)) {
+    if (matrices_of(*summary, *set).empty()) continue;
+    const std::string tileset_url = fmt::format("{}/{}{}", url, set->id, *query);
+    Json tileset = tileset_head(*summary, *set);
+    tileset["links"] = Json::array(
+        {link("self", kJsonType, "The tileset", tileset_url),
+         link(kTilingSchemeRelation, kJsonType, set->title, matrix_set_url(*set, request))});
+    tilesets.push_back(std::move(tileset));
+  }
   const Json self = link("self", kJsonType, "This document", url + *query);
-  return Json{{"links", Json::array({self})}, {"tilesets", Json::array({tileset})}};
+  return Json{{"links", Json::array({self})}, {"tilesets", std::move(tilesets)}};
 }
 
 Json bounding_box(const GeographicBounds& bounds) {
   return {{"lowerLeft", {bounds[0], bounds[1]}},
           {"upperRight", {bounds[2], bounds[3]}},
-          {"crs", kDegreesCrsUri}};
+          {"crs", crs84()->uri}};
 }
 
 /// Of the zooms only: where rows or columns are limited, GDAL 3.6, which is that of Debian 12,
 /// stretches the tiles, or finds none.
-Json limits_json(const LayerSummary& summary) {
+Json limits_json(const LayerSummary& summary, const TileMatrixSet& set) {
   Json limits = Json::array();
-  for (int zoom = summary.min_zoom; zoom <= summary.max_zoom; ++zoom) {
-    const int last = (1 << zoom) - 1;
-    limits.push_back({{"tileMatrix", std::to_string(zoom)},
+  for (const std::size_t i : matrices_of(summary, set)) {
+    const TileMatrix& matrix = set.matrices[i];
+    limits.push_back({{"tileMatrix", matrix.id},
                       {"minTileRow", 0},
-                      {"maxTileRow", last},
+                      {"maxTileRow", matrix.height - 1},
                       {"minTileCol", 0},
-                      {"maxTileCol", last}});
+                      {"maxTileCol", matrix.width - 1}});
   }
   return limits;
 }
 
 Result<Json> tileset_json(const TiledResource& resource, const std::string& matrix_set,
                           const DocumentRequest& request) {
-  if (matrix_set != kTileMatrixSet) return unknown_matrix_set(matrix_set);
+  const std::vector<TileMatrixSetPtr> sets = sets_of(resource, request);
+  const TileMatrixSetPtr set = find_set(matrix_set, sets);
+  if (set == nullptr) return unknown_tile_matrix_set(matrix_set, names_of(sets));
   const auto summarized = summarize_layers(resource.layers, request.dataset);
   if (!summarized) return summarized.problem();
   const auto query = query_of(resource, request);
   if (!query) return query.problem();
   const auto& summary = *summarized;
-  const std::string url = fmt::format("{}/{}", tiles_url(request, resource), kTileMatrixSet);
-  Json json = tileset_head(summary);
+  const std::string url = fmt::format("{}/{}", tiles_url(request, resource), set->id);
+  Json json = tileset_head(summary, *set);
   if (!summary.description.empty()) json["description"] = summary.description;
   if (!summary.attribution.empty()) json["attribution"] = summary.attribution;
   json["boundingBox"] = bounding_box(summary.bounds());
-  json["tileMatrixSetLimits"] = limits_json(summary);
+  json["tileMatrixSetLimits"] = limits_json(summary, *set);
   Json item =
       link("item", kPngType, "The tiles", url + "/{tileMatrix}/{tileRow}/{tileCol}" + *query);
   item["templated"] = true;
   json["links"] = Json::array(
       {link("self", kJsonType, "This document", url + *query),
-       link(kTilingSchemeRelation, kJsonType, kTileMatrixSetTitle, matrix_set_url(request)), item});
+       link(kTilingSchemeRelation, kJsonType, set->title, matrix_set_url(*set, request)), item});
   return json;
 }
 
 Json matrix_sets_json(const DocumentRequest& request) {
-  const std::string url = matrix_set_url(request);
-  const Json set = {{"id", kTileMatrixSet},
-                    {"title", kTileMatrixSetTitle},
-                    {"uri", kTileMatrixSetUri},
-                    {"crs", kTileCrsUri},
-                    {"links", Json::array({link("self", kJsonType, kTileMatrixSetTitle, url)})}};
-  return {{"tileMatrixSets", Json::array({set})}};
+  Json sets = Json::array();
+  for (const TileMatrixSetPtr& set : request.sets.of(request.dataset)) {
+    Json json = {{"id", set->id}, {"title", set->title}, {"crs", set->system->uri}};
+    if (!set->uri.empty()) json["uri"] = set->uri;
+    json["links"] =
+        Json::array({link("self", kJsonType, set->title, matrix_set_url(*set, request))});
+    sets.push_back(std::move(json));
+  }
+  return {{"tileMatrixSets", std::move(sets)}};
+}
+
+/// Of a place in the order of axes of the reference system.
+Json place_json(const MapSystem& system, double x, double y) {
+  return system.is_north_first ? Json{y, x} : Json{x, y};
+}
+
+/// Of both axes, in the same order.
+Json axes_json(const MapSystem& system) {
+  if (system.is_in_degrees) return system.is_north_first ? Json{"Lat", "Lon"} : Json{"Lon", "Lat"};
+  return system.is_north_first ? Json{"Y", "X"} : Json{"X", "Y"};
+}
+
+/// Around the first of the matrices.
+Json matrix_set_box(const TileMatrixSet& set) {
+  const TileMatrix& first = set.matrices.front();
+  const double width = first.cell_size * first.tile_width * first.width;
+  const double height = first.cell_size * first.tile_height * first.height;
+  const MapSystem& system = *set.system;
+  const double south = first.is_from_south ? first.origin_y : first.origin_y - height;
+  return {{"lowerLeft", place_json(system, first.west, south)},
+          {"upperRight", place_json(system, first.west + width, south + height)},
+          {"crs", system.uri},
+          {"orderedAxes", axes_json(system)}};
 }
 
 /// In the terms of version 2 of the standard. What version 1 called otherwise is there under its
 /// old name too: GDAL 3.6, which is that of Debian 12, knows no other.
-Json matrix_set_json(const DocumentRequest& request) {
-  const Json north_west = {-kMercatorHalfSide, kMercatorHalfSide};
+Json matrix_set_json(const TileMatrixSet& set, const DocumentRequest& request) {
   Json matrices = Json::array();
-  for (int zoom = 0; zoom <= kMaxZoom; ++zoom) {
-    matrices.push_back({{"id", std::to_string(zoom)},
-                        {"identifier", std::to_string(zoom)},
-                        {"scaleDenominator", scale_denominator(zoom)},
-                        {"cellSize", cell_size(zoom)},
-                        {"cornerOfOrigin", "topLeft"},
-                        {"pointOfOrigin", north_west},
-                        {"topLeftCorner", north_west},
-                        {"tileWidth", kTilePixels},
-                        {"tileHeight", kTilePixels},
-                        {"matrixWidth", 1 << zoom},
-                        {"matrixHeight", 1 << zoom}});
+  for (const TileMatrix& matrix : set.matrices) {
+    const Json origin = place_json(*set.system, matrix.west, matrix.origin_y);
+    matrices.push_back({{"id", matrix.id},
+                        {"identifier", matrix.id},
+                        {"scaleDenominator", matrix.scale_denominator},
+                        {"cellSize", matrix.cell_size},
+                        {"cornerOfOrigin", matrix.is_from_south ? "bottomLeft" : "topLeft"},
+                        {"pointOfOrigin", origin},
+                        {"tileWidth", matrix.tile_width},
+                        {"tileHeight", matrix.tile_height},
+                        {"matrixWidth", matrix.width},
+                        {"matrixHeight", matrix.height}});
+    if (!matrix.is_from_south) matrices.back()["topLeftCorner"] = origin;
   }
   Json json;
-  json["id"] = kTileMatrixSet;
-  json["title"] = kTileMatrixSetTitle;
-  json["uri"] = kTileMatrixSetUri;
-  json["crs"] = kTileCrsUri;
-  json["supportedCRS"] = kTileCrsUri;
-  json["orderedAxes"] = {"X", "Y"};
-  json["boundingBox"] = {{"lowerLeft", {-kMercatorHalfSide, -kMercatorHalfSide}},
-                         {"upperRight", {kMercatorHalfSide, kMercatorHalfSide}},
-                         {"crs", kTileCrsUri},
-                         {"orderedAxes", {"X", "Y"}}};
-  json["wellKnownScaleSet"] = kTileScaleSetUri;
+  json["id"] = set.id;
+  json["title"] = set.title;
+  if (!set.uri.empty()) json["uri"] = set.uri;
+  json["crs"] = set.system->uri;
+  json["supportedCRS"] = set.system->uri;
+  json["orderedAxes"] = axes_json(*set.system);
+  json["boundingBox"] = matrix_set_box(set);
+  if (!set.scale_set.empty()) json["wellKnownScaleSet"] = set.scale_set;
   json["tileMatrices"] = matrices;
-  json["links"] =
-      Json::array({link("self", kJsonType, kTileMatrixSetTitle, matrix_set_url(request))});
+  json["links"] = Json::array({link("self", kJsonType, set.title, matrix_set_url(set, request))});
   return json;
+}
+
+Result<Json> matrix_set_of(const std::string& id, const DocumentRequest& request) {
+  const std::vector<TileMatrixSetPtr> sets = request.sets.of(request.dataset);
+  const TileMatrixSetPtr set = find_set(id, sets);
+  if (set == nullptr) return unknown_tile_matrix_set(id, names_of(sets));
+  return matrix_set_json(*set, request);
 }
 
 std::span<const std::string> whole_path(const DocumentRequest& request) {
@@ -349,8 +413,7 @@ Result<Json> find_json(const Route& route, const DocumentRequest& request) {
     case RouteId::matrix_sets:
       return matrix_sets_json(request);
     case RouteId::matrix_set:
-      if (path[1] != kTileMatrixSet) return unknown_matrix_set(path[1]);
-      return matrix_set_json(request);
+      return matrix_set_of(path[1], request);
     default:
       return nothing_here();
   }
@@ -367,10 +430,12 @@ Result<TileRequest> tile_of(std::span<const std::string> path, const DocumentReq
   auto resource = tiled_resource(path, request);
   if (!resource) return std::move(resource).problem();
   const auto numbers = path.last(4);  // tile matrix set, tile matrix, row, column
-  if (numbers[0] != kTileMatrixSet) return unknown_matrix_set(numbers[0]);
-  const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2]);
+  const std::vector<TileMatrixSetPtr> sets = sets_of(*resource, request);
+  const TileMatrixSetPtr set = find_set(numbers[0], sets);
+  if (set == nullptr) return unknown_tile_matrix_set(numbers[0], names_of(sets));
+  const auto tile = parse_tile_id(numbers[1], numbers[3], numbers[2], *set);
   if (!tile) return tile.problem();
-  TileRequest parsed{std::move(resource->layers), *tile, 1, {}};
+  TileRequest parsed{std::move(resource->layers), *tile, 1, {}, TileFormat::png, set};
   auto style = request.style_for(parsed.layers, kOwnParameters);
   if (!style) return std::move(style).problem();
   parsed.style = *std::move(style);
@@ -384,7 +449,7 @@ Result<Document> ogc_document(const DocumentRequest& request) {
   const Route* route = route_of(request);
   if (route == nullptr) return nothing_here();
   if (route->id == RouteId::api) {
-    return Document{std::string(kOpenApiType), openapi_json(request.base_url)};
+    return Document{std::string(kOpenApiType), openapi_json(request)};
   }
   const auto json = find_json(*route, request);
   if (!json) return json.problem();

@@ -8,51 +8,93 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/source/target_grid.h"
 #include "render/picture/webp.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/map_picture.h"
-#include "server/documents/tile_matrix_set.h"
 #include "server/tiles/map_window.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
 
 constexpr std::array<std::string_view, 9> kOwnParameters = {
     "bbox", "bbox-crs", "bgcolor", "collections", "crs", "f", "height", "transparent", "width"};
-constexpr std::array<std::string_view, 3> kMetres = {kTileCrsUri, "[EPSG:3857]", "EPSG:3857"};
-constexpr std::array<std::string_view, 2> kDegrees = {kDegreesCrsUri, "[OGC:CRS84]"};
-
-bool is_one_of(std::span<const std::string_view> names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
 
 Problem bad_value(std::string_view parameter, const std::string& value, const std::string& takes) {
   return {400, fmt::format("The parameter {} takes {}.", parameter, takes), std::string(parameter),
           value, takes};
 }
 
+/// What a parameter names, or what holds without it.
+Result<MapSystemPtr> system_of(const DocumentRequest& request, std::string_view parameter,
+                               const MapSystemPtr& usual) {
+  const std::string* name = request.find(parameter);
+  if (name == nullptr) return usual;
+  if (auto system = find_map_system(*name, request.dataset)) return system;
+  return bad_value(parameter, *name, uris_of(map_systems_of(request.dataset)));
+}
+
 /// Of all layers together.
-Result<WindowSides> sides_of_layers(const std::vector<std::string>& layers,
+Result<WindowSides> sides_of_layers(const std::vector<std::string>& layers, const MapSystem& system,
                                     const DocumentRequest& request) {
   const auto summary = summarize_layers(layers, request.dataset);
   if (!summary) return summary.problem();
-  const Box& box = summary->box;
+  Box box = summary->box;
+  if (!system.grid.empty()) {
+    box = Box{};
+    for (const std::string& layer : layers) {
+      const ServedLayer* served = served_in(request.dataset, layer, system);
+      if (served == nullptr) return not_built(layer, system, request.dataset);
+      box.include(served->layer->bounds());
+    }
+  }
   const bool has_size = !box.is_empty() && box.min_x < box.max_x && box.min_y < box.max_y;
   const Box some = has_size ? box : Box{kGridMin, kGridMin, kGridMax, kGridMax};
-  return WindowSides{static_cast<double>(some.min_x), static_cast<double>(some.min_y),
-                     static_cast<double>(some.max_x), static_cast<double>(some.max_y)};
+  return system.sides_of(system.bounds_of(some));
 }
 
-Result<WindowSides> sides_of(const std::vector<std::string>& layers,
-                             const DocumentRequest& request) {
-  const std::string* crs = request.find("bbox-crs");
-  const bool is_in_metres = crs != nullptr && is_one_of(kMetres, *crs);
-  if (crs != nullptr && !is_in_metres && !is_one_of(kDegrees, *crs)) {
-    return bad_value("bbox-crs", *crs, fmt::format("{} or {}", kDegreesCrsUri, kTileCrsUri));
+/// Around a box in degrees; nothing if a part of it has no place on the plane.
+std::optional<WindowSides> sides_on_plane(const MapSystem& degrees, const WindowSides& box,
+                                          const MapSystem& system) {
+  constexpr int kSamples = 64;
+  const GridPosition from = degrees.units_from(box.west, box.south);
+  const GridPosition to = degrees.units_from(box.east, box.north);
+  std::vector<double> x;
+  std::vector<double> y;
+  for (int i = 0; i <= kSamples; ++i) {
+    for (int j = 0; j <= kSamples; ++j) {
+      x.push_back(from.x + (to.x - from.x) * i / kSamples);
+      y.push_back(from.y + (to.y - from.y) * j / kSamples);
+    }
   }
+  GridTransform transform(*find_target_grid(system.grid));
+  if (!transform.to_cells(x, y)) return std::nullopt;
+  const auto [west, east] = std::ranges::minmax(x);
+  const auto [north, south] = std::ranges::minmax(y);
+  return WindowSides{west, north, east, south};
+}
+
+Result<WindowSides> sides_of(const std::vector<std::string>& layers, const MapSystem& system,
+                             const DocumentRequest& request) {
+  const auto of_box = system_of(request, "bbox-crs", crs84());
+  if (!of_box) return of_box.problem();
   const std::string* text = request.find("bbox");
-  if (text == nullptr) return sides_of_layers(layers, request);
-  const auto sides = is_in_metres ? parse_window_in_metres(*text) : parse_window_in_degrees(*text);
+  if (text == nullptr) return sides_of_layers(layers, system, request);
+  const bool is_other_plane = (*of_box)->grid != system.grid;
+  if (is_other_plane && !(*of_box)->is_in_degrees) {
+    return Problem{
+        400,
+        fmt::format("A box of a map in {0} is in degrees, or in {0} as well: bbox-crs={1}.",
+                    system.name, system.uri),
+        "bbox-crs", (*of_box)->uri, system.uri};
+  }
+  auto sides = parse_window_around(**of_box, *text, AxisOrder::of_authority);
+  if (sides && is_other_plane) {
+    sides = sides_on_plane(**of_box, *sides, system);
+  } else if (sides) {
+    sides = sides_in(system.projection, *sides, (*of_box)->projection);
+  }
   if (!sides) {
     return bad_value("bbox", *text,
                      "west, south, east and north, separated by commas, in degrees or as bbox-crs "
@@ -88,14 +130,13 @@ Result<std::vector<QueryPair>> background_of(const DocumentRequest& request) {
 
 Result<WindowRequest> parse_ogc_map(const std::vector<std::string>& layers,
                                     const DocumentRequest& request) {
-  if (const std::string* crs = request.find("crs"); crs != nullptr && !is_one_of(kMetres, *crs)) {
-    return bad_value("crs", *crs, std::string(kTileCrsUri));
-  }
+  const auto system = system_of(request, "crs", web_mercator());
+  if (!system) return system.problem();
   const auto format = format_of(request);
   if (!format) return format.problem();
-  const auto sides = sides_of(layers, request);
+  const auto sides = sides_of(layers, **system, request);
   if (!sides) return sides.problem();
-  const auto view = map_view(*sides, request);
+  const auto view = map_view(*sides, request, 1, (*system)->projection);
   if (!view) return view.problem();
   const auto background = background_of(request);
   if (!background) return background.problem();
@@ -105,7 +146,7 @@ Result<WindowRequest> parse_ogc_map(const std::vector<std::string>& layers,
   }
   auto style = styled.style_for(layers, kOwnParameters);
   if (!style) return std::move(style).problem();
-  return WindowRequest{layers, *view, 1, *std::move(style), *format, "map"};
+  return WindowRequest{layers, *view, 1, *std::move(style), *format, "map", *system};
 }
 
 }  // namespace trapeze

@@ -11,8 +11,8 @@
 #include "server/base/build_id.h"
 #include "server/base/json_text.h"
 #include "server/documents/routes.h"
-#include "server/documents/tile_matrix_set.h"
 #include "server/styles/style_parameters.h"
+#include "server/tiles/tile_matrix_set.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
@@ -91,8 +91,26 @@ Json zoom_schema() {
   return {{"type", "integer"}, {"minimum", 0}, {"maximum", kMaxZoom}};
 }
 
+Json ids_of_sets(const DocumentRequest& request) {
+  Json ids = Json::array();
+  for (const TileMatrixSetPtr& set : request.sets.of(request.dataset)) ids.push_back(set->id);
+  return ids;
+}
+
+Json names_of_systems(const DocumentRequest& request) {
+  Json names = Json::array();
+  for (const MapSystemPtr& system : map_systems_of(request.dataset)) names.push_back(system->name);
+  return names;
+}
+
+Json uris_of_systems(const DocumentRequest& request) {
+  Json uris = Json::array();
+  for (const MapSystemPtr& system : map_systems_of(request.dataset)) uris.push_back(system->uri);
+  return uris;
+}
+
 /// All that paths refer to, by the names that reference() takes.
-Json components_json() {
+Json components_json(const DocumentRequest& request) {
   Json parameters;
   for (const StyleParameter& parameter : style_parameters()) {
     parameters[std::string(parameter.name)] = parameter_json(parameter);
@@ -109,10 +127,10 @@ Json components_json() {
   parameters["path-y"] = path_parameter("y", "Row, from the north", index_schema());
   parameters["path-collectionId"] =
       path_parameter("collectionId", "Name of a layer", {{"type", "string"}});
-  parameters["path-tileMatrixSetId"] =
-      path_parameter("tileMatrixSetId", "Tile matrix set",
-                     {{"type", "string"}, {"enum", Json::array({kTileMatrixSet})}});
-  parameters["path-tileMatrix"] = path_parameter("tileMatrix", "Zoom", zoom_schema());
+  parameters["path-tileMatrixSetId"] = path_parameter(
+      "tileMatrixSetId", "Tile matrix set", {{"type", "string"}, {"enum", ids_of_sets(request)}});
+  parameters["path-tileMatrix"] =
+      path_parameter("tileMatrix", "Matrix of the set", {{"type", "string"}});
   parameters["path-tileRow"] = path_parameter("tileRow", "Row, from the north", index_schema());
   parameters["path-tileCol"] = path_parameter("tileCol", "Column, from the west", index_schema());
   for (const auto& [name, words] :
@@ -157,8 +175,10 @@ Json components_json() {
   parameters["window-crs"] = {
       {"name", "crs"},
       {"in", "query"},
-      {"description", "What bbox is in, if not in degrees: metres of EPSG:3857"},
-      {"schema", {{"type", "string"}, {"enum", Json::array({"EPSG:3857"})}}}};
+      {"description",
+       "The reference system of the map and of bbox, eastings first; without it the map is in "
+       "EPSG:3857 and bbox in degrees"},
+      {"schema", {{"type", "string"}, {"enum", names_of_systems(request)}}}};
   parameters["map-bbox"] = {
       {"name", "bbox"},
       {"in", "query"},
@@ -171,12 +191,12 @@ Json components_json() {
       {"name", "bbox-crs"},
       {"in", "query"},
       {"description", "What bbox is in"},
-      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", {kDegreesCrsUri, kTileCrsUri}}}}};
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", uris_of_systems(request)}}}};
   parameters["map-crs"] = {
       {"name", "crs"},
       {"in", "query"},
       {"description", "The reference system of the map"},
-      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", Json::array({kTileCrsUri})}}}};
+      {"schema", {{"type", "string"}, {"format", "uri"}, {"enum", uris_of_systems(request)}}}};
   parameters["bgcolor"] = {{"name", "bgcolor"},
                            {"in", "query"},
                            {"description", "The background, such as 0xFFFFFF"},
@@ -351,7 +371,7 @@ Json post_json(const Route& route) {
 
 }  // namespace
 
-std::string openapi_json(const std::string& base_url) {
+std::string openapi_json(const DocumentRequest& request) {
   Json paths;
   for (const Route& route : routes()) {
     if (route.operation.empty()) continue;
@@ -368,9 +388,9 @@ std::string openapi_json(const std::string& base_url) {
                   {"version", version()},
                   {"description", "Maps of polygons as tiles, simplified while they are drawn"},
                   {"license", {{"name", "MIT"}}}};
-  json["servers"] = Json::array({{{"url", base_url}}});
+  json["servers"] = Json::array({{{"url", request.base_url}}});
   json["paths"] = paths;
-  json["components"] = components_json();
+  json["components"] = components_json(request);
   return to_text(json);
 }
 

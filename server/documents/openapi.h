@@ -3,9 +3,11 @@
 
 #include <string>
 
+#include "server/documents/document.h"
+
 namespace trapeze {
 
-/// JSON. `base_url` is how this server is reached, without a '/' at the end.
-std::string openapi_json(const std::string& base_url);
+/// JSON, with the tile matrix sets and reference systems of the dataset.
+std::string openapi_json(const DocumentRequest& request);
 
 }  // namespace trapeze

@@ -24,6 +24,8 @@ constexpr std::array kRoutes = {
           "A tile of 256 pixels, as WebP", kWebp, true},
     Route{RouteId::styled_tile, "/tiles/{layers}/s/{style}/{z}/{x}/{y}.png", "getStyledTile",
           "A tile in a style of the configuration, or one that was posted", kPng},
+    Route{RouteId::tile, "/tiles/{layers}/{tileMatrixSetId}/{z}/{x}/{y}.png", "getTileOfSet",
+          "A tile of a tile matrix set", kPng, true},
     Route{RouteId::tile_json_at_2x, "/tiles/{layers}@2x.json", "getTileJson2x",
           "TileJSON 3.0 of the tiles of 512 pixels", kJson, true},
     Route{RouteId::tile_json, "/tiles/{layers}.json", "getTileJson", "TileJSON 3.0 of layers",

@@ -16,7 +16,7 @@
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/legend.h"
-#include "server/documents/tile_matrix_set.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
@@ -36,6 +36,10 @@ constexpr std::string_view kHead111 =
 )";
 
 constexpr double kMetresPerPixel = 0.00028;  // that the OGC takes pixels for
+
+double scale_denominator_of(int zoom) {
+  return web_mercator_quad()->matrices[static_cast<std::size_t>(zoom)].scale_denominator;
+}
 
 /// Writes the document in one of the versions, which differ in names and in little else.
 class CapabilitiesWriter {
@@ -117,16 +121,23 @@ class CapabilitiesWriter {
 
   void add_layers() {
     xml_ += "    <Layer>\n      <Title>Trapeze</Title>\n";
-    for (const std::string_view name : kMercatorNames) {
-      xml_ += fmt::format("      <{0}>{1}</{0}>\n", crs_element(), name);
+    for (const MapSystemPtr& system : usual_map_systems()) {
+      add_system(system->name);
+      if (system != web_mercator()) continue;
+      for (const std::string& name : system->other_names) add_system(name);
     }
     Box all;
     for (const ServedLayer& served : request_.dataset.layers()) {
       if (!served.layer->bounds().is_empty()) all.include(served.layer->bounds());
     }
     add_bounds(all, "      ");
+    for (const MapSystemPtr& system : usual_map_systems()) add_bounds_in(*system, all, "      ");
     for (const ServedLayer& served : request_.dataset.layers()) add_layer(served);
     xml_ += "    </Layer>\n";
+  }
+
+  void add_system(std::string_view name) {
+    xml_ += fmt::format("      <{0}>{1}</{0}>\n", crs_element(), name);
   }
 
   std::string_view crs_element() const { return is_new_ ? "CRS" : "SRS"; }
@@ -146,12 +157,20 @@ class CapabilitiesWriter {
                 : fmt::format(
                       "{}<LatLonBoundingBox minx=\"{}\" miny=\"{}\" maxx=\"{}\" maxy=\"{}\"/>\n",
                       indent, west, south, east, north);
-    const GridPosition from = metres_from_grid(some.min_x, some.max_y);
-    const GridPosition to = metres_from_grid(some.max_x, some.min_y);
+  }
+
+  /// In the order of axes that GetMap of the version has.
+  void add_bounds_in(const MapSystem& system, const Box& box, std::string_view indent) {
+    const Box some = box.is_empty() ? Box{kGridMin, kGridMin, kGridMax, kGridMax} : box;
+    SystemBounds bounds = system.bounds_of(some);
+    if (is_new_ && system.is_north_first) {
+      bounds = {bounds.south, bounds.west, bounds.north, bounds.east};
+    }
     xml_ += fmt::format(
-        "{}<BoundingBox {}=\"{}\" minx=\"{:.3f}\" miny=\"{:.3f}\" maxx=\"{:.3f}\" "
-        "maxy=\"{:.3f}\"/>\n",
-        indent, crs_element(), kMercatorNames.front(), from.x, from.y, to.x, to.y);
+        "{0}<BoundingBox {1}=\"{2}\" minx=\"{3:.{7}f}\" miny=\"{4:.{7}f}\" "
+        "maxx=\"{5:.{7}f}\" maxy=\"{6:.{7}f}\"/>\n",
+        indent, crs_element(), system.name, bounds.west, bounds.south, bounds.east, bounds.north,
+        system.is_in_degrees ? 8 : 3);
   }
 
   void add_layer(const ServedLayer& served) {
@@ -161,7 +180,16 @@ class CapabilitiesWriter {
     if (!config.description.empty()) {
       xml_ += fmt::format("        <Abstract>{}</Abstract>\n", xml_escape(config.description));
     }
+    // What all layers are drawn in stands above them.
+    const auto systems = map_systems_of(request_.dataset, config.name);
+    for (const MapSystemPtr& system : systems) {
+      if (!system->grid.empty()) add_system(system->name);
+    }
     add_bounds(served.layer->bounds(), "        ");
+    for (const MapSystemPtr& system : systems) {
+      const ServedLayer* there = served_in(request_.dataset, config.name, *system);
+      if (there != nullptr) add_bounds_in(*system, there->layer->bounds(), "        ");
+    }
     if (!config.attribution.empty()) {
       xml_ += fmt::format("        <Attribution><Title>{}</Title></Attribution>\n",
                           xml_escape(config.attribution));
@@ -198,8 +226,8 @@ class CapabilitiesWriter {
   void add_scales(const LayerConfig& config) {
     const bool has_least = config.max_zoom < kMaxZoom;
     const bool has_most = config.min_zoom > 0;
-    const double least = has_least ? scale_denominator(config.max_zoom + 1) : 0;
-    const double most = scale_denominator(config.min_zoom);
+    const double least = has_least ? scale_denominator_of(config.max_zoom + 1) : 0;
+    const double most = scale_denominator_of(config.min_zoom);
     if (is_new_) {
       if (has_least)
         xml_ += fmt::format("        <MinScaleDenominator>{}</MinScaleDenominator>\n", least);

@@ -212,19 +212,34 @@ Result<double> scale_of(const KeyValuePairs& pairs) {
   return *dpi / kUsualDpi;
 }
 
-std::optional<Problem> check_reference_system(const KeyValuePairs& pairs, WmsVersion version) {
+Result<MapSystemPtr> system_in(const KeyValuePairs& pairs, WmsVersion version,
+                               std::span<const std::string> layers, const Dataset& dataset) {
   const bool is_new = version == WmsVersion::v1_3_0;
   const std::string_view key = is_new ? "CRS" : "SRS";
   const auto& name = pairs[key];
-  const std::string takes = fmt::format("{}", fmt::join(kMercatorNames, ", "));
+  const char* code = is_new ? ows::kInvalidCrs : ows::kInvalidSrs;
+  const std::string takes = names_of(map_systems_of(dataset));
   if (!name || name->empty()) return missing(key, takes);
-  if (std::ranges::any_of(kMercatorNames,
-                          [&](std::string_view known) { return is_equal(known, *name); })) {
-    return std::nullopt;
+  const MapSystemPtr system = find_map_system(*name, dataset);
+  if (system == nullptr) {
+    return ows_problem(400, code, key,
+                       fmt::format("Maps are in {} here, and in no other system.", takes), *name);
   }
-  return ows_problem(
-      400, is_new ? ows::kInvalidCrs : ows::kInvalidSrs, key,
-      fmt::format("Maps are in {} here, which is one system under several names.", takes), *name);
+  for (const std::string& layer : layers) {
+    if (served_in(dataset, layer, *system) != nullptr) continue;
+    return ows_problem(400, code, key, not_built(layer, *system, dataset).detail, *name);
+  }
+  return system;
+}
+
+/// What BBOX takes.
+std::string words_of_box(const MapSystem& system, AxisOrder order) {
+  const bool is_north_first = order == AxisOrder::of_authority && system.is_north_first;
+  return fmt::format(
+      "{} in {}, separated by commas, the west less than the east and the south less "
+      "than the north",
+      is_north_first ? "south, west, north and east" : "west, south, east and north",
+      system.is_in_degrees ? "degrees" : "metres");
 }
 
 Result<int> pixels_in(const KeyValuePairs& pairs, std::string_view key) {
@@ -234,18 +249,19 @@ Result<int> pixels_in(const KeyValuePairs& pairs, std::string_view key) {
   return invalid(key, takes, *pairs[key]);
 }
 
-Result<View> view_of(const KeyValuePairs& pairs) {
-  constexpr std::string_view kTakes =
-      "west, south, east and north in metres, separated by commas, the west less than the east and "
-      "the south less than the north";
-  if (!pairs.has("BBOX")) return missing("BBOX", kTakes);
+Result<View> view_of(const KeyValuePairs& pairs, const MapSystem& system, WmsVersion version) {
+  const AxisOrder order =
+      version == WmsVersion::v1_3_0 ? AxisOrder::of_authority : AxisOrder::east_first;
+  const std::string takes = words_of_box(system, order);
+  if (!pairs.has("BBOX")) return missing("BBOX", takes);
   const auto width = pixels_in(pairs, "WIDTH");
   if (!width) return width.problem();
   const auto height = pixels_in(pairs, "HEIGHT");
   if (!height) return height.problem();
-  const auto sides = parse_window_in_metres(*pairs["BBOX"]);
-  const auto view = sides ? view_of_window(*sides, *width, *height) : std::nullopt;
-  if (!view) return invalid("BBOX", kTakes, *pairs["BBOX"]);
+  const auto sides = parse_window_in(system, *pairs["BBOX"], order);
+  const auto view =
+      sides ? view_of_window(*sides, *width, *height, system.projection) : std::nullopt;
+  if (!view) return invalid("BBOX", takes, *pairs["BBOX"]);
   return *view;
 }
 
@@ -258,8 +274,9 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   }
   auto layers = layers_in(pairs, "LAYERS", request.dataset);
   if (!layers) return std::move(layers).problem();
-  if (auto problem = check_reference_system(pairs, version_of(pairs))) return std::move(*problem);
-  const auto view = view_of(pairs);
+  const auto system = system_in(pairs, version_of(pairs), *layers, request.dataset);
+  if (!system) return system.problem();
+  const auto view = view_of(pairs, **system, version_of(pairs));
   if (!view) return view.problem();
   const auto scale = scale_of(pairs);
   if (!scale) return scale.problem();
@@ -273,8 +290,13 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   }
   auto style = style_of(std::move(query), *layers, pairs, request.styles);
   if (!style) return std::move(style).problem();
-  return WindowRequest{*std::move(layers), *view,           *scale,
-                       *std::move(style),  TileFormat::png, fmt::format("{}", *pairs["BBOX"])};
+  return WindowRequest{*std::move(layers),
+                       *view,
+                       *scale,
+                       *std::move(style),
+                       TileFormat::png,
+                       fmt::format("{}", *pairs["BBOX"]),
+                       *system};
 }
 
 Result<WmsRequest> map_of(const KeyValuePairs& pairs, const DocumentRequest& request) {
@@ -302,16 +324,6 @@ Result<int> pixel_in(const KeyValuePairs& pairs, std::string_view key, int count
                        *pairs[key]);
   }
   return static_cast<int>(*pixel);
-}
-
-/// The cell in the middle of a pixel; nothing if that is off the world in the north or south.
-std::optional<Point> place_in(const View& view, int column, int row) {
-  const double x = static_cast<double>(view.origin_x) + (column + 0.5) * view.cells_per_pixel;
-  const double y = static_cast<double>(view.origin_y) + (row + 0.5) * view.cells_per_row();
-  const double from_west = std::fmod(x - kGridMin, static_cast<double>(kGridSize));
-  if (y < kGridMin || y >= kGridMax) return std::nullopt;
-  return Point{static_cast<std::int32_t>(std::floor(from_west) + kGridMin),
-               static_cast<std::int32_t>(std::floor(y))};
 }
 
 Result<std::size_t> feature_count_of(const KeyValuePairs& pairs) {
@@ -348,10 +360,11 @@ Result<WmsRequest> info_of(const KeyValuePairs& pairs, const DocumentRequest& re
                        "text/html.",
                        name);
   }
-  const auto place = place_in(window->view, *column, *row);
-  const double zoom = std::clamp<double>(zoom_of(window->view, window->scale), 0, kMaxZoom);
-  PlaceQuery query{*std::move(layers), place.value_or(Point{}), zoom, std::move(window->style),
-                   place ? *count : 0};
+  const auto place = place_at(window->view, *column + 0.5, *row + 0.5);
+  const double zoom =
+      std::clamp<double>(window->system->zoom_of(window->view, window->scale), 0, kMaxZoom);
+  PlaceQuery query{*std::move(layers),       place.value_or(Point{}), zoom,
+                   std::move(window->style), place ? *count : 0,      window->system};
   return WmsRequest(
       WmsFeatureInfoRequest{std::move(query), format->format, std::string(format->content_type)});
 }

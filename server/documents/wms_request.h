@@ -1,9 +1,8 @@
 // What is asked of WMS 1.3.0 and 1.1.1, by key-value pairs at /wms, where keys may be written in
-// any case of letters. All maps are in Web Mercator, which has the same order of axes in both
-// versions.
+// any case of letters. Version 1.3.0 has the axes of a reference system in the order of its
+// authority, so that boxes of EPSG:4326 begin with latitudes, and 1.1.1 has eastings first always.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -23,9 +22,6 @@ enum class WmsVersion : std::uint8_t { v1_1_1, v1_3_0 };
 /// "1.3.0".
 std::string_view name_of(WmsVersion version);
 
-/// The names by which clients know EPSG:3857, that one first.
-constexpr std::array<std::string_view, 4> kMercatorNames = {"EPSG:3857", "EPSG:900913",
-                                                            "EPSG:102100", "EPSG:102113"};
 constexpr std::string_view kWmsPng = "image/png";
 constexpr std::string_view kWmsWebp = "image/webp";
 /// Pixels to an inch where lines are as wide as in tiles, which is what QGIS takes a screen for.

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,8 +13,8 @@
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/identify.h"
-#include "server/documents/tile_matrix_set.h"
 #include "server/documents/wmts_request.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
@@ -49,17 +50,24 @@ std::string operation_xml(std::string_view name, const std::string& base_url) {
                      name, xml_escape(base_url));
 }
 
-std::string limits_xml(const ServedLayer& served) {
+std::string limits_xml(const ServedLayer& served, const TileMatrixSet& set) {
   std::string xml = "        <TileMatrixSetLimits>\n";
-  for (int zoom = served.config.min_zoom; zoom <= served.config.max_zoom; ++zoom) {
-    const TileLimits limits = wmts_limits(served, zoom);
+  for (std::size_t i = 0; i < set.matrices.size(); ++i) {
+    if (!has_tiles_of(served, set.matrices[i])) continue;
+    const TileLimits limits = wmts_limits(served, set, i);
     xml += fmt::format(
         "          <TileMatrixLimits><TileMatrix>{}</TileMatrix><MinTileRow>{}</MinTileRow>"
         "<MaxTileRow>{}</MaxTileRow><MinTileCol>{}</MinTileCol><MaxTileCol>{}</MaxTileCol>"
         "</TileMatrixLimits>\n",
-        zoom, limits.min_row, limits.max_row, limits.min_column, limits.max_column);
+        set.matrices[i].id, limits.min_row, limits.max_row, limits.min_column, limits.max_column);
   }
   return xml + "        </TileMatrixSetLimits>\n";
+}
+
+/// At one of its scales at least.
+bool is_drawn_in(const ServedLayer& served, const TileMatrixSet& set) {
+  return std::ranges::any_of(
+      set.matrices, [&served](const TileMatrix& matrix) { return has_tiles_of(served, matrix); });
 }
 
 std::string style_xml(const std::string& layer, std::string_view style,
@@ -109,12 +117,16 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
   for (const InfoFormat& format : info_formats()) {
     xml += fmt::format("      <InfoFormat>{}</InfoFormat>\n", format.name);
   }
-  xml += fmt::format(R"(      <TileMatrixSetLink>
+  for (const TileMatrixSetPtr& set : wmts_sets(request)) {
+    const ServedLayer* there = served_in(request.dataset, config.name, *set->system);
+    if (there == nullptr || !is_drawn_in(served, *set)) continue;
+    xml += fmt::format(R"(      <TileMatrixSetLink>
         <TileMatrixSet>{}</TileMatrixSet>
 )",
-                     kTileMatrixSet);
-  xml += limits_xml(served);
-  xml += "      </TileMatrixSetLink>\n";
+                       set->id);
+    xml += limits_xml(*there, *set);
+    xml += "      </TileMatrixSetLink>\n";
+  }
   const std::string tile =
       fmt::format("{}/wmts/{}/{{Style}}/{{TileMatrixSet}}/{{TileMatrix}}/{{TileRow}}/{{TileCol}}",
                   base_url, config.name);
@@ -127,26 +139,38 @@ std::string layer_xml(const ServedLayer& served, const DocumentRequest& request)
   return xml + "    </Layer>\n";
 }
 
-std::string matrix_set_xml() {
+/// As WMTS 1.0.0 writes the URI of a scale set: "urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible".
+std::string urn_of_scale_set(const TileMatrixSet& set) {
+  return fmt::format("urn:ogc:def:wkss:OGC:1.0:{}",
+                     set.scale_set.substr(set.scale_set.rfind('/') + 1));
+}
+
+std::string matrix_set_xml(const TileMatrixSet& set) {
   std::string xml = fmt::format(R"(    <TileMatrixSet>
       <ows:Title>{}</ows:Title>
       <ows:Identifier>{}</ows:Identifier>
-      <ows:SupportedCRS>urn:ogc:def:crs:EPSG::3857</ows:SupportedCRS>
-      <WellKnownScaleSet>urn:ogc:def:wkss:OGC:1.0:GoogleMapsCompatible</WellKnownScaleSet>
+      <ows:SupportedCRS>{}</ows:SupportedCRS>
 )",
-                                kTileMatrixSetTitle, kTileMatrixSet);
-  for (int zoom = 0; zoom <= kMaxZoom; ++zoom) {
+                                xml_escape(set.title), set.id, set.system->urn);
+  if (!set.scale_set.empty()) {
+    xml += fmt::format("      <WellKnownScaleSet>{}</WellKnownScaleSet>\n", urn_of_scale_set(set));
+  }
+  for (const TileMatrix& matrix : set.matrices) {
+    const bool is_north_first = set.system->is_north_first;
     xml += fmt::format(R"(      <TileMatrix>
-        <ows:Identifier>{0}</ows:Identifier>
-        <ScaleDenominator>{1}</ScaleDenominator>
-        <TopLeftCorner>-{2} {2}</TopLeftCorner>
-        <TileWidth>{3}</TileWidth>
-        <TileHeight>{3}</TileHeight>
-        <MatrixWidth>{4}</MatrixWidth>
-        <MatrixHeight>{4}</MatrixHeight>
+        <ows:Identifier>{}</ows:Identifier>
+        <ScaleDenominator>{}</ScaleDenominator>
+        <TopLeftCorner>{} {}</TopLeftCorner>
+        <TileWidth>{}</TileWidth>
+        <TileHeight>{}</TileHeight>
+        <MatrixWidth>{}</MatrixWidth>
+        <MatrixHeight>{}</MatrixHeight>
       </TileMatrix>
 )",
-                       zoom, scale_denominator(zoom), kMercatorHalfSide, kTilePixels, 1 << zoom);
+                       xml_escape(matrix.id), matrix.scale_denominator,
+                       is_north_first ? matrix.origin_y : matrix.west,
+                       is_north_first ? matrix.west : matrix.origin_y, matrix.tile_width,
+                       matrix.tile_height, matrix.width, matrix.height);
   }
   return xml + "    </TileMatrixSet>\n";
 }
@@ -165,7 +189,8 @@ std::string capabilities_xml(const WmtsCapabilitiesRequest& sections,
   if (sections.contents) {
     xml += "  <Contents>\n";
     for (const ServedLayer& served : request.dataset.layers()) xml += layer_xml(served, request);
-    xml += matrix_set_xml() + "  </Contents>\n";
+    for (const TileMatrixSetPtr& set : wmts_sets(request)) xml += matrix_set_xml(*set);
+    xml += "  </Contents>\n";
   }
   xml += fmt::format("  <ServiceMetadataURL xlink:href=\"{}/wmts.xml\"/>\n</Capabilities>\n",
                      xml_escape(request.base_url));

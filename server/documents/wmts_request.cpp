@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -15,6 +16,8 @@
 #include "server/data/layer_summary.h"
 #include "server/documents/key_value_pairs.h"
 #include "server/documents/ows_exception.h"
+#include "server/tiles/map_window.h"
+#include "server/tiles/window_request.h"
 
 namespace trapeze {
 namespace {
@@ -102,12 +105,14 @@ Result<std::uint32_t> number_in(std::string_view key, const std::string& text, s
   return number.value;
 }
 
-Result<int> zoom_of(const std::string& matrix) {
-  const ParsedNumber number = parse_number(matrix);
-  if (number.kind != NumberKind::number || number.value > kMaxZoom) {
-    return invalid("TileMatrix", fmt::format("an integer from 0 to {}", kMaxZoom), matrix, 404);
+/// The number of a matrix of the set.
+Result<std::size_t> matrix_in(const TileMatrixSet& set, const std::string& name) {
+  if (const TileMatrix* matrix = set.find(name)) {
+    return static_cast<std::size_t>(matrix - set.matrices.data());
   }
-  return static_cast<int>(number.value);
+  return invalid("TileMatrix",
+                 fmt::format("{} to {}", set.matrices.front().id, set.matrices.back().id), name,
+                 404);
 }
 
 Result<std::vector<std::string>> layers_of(const std::string& list, const Dataset& dataset) {
@@ -127,18 +132,16 @@ Result<std::vector<std::string>> layers_of(const std::string& list, const Datase
   return layers;
 }
 
-bool is_drawn_at(const ServedLayer& layer, int zoom) {
-  return zoom >= layer.config.min_zoom && zoom <= layer.config.max_zoom;
-}
-
-/// Those of all layers together; nothing at zooms that none of them has.
-std::optional<TileLimits> limits_of(std::span<const std::string> layers, int zoom,
-                                    const Dataset& dataset) {
+/// Those of all layers together; nothing at scales that none of them has.
+std::optional<TileLimits> limits_of(std::span<const std::string> layers, const TileMatrixSet& set,
+                                    std::size_t matrix, const Dataset& dataset) {
   std::optional<TileLimits> all;
   for (const std::string& name : layers) {
     const ServedLayer& layer = dataset.layers()[*dataset.find(name)];
-    if (!is_drawn_at(layer, zoom)) continue;
-    const TileLimits limits = wmts_limits(layer, zoom);
+    if (!has_tiles_of(layer, set.matrices[matrix])) continue;
+    const ServedLayer* there = served_in(dataset, name, *set.system);
+    if (there == nullptr) continue;
+    const TileLimits limits = wmts_limits(*there, set, matrix);
     if (!all) all = limits;
     all->min_row = std::min(all->min_row, limits.min_row);
     all->max_row = std::max(all->max_row, limits.max_row);
@@ -148,14 +151,11 @@ std::optional<TileLimits> limits_of(std::span<const std::string> layers, int zoo
   return all;
 }
 
-Result<TileId> tile_id_of(const TileParts& parts, std::span<const std::string> layers,
-                          const Dataset& dataset) {
-  if (!is_equal(parts.matrix_set, kTileMatrixSet)) {
-    return invalid("TileMatrixSet", kTileMatrixSet, parts.matrix_set, 404);
-  }
-  const auto zoom = zoom_of(parts.matrix);
-  if (!zoom) return zoom.problem();
-  const auto limits = limits_of(layers, *zoom, dataset);
+Result<TileId> tile_id_of(const TileParts& parts, const TileMatrixSet& set,
+                          std::span<const std::string> layers, const Dataset& dataset) {
+  const auto matrix = matrix_in(set, parts.matrix);
+  if (!matrix) return matrix.problem();
+  const auto limits = limits_of(layers, set, *matrix, dataset);
   if (!limits) {
     return ows_problem(404, ows::kTileOutOfRange, "TileMatrix",
                        "The layer is not drawn at this TileMatrix.", parts.matrix);
@@ -166,7 +166,7 @@ Result<TileId> tile_id_of(const TileParts& parts, std::span<const std::string> l
   const auto column = number_in("TileCol", parts.column, limits->min_column, limits->max_column,
                                 ows::kTileOutOfRange, 404);
   if (!column) return column.problem();
-  return TileId{*zoom, *column, *row};
+  return TileId{static_cast<int>(*matrix), *column, *row};
 }
 
 Result<StyleQuery> style_of(const TileParts& parts, std::span<const std::string> layers,
@@ -187,33 +187,42 @@ Result<StyleQuery> style_of(const TileParts& parts, std::span<const std::string>
 Result<TileRequest> tile_of(const TileParts& parts, const DocumentRequest& request) {
   auto layers = layers_of(parts.layer, request.dataset);
   if (!layers) return std::move(layers).problem();
-  const auto tile = tile_id_of(parts, *layers, request.dataset);
+  auto set = request.sets.find(parts.matrix_set);
+  if (set == nullptr || !set->is_from_north()) {
+    return invalid("TileMatrixSet", names_of(wmts_sets(request)), parts.matrix_set, 404);
+  }
+  for (const std::string& name : *layers) {
+    if (served_in(request.dataset, name, *set->system) != nullptr) continue;
+    return ows_problem(404, ows::kInvalidParameterValue, "TileMatrixSet",
+                       not_built(name, *set->system, request.dataset).detail, parts.matrix_set);
+  }
+  const auto tile = tile_id_of(parts, *set, *layers, request.dataset);
   if (!tile) return tile.problem();
   auto style = style_of(parts, *layers, request.styles);
   if (!style) return std::move(style).problem();
-  return TileRequest{*std::move(layers), *tile, 1, *std::move(style)};
-}
-
-/// The cell in the middle of a pixel of a tile.
-Point place_in(TileId tile, std::uint32_t i, std::uint32_t j) {
-  const std::int64_t side = kGridSize >> tile.z;
-  const auto cell = [side](std::int64_t number, std::int64_t pixel) {
-    return static_cast<std::int32_t>(kGridMin + number * side +
-                                     (2 * pixel + 1) * side / (2 * kTilePixels));
-  };
-  return {cell(tile.x, i), cell(tile.y, j)};
+  return TileRequest{*std::move(layers), *tile,           1,
+                     *std::move(style),  TileFormat::png, std::move(set)};
 }
 
 Result<WmtsRequest> info_of(const TileParts& parts, const std::string& i, const std::string& j,
                             const InfoFormat& format, const DocumentRequest& request) {
   auto tile = tile_of(parts, request);
   if (!tile) return std::move(tile).problem();
-  const auto column = number_in("I", i, 0, kTilePixels - 1, ows::kPointIJOutOfRange, 400);
+  const double zoom = std::clamp<double>(tile->zoom(), 0, kMaxZoom);
+  const WindowRequest window = window_of(*std::move(tile));
+  const View& view = window.view;
+  const auto pixel_in = [](std::string_view key, const std::string& text, int pixels) {
+    return number_in(key, text, 0, static_cast<std::uint32_t>(pixels - 1), ows::kPointIJOutOfRange,
+                     400);
+  };
+  const auto column = pixel_in("I", i, view.width);
   if (!column) return column.problem();
-  const auto row = number_in("J", j, 0, kTilePixels - 1, ows::kPointIJOutOfRange, 400);
+  const auto row = pixel_in("J", j, view.height);
   if (!row) return row.problem();
-  PlaceQuery query{std::move(tile->layers), place_in(tile->tile, *column, *row),
-                   static_cast<double>(tile->tile.z), std::move(tile->style)};
+  const auto place = place_at(view, *column + 0.5, *row + 0.5);
+  PlaceQuery query{window.layers, place.value_or(Point{}), zoom, window.style};
+  query.system = window.system;
+  if (!place) query.most_of_layer = 0;  // off the map
   return WmtsRequest(
       WmtsFeatureInfoRequest{std::move(query), format.format, std::string(format.content_type)});
 }
@@ -314,17 +323,20 @@ Result<WmtsRequest> parse_info_path(const DocumentRequest& request) {
 
 }  // namespace
 
-TileLimits wmts_limits(const ServedLayer& layer, int zoom) {
-  const Box& bounds = layer.layer->bounds();
-  if (bounds.is_empty()) return tile_limits({kGridMin, kGridMin, kGridMax, kGridMax}, zoom);
-  // Half of the widest line, which is 32 of the 256 pixels wide.
-  const std::int64_t margin = (kGridSize >> zoom) / 16;
-  const auto moved = [](std::int64_t cell, std::int64_t by) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(cell + by, kGridMin, kGridMax));
-  };
-  return tile_limits({moved(bounds.min_x, -margin), moved(bounds.min_y, -margin),
-                      moved(bounds.max_x, margin), moved(bounds.max_y, margin)},
-                     zoom);
+TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix) {
+  constexpr double kHalfOfWidestLine = 16;  // pixels
+  return set.limits_of(layer.layer->bounds(), matrix, kHalfOfWidestLine);
+}
+
+std::vector<TileMatrixSetPtr> wmts_sets(const DocumentRequest& request) {
+  std::vector<TileMatrixSetPtr> sets = request.sets.of(request.dataset);
+  std::erase_if(sets, [](const TileMatrixSetPtr& set) { return !set->is_from_north(); });
+  return sets;
+}
+
+bool has_tiles_of(const ServedLayer& layer, const TileMatrix& matrix) {
+  const double zoom = matrix.zoom();
+  return zoom >= layer.config.min_zoom && std::floor(zoom) <= layer.config.max_zoom;
 }
 
 Result<WmtsRequest> parse_wmts_request(const DocumentRequest& request) {

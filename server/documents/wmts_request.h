@@ -6,17 +6,19 @@
 //   /wmts/{Layer}/{Style}/{TileMatrixSet}/{TileMatrix}/{TileRow}/{TileCol}/{J}/{I}.{json,txt,html}
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/documents/document.h"
 #include "server/documents/identify.h"
-#include "server/documents/tile_matrix_set.h"
+#include "server/tiles/tile_matrix_set.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
@@ -40,9 +42,14 @@ struct WmtsFeatureInfoRequest {
 
 using WmtsRequest = std::variant<WmtsCapabilitiesRequest, TileRequest, WmtsFeatureInfoRequest>;
 
-/// The tiles of a zoom in which the layer may show something: outside, there is no tile to WMTS.
+/// The tiles of a matrix in which the layer may show something: outside, there is no tile to WMTS.
 /// With a margin for outlines.
-TileLimits wmts_limits(const ServedLayer& layer, int zoom);
+TileLimits wmts_limits(const ServedLayer& layer, const TileMatrixSet& set, std::size_t matrix);
+/// The sets that have tiles of some layer: of those whose rows are counted from the north, as WMTS
+/// counts them.
+std::vector<TileMatrixSetPtr> wmts_sets(const DocumentRequest& request);
+/// Whether the layer is drawn at that scale.
+bool has_tiles_of(const ServedLayer& layer, const TileMatrix& matrix);
 
 /// The problem has a code of OWS and the parameter as WMTS calls it; 404 for what there is not,
 /// else 400 or 501. Other pairs of the query style the tile; those that have no likeness to a

@@ -93,7 +93,7 @@ KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassC
 
 /// The layer, or each of its parts.
 void KnownTiles::add_drawn(const TilePlan& plan, const LayerPaint& paint) {
-  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  const ServedLayer& served = plan.dataset->layers_on_all_grids()[paint.layer];
   Drawn drawn;
   drawn.layer = paint.layer;
   drawn.number = drawn_.empty() ? 0 : drawn_.back().number + 1;

@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 void refuse_damaged(const SeedPlan& plan) {
   const TilePlan& any = plan.at(plan.zooms().last);
   for (const LayerPaint& paint : any.layers) {
-    const ServedLayer& layer = any.dataset->layers()[paint.layer];
+    const ServedLayer& layer = any.dataset->layers_on_all_grids()[paint.layer];
     if (layer.is_whole()) continue;
     throw std::runtime_error(fmt::format(
         "{} was written into while it was read; run `trapeze prepare` again", layer.report.path));

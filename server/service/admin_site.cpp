@@ -50,7 +50,7 @@ std::string state_json(const ServerFigures& figures, const std::string& problem)
   json["generation"] = figures.data == nullptr ? Json(nullptr) : Json(figures.data->generation());
   json["layers"] = Json::array();
   if (figures.data != nullptr) {
-    for (const ServedLayer& served : figures.data->layers()) {
+    for (const ServedLayer& served : figures.data->layers_on_all_grids()) {
       json["layers"].push_back(layer_json(served));
     }
   }

@@ -14,6 +14,7 @@
 #include "server/http/static_files.h"
 #include "server/service/line_writer.h"
 #include "server/tiles/open_fonts.h"
+#include "server/tiles/read_tile_matrix_set.h"
 
 namespace trapeze {
 namespace {
@@ -75,6 +76,8 @@ class ConfigCheck {
     if (!config_.server.web_root.empty()) {
       note("server.web_root", failure_of([this] { StaticFiles(config_.server.web_root); }));
     }
+    note("server.tile_matrix_sets",
+         failure_of([this] { tile_matrix_sets_with(config_.server.tile_matrix_sets); }));
     for (std::size_t i = 0; i < config_.text.fonts.size(); ++i) {
       for (const std::string& problem : find_font_problems({config_.text.fonts[i]})) {
         findings_.warnings.push_back(found("text.fonts", problem, i));

@@ -131,8 +131,8 @@ void add_layers(Snapshot& snapshot, const Dataset& data) {
              [](const ServedLayer& served) { return static_cast<double>(served.report.skipped); }}};
   for (const Figure& figure : kFigures) {
     auto& family = snapshot.family(figure.name, figure.help, MetricType::Gauge);
-    for (const ServedLayer& served : data.layers()) {
-      Snapshot::add(family, {{"layer", served.config.name}}, figure.value(served));
+    for (const ServedLayer& served : data.layers_on_all_grids()) {
+      Snapshot::add(family, {{"layer", served.label()}}, figure.value(served));
     }
   }
   snapshot.gauge("trapeze_data_info", "The generation of the data that is served", 1,

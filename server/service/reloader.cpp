@@ -141,7 +141,7 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
 
 void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded) {
   if (!live.empty()) {
-    std::vector<ServedLayer> layers = loaded->layers();
+    std::vector<ServedLayer> layers = loaded->layers_on_all_grids();
     loaded = nullptr;
     auto next = live.begin();
     for (ServedLayer& layer : layers) {
@@ -155,7 +155,7 @@ void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dat
 bool Reloader::follow_live() {
   if (live_.empty()) return true;
   const auto before = data_.get();
-  std::vector<ServedLayer> layers = before->layers();
+  std::vector<ServedLayer> layers = before->layers_on_all_grids();
   bool has_changed = false;
   std::string problem;
   auto live = live_.begin();
@@ -200,7 +200,7 @@ std::vector<std::string> Reloader::watched_files(const std::vector<LayerConfig>&
   std::vector<std::string> files;
   if (!source_.config.empty()) files.push_back(source_.config);
   for (const auto& [name, table] : values) files.push_back(table.file);
-  for (const LayerConfig& layer : layers) {
+  for (const LayerConfig& layer : with_grids(layers)) {
     if (layer.live_query.empty()) append_files(layer.file, files);
     append_files(layer.prepared, files);
   }
@@ -255,7 +255,7 @@ void Reloader::forget_retired() {
   };
   std::vector<Mesh> meshes;
   for (const auto& dataset : datasets) {
-    for (const ServedLayer& served : dataset->layers()) {
+    for (const ServedLayer& served : dataset->layers_on_all_grids()) {
       meshes.push_back({served.layer, served.layer->mesh().id});
       if (served.untested != nullptr) {
         meshes.push_back({served.untested, served.untested->mesh().id});

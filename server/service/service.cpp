@@ -9,6 +9,7 @@
 
 #include "server/http/static_files.h"
 #include "server/tiles/open_fonts.h"
+#include "server/tiles/read_tile_matrix_set.h"
 #include "server/tiles/start_renderers.h"
 
 namespace trapeze {
@@ -35,6 +36,8 @@ SiteOptions site_options(const Config& config) {
   options.public_url = config.server.public_url;
   options.allowed_hosts = config.server.allowed_hosts;
   options.cache_control = config.server.cache_control;
+  options.sets =
+      std::make_shared<const TileMatrixSets>(tile_matrix_sets_with(config.server.tile_matrix_sets));
   options.viewer = config.viewer;
   options.styles = config.styles;
   options.posted_styles = std::size_t{config.server.posted_styles_mb} << 20;

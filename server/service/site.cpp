@@ -21,7 +21,6 @@
 #include "server/documents/ogc_api.h"
 #include "server/documents/ows_exception.h"
 #include "server/documents/routes.h"
-#include "server/documents/tile_matrix_set.h"
 #include "server/documents/value_tables.h"
 #include "server/documents/wms.h"
 #include "server/documents/wms_exception.h"
@@ -33,6 +32,7 @@
 #include "server/tiles/drawing_cost.h"
 #include "server/tiles/map_window.h"
 #include "server/tiles/paint_stages.h"
+#include "server/tiles/tile_matrix_set.h"
 
 namespace trapeze {
 
@@ -264,13 +264,15 @@ std::optional<Result<PictureRequest>> find_map_picture(const DocumentRequest& re
   return Result<PictureRequest>(*std::move(window));
 }
 
-/// Of a picture, in metres: west, south, east, north.
-std::string bounds_text(const View& view) {
-  const auto x = static_cast<double>(view.origin_x);
-  const auto y = static_cast<double>(view.origin_y);
-  const GridPosition from = metres_from_grid(x, y + view.height * view.cells_per_row());
-  const GridPosition to = metres_from_grid(x + view.width * view.cells_per_pixel, y);
-  return fmt::format("{:.3f},{:.3f},{:.3f},{:.3f}", from.x, from.y, to.x, to.y);
+/// Of a picture: the least of both axes, then the greatest, in the order of the reference system.
+std::string bounds_text(const WindowRequest& window) {
+  const MapSystem& system = *window.system;
+  const auto [west, south, east, north] = system.bounds_of(window.view);
+  const int digits = system.is_in_degrees ? 8 : 3;
+  return system.is_north_first ? fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", south, west,
+                                             north, east, digits)
+                               : fmt::format("{0:.{4}f},{1:.{4}f},{2:.{4}f},{3:.{4}f}", west, south,
+                                             east, north, digits);
 }
 
 std::uint64_t pixels_of(const View& view) {
@@ -582,7 +584,7 @@ HttpResponse Site::answer_file(const Target& target, const HttpRequest& request)
 void Site::handle_tiles(const Target& target, const HttpRequest& request,
                         const Respond& respond) const {
   if (answer_known(request, respond)) return;
-  auto parsed = parse_tiles_target(target, *styles_);
+  auto parsed = parse_tiles_target(target, *styles_, *options_.sets);
   if (!parsed) return respond(problem_response(parsed.problem()));
   auto& tiles = *parsed;
   if (const auto* tile_json = std::get_if<TileJsonRequest>(&tiles)) {
@@ -598,7 +600,7 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   const auto known = known_targets_->find(dataset, request.target);
   if (known == nullptr) return false;
   const bool is_whole = std::ranges::all_of(known->layers, [&](std::size_t layer) {
-    return dataset->layers()[layer].was_whole_lately();
+    return dataset->layers_on_all_grids()[layer].was_whole_lately();
   });
   if (!is_whole) return false;
   auto held = find_held(request, *known);
@@ -629,9 +631,9 @@ void Site::handle_document(const Documents& documents, const Target& target,
   if (!base) return respond(problem_response(base.problem()));
   std::string key =
       documents.may_be_kept ? fmt::format("{} {}", *base, request.target) : std::string();
-  const DocumentRequest asked{*dataset,           *styles_,         *options_.fonts,
-                              *std::move(base),   std::move(*path), *std::move(query),
-                              options_.map_pixels};
+  const DocumentRequest asked{
+      *dataset,         *styles_,          *options_.fonts,     *std::move(base),
+      std::move(*path), *std::move(query), options_.map_pixels, *options_.sets};
   if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
     Result<PictureRequest>& found = *picture;
     return found ? handle_picture(*std::move(found), request, respond)
@@ -666,16 +668,30 @@ std::optional<HttpResponse> Site::find_impatience(const HttpRequest& request,
 }
 
 std::optional<Problem> Site::find_excess(const TileRequest& tile) const {
-  if (tile.tile.z > options_.max_zoom) {
+  if (tile.zoom() > options_.max_zoom) {
     Problem problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 "
                                      "to 2^zoom - 1.",
                                      options_.max_zoom)};
+    if (tile.set != web_mercator_quad()) {
+      problem.detail = fmt::format(
+          "There is no such tile here: its pixels are smaller than those "
+          "of zoom {} of Web Mercator.",
+          options_.max_zoom);
+    }
     problem.code = ows::kTileOutOfRange;
     return problem;
   }
   if (tile.scale > options_.max_scale) {
     return Problem{400, fmt::format("A tile's scale is @1x to @{}x.", options_.max_scale), "scale",
                    fmt::format("{}x", tile.scale), fmt::format("1x to {}x", options_.max_scale)};
+  }
+  const TileMatrix& matrix = tile.set->matrices[static_cast<std::size_t>(tile.tile.z)];
+  const auto pixels = static_cast<std::uint64_t>(matrix.tile_width) *
+                      static_cast<std::uint64_t>(matrix.tile_height) *
+                      static_cast<std::uint64_t>(tile.scale * tile.scale);
+  if (tile.set != web_mercator_quad() && pixels > options_.map_pixels) {
+    return Problem{400, fmt::format("A picture has at most {} pixels here.", options_.map_pixels),
+                   "scale", fmt::format("{}x", tile.scale), "a smaller scale"};
   }
   return find_excess(tile.layers);
 }
@@ -699,7 +715,7 @@ std::optional<Problem> Site::find_excess(const WindowRequest& window) const {
     return Problem{400, fmt::format("WebP is at most {} pixels wide and high.", kMaxWebpPixels),
                    "width", size, fmt::format("1 to {}", kMaxWebpPixels)};
   }
-  const double zoom = zoom_of(view, window.scale);
+  const double zoom = window.system->zoom_of(view, window.scale);
   if (zoom > options_.max_zoom) {
     return Problem{400,
                    fmt::format("The pixels are smaller than those of zoom {}, which is the last.",
@@ -719,13 +735,15 @@ void Site::handle_picture(PictureRequest asked, const HttpRequest& request,
     return handle_window(window_of(std::move(*tile)), request, respond);
   }
   const auto& window = std::get<WindowRequest>(asked);
-  handle_window(window, request, [respond, bounds = bounds_text(window.view)](HttpResponse answer) {
-    if (answer.problem == nullptr) {
-      answer.headers.emplace_back("Content-Bbox", bounds);
-      answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", kTileCrsUri));
-    }
-    respond(std::move(answer));
-  });
+  handle_window(
+      window, request,
+      [respond, bounds = bounds_text(window), system = window.system](HttpResponse answer) {
+        if (answer.problem == nullptr) {
+          answer.headers.emplace_back("Content-Bbox", bounds);
+          answer.headers.emplace_back("Content-Crs", fmt::format("<{}>", system->uri));
+        }
+        respond(std::move(answer));
+      });
 }
 
 void Site::handle_window(const WindowRequest& window, const HttpRequest& request,

@@ -64,6 +64,9 @@ struct SiteOptions {
   ViewerConfig viewer = {};
   /// What is said at "/" where `files` have no page.
   std::string why_no_viewer = "There is no viewer here.";
+  /// What tiles there are.
+  std::shared_ptr<const TileMatrixSets> sets =
+      std::make_shared<const TileMatrixSets>(TileMatrixSets::built_in());
   /// What legends are written in.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   /// Styles by name, and the memory in bytes for those that are posted.

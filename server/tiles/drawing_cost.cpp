@@ -67,7 +67,7 @@ Amounts amounts_of(const TilePlan& plan, const LayerPaint& paint, const View& vi
   amounts.grains = layer.grains().count_near(selection.box, births_of_dust(paint, selection));
   amounts.pairs = layer.overlaps().pairs().size();
   amounts.pairs_along = layer.overlaps().pairs_along();
-  amounts.features = plan.dataset->layers()[paint.layer].layer->features().size();
+  amounts.features = plan.dataset->layers_on_all_grids()[paint.layer].layer->features().size();
   if (paint.style.stroke.width > 0) {
     amounts.horizontal_edges = layer.estimate_horizontal_edges(selection);
   }
@@ -117,7 +117,7 @@ Amounts amounts_of_parts(const TilePlan& plan, const LayerPaint& paint, const Vi
 }
 
 std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const View& view) {
-  const bool is_in_parts = plan.dataset->layers()[paint.layer].parts != nullptr;
+  const bool is_in_parts = plan.dataset->layers_on_all_grids()[paint.layer].parts != nullptr;
   const Amounts amounts =
       is_in_parts ? amounts_of_parts(plan, paint, view) : amounts_of(plan, paint, view);
   const std::uint64_t trapezoids = amounts.trapezoids;
@@ -125,6 +125,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   const std::uint64_t masks = std::min<std::uint64_t>(shapes, paint.style.paints.size());
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
   cost += cost_of_cuts(amounts, paint.style);
+  if (view.projection == Projection::plate_carree) cost += shapes * kSidesPerProjectedTrapezoid;
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + amounts.horizontal_edges;

@@ -6,15 +6,16 @@
 #include <optional>
 #include <utility>
 
+#include "core/grid/plate_carree.h"
 #include "core/mesh/mesh_index.h"
 #include "render/mask/mask_digest.h"
 
 namespace trapeze {
 namespace {
 
-/// At least `side` cells wide and high, around the same middle.
-Box widened(const Box& box, std::int64_t side) {
-  const auto widen = [side](std::int32_t& min, std::int32_t& max) {
+/// At least so many cells wide and high, around the same middle.
+Box widened(const Box& box, std::int64_t width, std::int64_t height) {
+  const auto widen = [](std::int32_t& min, std::int32_t& max, std::int64_t side) {
     const std::int64_t missing = side - (std::int64_t{max} - min);
     if (missing <= 0) return;
     const std::int64_t from =
@@ -23,8 +24,8 @@ Box widened(const Box& box, std::int64_t side) {
     max = static_cast<std::int32_t>(from + side);
   };
   Box wide = box;
-  widen(wide.min_x, wide.max_x);
-  widen(wide.min_y, wide.max_y);
+  widen(wide.min_x, wide.max_x, width);
+  widen(wide.min_y, wide.max_y, height);
   return wide;
 }
 
@@ -49,25 +50,14 @@ double length_between(Point a, Point b) {
   return std::sqrt(x * x + y * y);
 }
 
-/// Where polygons were cut off, nothing ends: along the antimeridian, and the other edges of the
-/// square of Web Mercator. Files were cut there before, and their cuts rounded and simplified:
-/// no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
+/// Of Web Mercator: where polygons were cut off, nothing ends: along the antimeridian, and the
+/// other edges of the square of Web Mercator. Files were cut there before, and their cuts rounded
+/// and simplified: no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
 bool is_on_frame(Point a, Point b) {
   constexpr std::int32_t kStrip = 430'000;  // cells: from 85.0449 degrees on
   const auto is_pole = [](Point p) { return p.y <= kGridMin + kStrip || p.y >= kGridMax - kStrip; };
   const auto is_antimeridian = [](Point p) { return p.x == kGridMin || p.x == kGridMax; };
   return (a.x == b.x && is_antimeridian(a)) || (is_pole(a) && is_pole(b));
-}
-
-InkOfLoops ink_of_loops(const Stroke& stroke, const View& view, double scale) {
-  // Of the side of a square as large as a pixel of scale 1.
-  const double cells = view.cells_per_pixel * std::sqrt(view.stretch) * scale;
-  InkOfLoops ink;
-  for (int size = 0; size < kLoopSizes; ++size) {
-    ink[static_cast<std::size_t>(size)] =
-        stroke.ink_of_ring(extent_of(static_cast<LoopSize>(size)) / cells);
-  }
-  return ink;
 }
 
 /// Sorts the items and leaves one of those that are equal. Where they are dense, in the time that
@@ -106,6 +96,21 @@ std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
 }
 
 }  // namespace
+
+InkOfLoops::InkOfLoops(const Stroke& stroke, const View& view, double scale)
+    : stroke_(stroke), view_(view), scale_(scale) {
+  // Of the side of a square as large as a pixel of scale 1.
+  const double cells = view.cells_per_pixel * std::sqrt(view.stretch) * scale;
+  for (int size = 0; size < kLoopSizes; ++size) {
+    by_size_[static_cast<std::size_t>(size)] =
+        stroke.ink_of_ring(extent_of(static_cast<LoopSize>(size)) / cells);
+  }
+}
+
+double InkOfLoops::of(LoopSize size, std::int32_t y) const {
+  if (view_.projection != Projection::plate_carree) return by_size_[size];
+  return stroke_.ink_of_ring(extent_of(size) / (view_.side_at(y) * scale_));
+}
 
 void LayerDrawing::ClassDrawing::clear(std::uint8_t class_number) {
   number = class_number;
@@ -159,6 +164,18 @@ void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidP
   made_trapezoids.push_back({v + 4, v + 5, e, e + 1});
 }
 
+/// Puts in place of the parts what they are in the picture.
+void LayerDrawing::ClassDrawing::project(const View& view) {
+  projected.begin(view.cells_per_row(), view.box());
+  for (const MeshPart& part : parts) projected.add(part.mesh, part.ranges);
+  parts.clear();
+  all_made = {0, static_cast<std::uint32_t>(projected.trapezoids().size())};
+  if (all_made.count == 0) return;
+  const MeshView mesh{new_mesh_id(), projected.vertices(), projected.edges(),
+                      projected.trapezoids()};
+  parts.push_back({mesh, {&all_made, 1}});
+}
+
 // The edges of which a feature has one side only, and no place in common with others on the other.
 void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uint32_t>& edges) {
   std::ranges::sort(sides);
@@ -175,11 +192,13 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
 
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
   const Stroke& stroke = paint.style.stroke;
-  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) * view.longer_side() : 0;
+  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) : 0;  // pixels
+  const Box box = view.projection == Projection::plate_carree
+                      ? view.box_around(reach)
+                      : with_margin(view.box(), reach * view.longer_side());
   // Dust that many features share has no class.
   const bool has_classes = !paint.style.classing.is_plain();
-  return {with_margin(view.box(), reach), paint.level, plan.pixel_level(),
-          has_classes ? SmallPolygons::drop : paint.small};
+  return {box, paint.level, plan.pixel_level(), has_classes ? SmallPolygons::drop : paint.small};
 }
 
 bool is_plain(const LayerStyle& style) {
@@ -199,12 +218,15 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   const auto check = [&tools] {
     if (tools.cancellation != nullptr) tools.cancellation->check();
   };
-  const InkOfLoops ink =
-      has_lines() ? ink_of_loops(style().stroke, view, plan.scale) : InkOfLoops();
+  std::optional<InkOfLoops> ink;
+  if (has_lines()) ink.emplace(style().stroke, view, plan.scale);
+  if (has_lines() && is_projected()) {
+    tools.plate_carree.begin(view.cells_per_row(), selection.box);
+  }
   tools.dust.begin(tools.shapes);
   for (const DrawnPiece& piece : pieces) {
     check();
-    add_piece(piece, selection, ink, tools);
+    add_piece(piece, selection, ink ? &*ink : nullptr, tools);
   }
   tools.dust.finish(view_.shorter_side(), tools.shapes);
   add_shapes(tools);
@@ -220,13 +242,13 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
 }
 
 void LayerDrawing::add_piece(const DrawnPiece& piece, const Layer::Selection& selection,
-                             const InkOfLoops& ink, DrawingTools& tools) {
+                             const InkOfLoops* ink, DrawingTools& tools) {
   layer_ = piece.layer;
   const FeatureClasses* classes = piece.classes.get();
   layer_->select(selection, tools.ranges);
   part_by_class(classes, selection, tools);
   add_places(selection, classes, tools);
-  if (has_lines()) collect_edges(selection, ink, classes, tools);
+  if (ink != nullptr) collect_edges(selection, *ink, classes, tools);
   for (std::size_t i = 0; i < class_count_; ++i) classes_[i].end_piece(*layer_);
 }
 
@@ -398,18 +420,26 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
   return has_classes ? GrainIndex::Births{0, selection.level} : selection.later_births();
 }
 
+/// The box, as large as a pixel at least.
+Box LayerDrawing::pixel_around(const Box& box) const {
+  const double side = view_.shorter_side();
+  const double middle = (static_cast<double>(box.min_y) + box.max_y) / 2;
+  const double high = is_projected() ? side * mercator_stretch(middle) : side;
+  return widened(box, static_cast<std::int64_t>(std::ceil(side)),
+                 static_cast<std::int64_t>(std::ceil(high)));
+}
+
 // There are no more of them, in one class, than pixels.
 void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureClasses* classes,
                               DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
-  const auto pixel = static_cast<std::int64_t>(std::ceil(view_.shorter_side()));
   // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
   // picture.
   Layer::Selection around = selection;
   around.box = with_margin(selection.box, 2 * view_.longer_side());
   if (classes == nullptr && is_kept) {
     layer_->small_polygons(around, tools.places);
-    for (const Box& place : tools.places) class_drawing(0).add_place(widened(place, pixel), false);
+    for (const Box& place : tools.places) class_drawing(0).add_place(pixel_around(place), false);
   }
   const GrainIndex::Births births = births_of_dust(*paint_, selection);
   if (births.is_empty()) return;
@@ -420,11 +450,10 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
 // Of all pieces.
 void LayerDrawing::add_shapes(DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
-  const auto pixel = static_cast<std::int64_t>(std::ceil(view_.shorter_side()));
   for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
     class_drawing(mote.feature_class)
-        .add_place(is_kept ? widened(mote.box, pixel) : mote.box, mote.is_hole);
+        .add_place(is_kept ? pixel_around(mote.box) : mote.box, mote.is_hole);
   }
   for (const ClassPatch& patch : tools.shapes.patches) {
     if (is_kept && patch.is_hole) continue;
@@ -456,6 +485,7 @@ void LayerDrawing::finish_class(const Layer::Selection& selection, ClassDrawing&
     drawing.all_made = {0, static_cast<std::uint32_t>(drawing.made_trapezoids.size())};
     drawing.parts.push_back({mesh, {&drawing.all_made, 1}});
   }
+  if (is_projected()) drawing.project(view_);
   drawing.digest = mask_digest(drawing.parts, view_);
   drawing.is_full = drawing.digest == whole_mask_digest(view_);
   drawing.is_drawn = !drawing.is_full && drawing.digest != Digest();
@@ -490,22 +520,28 @@ void LayerDrawing::collect_edges(const Layer::Selection& selection, const InkOfL
   }
   for (std::size_t i = 0; i < line_count_; ++i) {
     if (tools.cancellation != nullptr) tools.cancellation->check();
-    take_sides(selection.box, ink, lines_[i]);
+    take_sides(selection.box, ink, lines_[i], tools);
   }
 }
 
 // Most edges are sides of several trapezoids, and some of these reach far out of the box.
-void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines) {
+void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& lines,
+                              DrawingTools& tools) const {
   const MeshView& mesh = layer_->mesh();
-  point_of_.clear();
+  lines.point_of_vertex.clear();
   sort_and_part(lines.sides);
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
     OutlineEdge line{edge.upper, edge.lower};
-    if (take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
-      if (has_pieces_) take_points(line, lines);
-      lines.edges.push_back(line);
+    if (!take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
+      continue;
     }
+    if (is_projected()) {
+      project_side(line, lines, tools);
+      continue;
+    }
+    if (has_pieces_) take_points(line, lines);
+    lines.edges.push_back(line);
   }
   lines.sides.clear();
   for (const SeenEdge& seen : lines.seen) {
@@ -513,6 +549,10 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
     OutlineEdge line{first, first + 1};
     if (!take_edge(seen.edge, seen.from, seen.to, box, ink, line)) continue;
     line.ink *= seen.share;
+    if (is_projected()) {
+      project_seen(line, seen, lines, tools);
+      continue;
+    }
     lines.seen_points.insert(lines.seen_points.end(), {seen.from, seen.to});
     lines.seen_edges.push_back(line);
   }
@@ -520,18 +560,76 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
 }
 
 // Of an edge between vertices of the piece at hand: edges that share one go on sharing it.
-void LayerDrawing::take_points(OutlineEdge& line, Lines& lines) {
+void LayerDrawing::take_points(OutlineEdge& line, Lines& lines) const {
   const std::span<const Point> vertices = layer_->mesh().vertices;
-  for (std::uint32_t* end : {&line.from, &line.to}) {
-    const auto [point, is_new] =
-        point_of_.emplace(*end, static_cast<std::uint32_t>(lines.points.size()));
-    if (is_new) lines.points.push_back(vertices[*end]);
-    *end = point->second;
+  line.from = lines.point_of(line.from, vertices[line.from]);
+  line.to = lines.point_of(line.to, vertices[line.to]);
+}
+
+std::uint32_t LayerDrawing::Lines::point_of(std::uint32_t vertex, Point place) {
+  const auto [found, is_new] =
+      point_of_vertex.emplace(vertex, static_cast<std::uint32_t>(points.size()));
+  if (is_new) points.push_back(place);
+  return found->second;
+}
+
+// Lines that meet in a vertex meet in one point, so that they are joined there.
+void LayerDrawing::project_side(const OutlineEdge& line, Lines& lines, DrawingTools& tools) const {
+  const Point from = layer_->mesh().vertices[line.from];
+  const Point to = layer_->mesh().vertices[line.to];
+  tools.plate_carree.cut(from, to, tools.way);
+  if (tools.way.empty()) return;
+  const auto point_at = [&lines](const PlateCarreeMesh::PointOnWay& end, std::uint32_t vertex) {
+    if (end.share == 0 || end.share == 1) return lines.point_of(vertex, end.place);
+    lines.points.push_back(end.place);
+    return static_cast<std::uint32_t>(lines.points.size() - 1);
+  };
+  const std::uint32_t first = point_at(tools.way.front(), line.from);
+  const std::uint32_t last = point_at(tools.way.back(), line.to);
+  append_way(line, length_between(from, to), first, last, tools.way, lines.points, lines.edges);
+}
+
+void LayerDrawing::project_seen(const OutlineEdge& line, const SeenEdge& seen, Lines& lines,
+                                DrawingTools& tools) const {
+  tools.plate_carree.cut(seen.from, seen.to, tools.way);
+  if (tools.way.empty()) return;
+  const auto first = static_cast<std::uint32_t>(lines.seen_points.size());
+  lines.seen_points.insert(lines.seen_points.end(),
+                           {tools.way.front().place, tools.way.back().place});
+  append_way(line, length_between(seen.from, seen.to), first, first + 1, tools.way,
+             lines.seen_points, lines.seen_edges);
+}
+
+/// Appends a line along the way, which was so long, from its first point to its last, with new ones
+/// between. Dashes are as long as in Web Mercator where the line runs along a parallel, and shorter
+/// where it does not.
+void LayerDrawing::append_way(const OutlineEdge& line, double length, std::uint32_t first,
+                              std::uint32_t last, std::span<const PlateCarreeMesh::PointOnWay> way,
+                              std::vector<Point>& points, std::vector<OutlineEdge>& edges) const {
+  const bool is_dashed = style().stroke.is_dashed();
+  std::uint32_t from = first;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    std::uint32_t to = last;
+    if (i + 1 < way.size()) {
+      to = static_cast<std::uint32_t>(points.size());
+      points.push_back(way[i].place);
+    }
+    OutlineEdge piece = line;
+    piece.from = from;
+    piece.to = to;
+    if (is_dashed) {
+      const double grown = line.rate * length * (way[i].share - way[i - 1].share);
+      piece.along = line.along + line.rate * length * way[i - 1].share;
+      piece.rate = grown / length_between(way[i - 1].place, way[i].place);
+    }
+    edges.push_back(piece);
+    from = to;
   }
 }
 
 std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
-  return has_pieces_ ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
+  const bool has_own = has_pieces_ || is_projected();
+  return has_own ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
 }
 
 // Of the piece of an edge between two points: its ink and its dashes. False if it is not seen here.
@@ -539,11 +637,13 @@ bool LayerDrawing::take_edge(std::uint32_t edge, Point from, Point to, const Box
                              const InkOfLoops& ink, OutlineEdge& line) const {
   const MeshView& mesh = layer_->mesh();
   const OutlineView& outline = layer_->outline();
-  line.ink = ink[outline.loop_size(edge)];
+  line.ink = ink.of(outline.loop_size(edge), from.y);
   Box around;
   around.include(from);
   around.include(to);
-  if (line.ink < kLeastInk || !around.intersects(box) || is_on_frame(from, to)) return false;
+  const bool has_frame = view_.projection != Projection::plane;
+  if (line.ink < kLeastInk || !around.intersects(box)) return false;
+  if (has_frame && is_on_frame(from, to)) return false;
   if (!style().stroke.is_dashed()) return true;
   const Point upper = mesh.vertices[mesh.edges[edge].upper];
   const Point lower = mesh.vertices[mesh.edges[edge].lower];

@@ -18,6 +18,7 @@
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
+#include "core/mesh/plate_carree_mesh.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
 #include "render/mask/stroke.h"
@@ -29,7 +30,20 @@
 namespace trapeze {
 
 /// The share of ink for the outlines of loops, by their size.
-using InkOfLoops = std::array<double, kLoopSizes>;
+class InkOfLoops {
+ public:
+  /// In a picture of that scale. The stroke is referred to.
+  InkOfLoops(const Stroke& stroke, const View& view, double scale);
+
+  /// Where the grid has that y.
+  double of(LoopSize size, std::int32_t y) const;
+
+ private:
+  const Stroke& stroke_;
+  View view_;
+  double scale_;
+  std::array<double, kLoopSizes> by_size_{};  // where pixels are alike in all of the picture
+};
 
 /// What the drawings of one tile have in common. The memory is kept from tile to tile.
 struct DrawingTools {
@@ -40,6 +54,8 @@ struct DrawingTools {
   std::vector<TrapezoidRange> ranges;
   ClassShapes shapes;
   std::vector<Box> places;
+  PlateCarreeMesh plate_carree;  // for outlines
+  std::vector<PlateCarreeMesh::PointOnWay> way;
 };
 
 /// A layer, or a part of one, with the classes of its features: null if all are drawn alike.
@@ -127,6 +143,7 @@ class LayerDrawing {
     std::vector<MeshEdge> made_edges;
     std::vector<MeshTrapezoid> made_trapezoids;
     TrapezoidRange all_made;
+    PlateCarreeMesh projected;  // all of it, if the picture is in plate carree
     std::vector<MeshPart> parts;
     Digest digest;  // of the mask, if it is drawn
     Mask mask;
@@ -136,6 +153,7 @@ class LayerDrawing {
     void add_place(const Box& place, bool is_hole);
     void add_patch(const ClassPatch& patch);
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
+    void project(const View& view);
   };
   // Outlines of one colour.
   struct Lines {
@@ -143,12 +161,17 @@ class LayerDrawing {
     // Edges of the mesh of the piece at hand, before they are taken once each.
     std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
-    std::vector<Point> points;  // between which they lie if there are several pieces
+    // Of several pieces, and in plate carree, the edges are between points of their own, some of
+    // which are vertices; by the numbers of those of the piece at hand.
+    std::vector<Point> points;
+    std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
     // Of features that others lie over: what is seen of them, between points of its own.
     std::vector<SeenEdge> seen;  // of the piece at hand
     std::vector<Point> seen_points;
     std::vector<OutlineEdge> seen_edges;
     Mask mask;
+
+    std::uint32_t point_of(std::uint32_t vertex, Point place);
   };
 
   // A trapezoid with the feature that it is a part of, and the class of that.
@@ -162,10 +185,13 @@ class LayerDrawing {
   /// The only one of which anything is painted; null if there are none or several.
   const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
+  bool is_projected() const { return view_.projection == Projection::plate_carree; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
-  void add_piece(const DrawnPiece& piece, const Layer::Selection& selection, const InkOfLoops& ink,
+  // `ink` is null if no outlines are drawn.
+  void add_piece(const DrawnPiece& piece, const Layer::Selection& selection, const InkOfLoops* ink,
                  DrawingTools& tools);
+  Box pixel_around(const Box& box) const;
   void add_shapes(DrawingTools& tools);
   std::span<const Point> points_of(const Lines& lines) const;
   ClassDrawing& new_drawing(std::uint8_t number);
@@ -201,14 +227,18 @@ class LayerDrawing {
   void add_edges(std::span<const TrapezoidRange> ranges, std::uint8_t number);
   void add_sides_of(std::uint32_t trapezoid, std::vector<std::uint32_t>& edges,
                     std::vector<SideOf>& in_common) const;
-  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines);
-  void take_points(OutlineEdge& line, Lines& lines);
+  void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines, DrawingTools& tools) const;
+  void take_points(OutlineEdge& line, Lines& lines) const;
+  void project_side(const OutlineEdge& line, Lines& lines, DrawingTools& tools) const;
+  void project_seen(const OutlineEdge& line, const SeenEdge& seen, Lines& lines,
+                    DrawingTools& tools) const;
+  void append_way(const OutlineEdge& line, double length, std::uint32_t first, std::uint32_t last,
+                  std::span<const PlateCarreeMesh::PointOnWay> way, std::vector<Point>& points,
+                  std::vector<OutlineEdge>& edges) const;
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;  // the piece at hand; afterwards the only one
   bool has_pieces_ = false;       // several of them
-  // Of the piece at hand, for one colour: the numbers of its vertices among the points.
-  std::unordered_map<std::uint32_t, std::uint32_t> point_of_;
   View view_;
   bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them

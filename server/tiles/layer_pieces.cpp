@@ -27,7 +27,7 @@ Box widened(const Box& box, double by) {
 
 std::vector<const PreparedPart*> parts_in_view(const TilePlan& plan, const LayerPaint& paint,
                                                const View& view) {
-  const PreparedParts& parts = *plan.dataset->layers()[paint.layer].parts;
+  const PreparedParts& parts = *plan.dataset->layers_on_all_grids()[paint.layer].parts;
   const Layer::Selection selection = selection_of(plan, paint, view);
   const PreparedPart* overview = parts.overview().get();
   if (overview != nullptr && paint.style.classing.is_plain() &&
@@ -44,7 +44,7 @@ std::vector<const PreparedPart*> parts_in_view(const TilePlan& plan, const Layer
 
 std::vector<LayerPiece> pieces_in_view(const TilePlan& plan, const LayerPaint& paint,
                                        const View& view) {
-  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  const ServedLayer& served = plan.dataset->layers_on_all_grids()[paint.layer];
   if (served.parts == nullptr) return {{&plan.layer_of(paint), served.revision}};
   std::vector<LayerPiece> pieces;
   for (const PreparedPart* part : parts_in_view(plan, paint, view)) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/grid/plate_carree.h"
+
 namespace trapeze {
 namespace {
 
@@ -20,14 +22,16 @@ View moved_by_worlds(View view, std::int64_t worlds) {
   return view;
 }
 
-/// So that its west is in the world itself.
+/// So that its west is in the world itself, where the world repeats.
 View brought_home(const View& view) {
+  if (view.projection == Projection::plane) return view;
   return moved_by_worlds(view, -copy_at(static_cast<double>(view.origin_x)));
 }
 
 }  // namespace
 
-std::optional<View> view_of_window(const WindowSides& sides, int width, int height) {
+std::optional<View> view_of_window(const WindowSides& sides, int width, int height,
+                                   Projection projection) {
   constexpr double kMost = static_cast<double>(kMostWorlds) * kGridSize;
   for (const double side : {sides.west, sides.north, sides.east, sides.south}) {
     if (!(std::abs(side) <= kMost)) return std::nullopt;  // written so that NaN fails
@@ -43,6 +47,7 @@ std::optional<View> view_of_window(const WindowSides& sides, int width, int heig
   view.stretch = static_cast<double>(rows) / height / view.cells_per_pixel;
   view.width = width;
   view.height = height;
+  view.projection = projection;
   return brought_home(view);
 }
 
@@ -63,7 +68,28 @@ double zoom_of(const View& view, double scale) {
   return std::abs(zoom - whole) < kZoomError ? whole : zoom;
 }
 
+std::optional<Point> place_at(const View& view, double column, double row) {
+  const double x = static_cast<double>(view.origin_x) + column * view.cells_per_pixel;
+  const double y = view.y_from_row(row);
+  const bool is_off = view.projection == Projection::plane && (x < kGridMin || x >= kGridMax);
+  if (is_off || y < kGridMin || y >= kGridMax) return std::nullopt;
+  const double from_west = std::fmod(x - kGridMin, static_cast<double>(kGridSize));
+  return Point{static_cast<std::int32_t>(std::floor(from_west) + kGridMin),
+               static_cast<std::int32_t>(std::floor(y))};
+}
+
+std::optional<WindowSides> sides_in(Projection to, const WindowSides& sides, Projection from) {
+  if (to == from) return sides;
+  const auto converted = [to](double y) {
+    if (to == Projection::plate_carree) return plate_carree_from_mercator(y);
+    return std::clamp<double>(mercator_from_plate_carree(y), kGridMin, kGridMax);
+  };
+  const WindowSides made{sides.west, converted(sides.north), sides.east, converted(sides.south)};
+  return made.height() > 0 ? std::optional(made) : std::nullopt;
+}
+
 std::vector<View> views_of_copies(const View& view) {
+  if (view.projection == Projection::plane) return {view};
   const auto west = static_cast<double>(view.origin_x);
   const double east = west + view.width * view.cells_per_pixel;
   const auto last =

@@ -254,7 +254,7 @@ void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
 std::vector<DrawnPiece> TilePainter::pieces_for(const TilePlan& plan, const LayerPaint& paint,
                                                 const View& view) {
   const Classing& classing = paint.style.classing;
-  const ServedLayer& served = plan.dataset->layers()[paint.layer];
+  const ServedLayer& served = plan.dataset->layers_on_all_grids()[paint.layer];
   std::vector<DrawnPiece> pieces;
   for (const LayerPiece& piece : pieces_in_view(plan, paint, view)) {
     std::shared_ptr<const FeatureClasses> classes;

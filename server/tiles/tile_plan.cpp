@@ -82,12 +82,12 @@ Problem no_fast_topology(const std::string& layer) {
 }  // namespace
 
 const Layer& TilePlan::layer_of(const LayerPaint& paint) const {
-  return *dataset->layers()[paint.layer].layer_for(paint.topology);
+  return *dataset->layers_on_all_grids()[paint.layer].layer_for(paint.topology);
 }
 
 const ServedLayer* TilePlan::damaged_layer() const {
   for (const LayerPaint& paint : layers) {
-    const ServedLayer& served = dataset->layers()[paint.layer];
+    const ServedLayer& served = dataset->layers_on_all_grids()[paint.layer];
     if (served.parts == nullptr ? !served.is_whole() : has_damaged_part(*served.parts, view)) {
       return &served;
     }
@@ -101,10 +101,13 @@ Level TilePlan::pixel_level() const {
 
 std::string TilePlan::key() const {
   std::string key = fmt::format("{},{} {:a}", view.origin_x, view.origin_y, view.cells_per_pixel);
+  if (view.projection != Projection::mercator) {
+    key += fmt::format(" {} ", static_cast<int>(view.projection));
+  }
   if (view.stretch != 1) key += fmt::format("*{:a}", view.stretch);
   key += fmt::format(" {}x{}@{} {}", view.width, view.height, scale, to_hex(background));
   for (const LayerPaint& paint : layers) {
-    const ServedLayer& layer = dataset->layers()[paint.layer];
+    const ServedLayer& layer = dataset->layers_on_all_grids()[paint.layer];
     key += fmt::format(" {}:{:016x}={}/{}/{} {}", layer.config.name, layer.revision, paint.level,
                        static_cast<int>(paint.topology), static_cast<int>(paint.small),
                        paint.style.key());
@@ -152,11 +155,13 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
     const Rgba colour = std::get<Rgba>(*background);
     if (colour.a > 0) plan.background = colour;
   }
-  const double zoom = zoom_of(request.view, request.scale);
+  const double zoom = request.system->zoom_of(request.view, request.scale);
   for (const std::string& name : request.layers) {
     const auto layer = plan.dataset->find(name);
     if (!layer) return unknown_layer(name, *plan.dataset);
-    const ServedLayer& served = plan.dataset->layers()[*layer];
+    const auto drawn = plan.dataset->find(name, request.system->grid);
+    if (!drawn) return not_built(name, *request.system, *plan.dataset);
+    const ServedLayer& served = plan.dataset->layers_on_all_grids()[*drawn];
     const LayerConfig& config = served.config;
     const auto query = complete_style(request.style, config);
     if (!query) return query.problem();
@@ -166,7 +171,7 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
     if (!style->is_visible() && !plan.debug.any()) continue;
     const Topology topology = topology_of_layer(*query, name);
     if (served.layer_for(topology) == nullptr) return no_fast_topology(name);
-    plan.layers.push_back({*layer, *std::move(style), level_of_layer(plan.view, *query, name),
+    plan.layers.push_back({*drawn, *std::move(style), level_of_layer(plan.view, *query, name),
                            topology, small_of_layer(*query, name)});
   }
   return plan;

@@ -12,7 +12,8 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kTilePattern = "/tiles/{layers}/{z}/{x}/{y}[@{1-4}x].{png,webp}";
+constexpr std::string_view kTilePattern =
+    "/tiles/{layers}[/{tile matrix set}]/{z}/{x}/{y}[@{1-4}x].{png,webp}";
 constexpr std::string_view kTileJsonPattern = "/tiles/{layers}[@{1-4}x].json";
 constexpr std::string_view kPng = ".png";
 constexpr std::string_view kWebp = ".webp";
@@ -39,14 +40,20 @@ std::optional<std::uint32_t> to_tile_number(std::string_view integer) {
   return number;
 }
 
-Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const StyledQuery& query) {
+Result<TilesRequest> parse_tile(const std::vector<std::string>& path, const StyledQuery& query,
+                                const TileMatrixSets& sets) {
   auto layers = parse_layer_list(path[1]);
   if (!layers) return std::move(layers).problem();
-  auto file = parse_picture_name(path[4]);
+  const auto names = std::span(path).last(3);  // of matrix, column and row
+  auto file = parse_picture_name(names[2]);
   if (!file) return std::move(file).problem();
-  auto tile = parse_tile_id(path[2], path[3], file->stem);
+  const auto set = path.size() == 6 ? sets.find(path[2]) : web_mercator_quad();
+  if (set == nullptr) {
+    return unknown_tile_matrix_set(path[2], "those that /ogc/tileMatrixSets lists");
+  }
+  auto tile = parse_tile_id(names[0], names[1], file->stem, *set);
   if (!tile) return std::move(tile).problem();
-  TileRequest request{*std::move(layers), *tile, file->scale, {}, file->format};
+  TileRequest request{*std::move(layers), *tile, file->scale, {}, file->format, set};
   auto style = query.style_for(request.layers);
   if (!style) return std::move(style).problem();
   request.style = *std::move(style);
@@ -87,7 +94,7 @@ Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& q
 
 bool has_style(std::span<const std::string> path) {
   if (path.size() < 3 || path[2] != "s") return false;
-  return path.size() == 7 || (path.size() == 4 && path[3].ends_with(kJson));
+  return path.size() == 7 || path.size() == 8 || (path.size() == 4 && path[3].ends_with(kJson));
 }
 
 }  // namespace
@@ -147,23 +154,42 @@ std::string scale_suffix(int scale) {
   return scale == 1 ? std::string() : fmt::format("@{}x", scale);
 }
 
-Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y) {
-  for (const std::string_view number : {z, x, y}) {
+double TileRequest::zoom() const {
+  return set->matrices[static_cast<std::size_t>(tile.z)].zoom();
+}
+
+Problem unknown_tile_matrix_set(std::string_view id, const std::string& names) {
+  return {404, fmt::format("There is no such tile matrix set here, but {}.", names),
+          "tileMatrixSet", std::string(id), names};
+}
+
+Problem no_such_tile(const TileMatrixSet& set) {
+  if (set.id == web_mercator_quad()->id) {
+    return {404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
+                             "2^zoom - 1.",
+                             kMaxZoom)};
+  }
+  return {404, fmt::format("There is no such tile in {}, whose matrices are {} to {}.", set.id,
+                           set.matrices.front().id, set.matrices.back().id)};
+}
+
+Result<TileId> parse_tile_id(std::string_view z, std::string_view x, std::string_view y,
+                             const TileMatrixSet& set) {
+  const bool is_usual = set.id == web_mercator_quad()->id;
+  for (const std::string_view number : {is_usual ? z : x, x, y}) {
     if (is_integer(number)) continue;
     return Problem{400,
                    fmt::format("Zoom, column and row of a tile are integers: {}.", kTilePattern),
                    "z/x/y", std::string(number), "an integer"};
   }
-  const auto zoom = to_tile_number(z);
+  const TileMatrix* matrix = set.find(z);
   const auto column = to_tile_number(x);
   const auto row = to_tile_number(y);
-  if (zoom && *zoom <= kMaxZoom && column && row) {
-    const TileId tile{static_cast<int>(*zoom), *column, *row};
-    if (tile.is_valid()) return tile;
+  if (matrix != nullptr && column && row) {
+    const TileId tile{static_cast<int>(matrix - set.matrices.data()), *column, *row};
+    if (set.has(tile)) return tile;
   }
-  return Problem{404, fmt::format("There is no such tile: zoom is 0 to {}, column and row are 0 to "
-                                  "2^zoom - 1.",
-                                  kMaxZoom)};
+  return no_such_tile(set);
 }
 
 Problem malformed_target() {
@@ -172,7 +198,8 @@ Problem malformed_target() {
           "are not allowed."};
 }
 
-Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& styles) {
+Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& styles,
+                                        const TileMatrixSets& sets) {
   auto path = decode_path(target.path);
   auto query = decode_query(target.query);
   if (!path || !query) {
@@ -185,7 +212,7 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
     if (is_styled) styled.problem().status = 404;
     return std::move(styled).problem();
   }
-  if (path->size() == 5) return parse_tile(*path, *styled);
+  if (path->size() == 5 || path->size() == 6) return parse_tile(*path, *styled, sets);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
     return parse_tile_json(path->back(), *styled);
   }

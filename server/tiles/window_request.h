@@ -19,6 +19,7 @@ struct WindowRequest {
   StyleQuery style;
   TileFormat format = TileFormat::png;
   std::string caption = {};  // for debug=tile
+  MapSystemPtr system = web_mercator();
 };
 
 /// The window that is a tile.

@@ -11,6 +11,7 @@ except ImportError as error:
     skip(f"OWSLib is not installed ({error})")
 
 BOX = (0.0, 5000000.0, 2500000.0, 7000000.0)
+DEGREES = (0.0, 40.0, 25.0, 60.0)
 SIZE = (500, 400)
 COMMON = {"srs": "EPSG:3857", "bbox": BOX, "size": SIZE, "format": "image/png"}
 
@@ -36,6 +37,17 @@ def check(base, version):
         assert shown == own_map(base, query), f"{version}: another picture in the style '{style}'"
     white = wms.getmap(layers=["land"], styles=[""], bgcolor="#FFFFFF", **COMMON).read()
     assert white == own_map(base, "&background=fff"), f"{version}: another background"
+
+    # In degrees, OWSLib brings the axes into the order of the version.
+    for system in ("EPSG:4326", "CRS:84"):
+        if system == "CRS:84" and version == "1.1.1":
+            continue
+        assert system in land.crsOptions, land.crsOptions
+        degrees = dict(COMMON, srs=system, bbox=DEGREES)
+        shown = wms.getmap(layers=["land"], styles=[""], transparent=True, **degrees).read()
+        box = ",".join(str(number) for number in DEGREES)
+        own = get(f"{base}map/land.png?bbox={box}&crs={system}&width={SIZE[0]}&height={SIZE[1]}")
+        assert shown == own, f"{version}: another picture in {system}"
 
     text = wms.getfeatureinfo(layers=["land"], query_layers=["land"], styles=[""],
                               info_format="text/plain", xy=(334, 244), **COMMON).read().decode()

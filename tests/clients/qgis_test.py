@@ -115,6 +115,37 @@ def check_print(base):
     print(f"QGIS prints lines as wide as on the screen; {differing} pixels differ")
 
 
+def check_degrees(base, name, source):
+    """A map in EPSG:4326, which QGIS asks for with the axes in the order of the version."""
+    extent = QgsRectangle(0, 33.75, 22.5, 56.25)  # four tiles of WorldCRS84Quad
+    layer = QgsRasterLayer(source, name, "wms")
+    assert layer.isValid(), f"{name}: {layer.error().message()}"
+    settings = QgsMapSettings()
+    settings.setLayers([layer])
+    settings.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:4326"))
+    settings.setOutputSize(QSize(SIZE, SIZE))
+    settings.setExtent(extent)
+    settings.setBackgroundColor(QColor(Qt.white))
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    assert not job.errors(), [error.message for error in job.errors()]
+    shown = bytes_of(job.renderedImage().convertToFormat(QImage.Format_RGB32))
+    picture = QImage(SIZE, SIZE, QImage.Format_RGB32)
+    picture.fill(Qt.white)
+    painter = QPainter(picture)
+    painter.drawImage(0, 0, QImage.fromData(get(
+        f"{base}map/land.png?bbox=0,33.75,22.5,56.25&crs=EPSG:4326&width={SIZE}&height={SIZE}")))
+    painter.end()
+    own = bytes_of(picture)
+    assert len(set(own[i:i + 3] for i in range(0, len(own), 4))) > 1, "there is nothing on the map"
+    differing = sum(
+        any(abs(a - b) > TOLERANCE for a, b in zip(shown[i:i + 3], own[i:i + 3]))
+        for i in range(0, len(own), 4))
+    assert differing <= MOST_DIFFERING_OF_WMTS * SIZE * SIZE, f"{name}: {differing} pixels differ"
+    print(f"QGIS shows {name}; {differing} pixels differ")
+
+
 application = QgsApplication([], False)
 application.initQgis()
 try:
@@ -137,6 +168,12 @@ try:
                   base + f"tiles/land/s/{style}/{{z}}/{{x}}/{{y}}.png", MOST_DIFFERING)
         check_features(layer)
         check_print(base)
+        check_degrees(base, "WMS in degrees",
+                      "IgnoreReportedLayerExtents=1&contextualWMSLegend=0&crs=EPSG:4326&dpiMode=7"
+                      f"&format=image/png&layers=land&styles=default&url={base}wms")
+        check_degrees(base, "WMTS in degrees",
+                      "contextualWMSLegend=0&crs=CRS:84&dpiMode=7&format=image/png&layers=land"
+                      f"&styles=default&tileMatrixSet=WorldCRS84Quad&url={base}wmts.xml")
     status = 0
 finally:
     QgsProject.instance().clear()

@@ -8,7 +8,8 @@
 
 namespace trapeze::oracle {
 
-Program::Program(const std::vector<std::string>& files, CoverageMode coverage) {
+Program::Program(const std::vector<std::string>& files, CoverageMode coverage, Map map)
+    : map_(map) {
   std::vector<LayerConfig> layers = layers_of_files(files);
   for (LayerConfig& layer : layers) layer.coverage = coverage;
   site_.data().set(Dataset::load(layers));
@@ -18,7 +19,7 @@ Picture Program::tile(const std::vector<std::string>& layers, TileName name,
                       const std::string& query) {
   std::string list;
   for (const std::string& layer : layers) list += (list.empty() ? "" : ",") + layer;
-  const std::string target = "/tiles/" + list + "/" + text_of(name) + ".png?" + query;
+  const std::string target = "/tiles/" + list + "/" + path_of(name, map_) + ".png?" + query;
   const HttpResponse response = site_.get(target);
   EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
   return response.status == 200 ? decode_png(*response.body) : Picture();
@@ -26,6 +27,12 @@ Picture Program::tile(const std::vector<std::string>& layers, TileName name,
 
 std::string text_of(TileName name) {
   return std::to_string(name.zoom) + "/" + std::to_string(name.x) + "/" + std::to_string(name.y);
+}
+
+std::string path_of(TileName name, Map map) {
+  if (map == Map::mercator) return text_of(name);
+  // The square has a quarter of its rows beyond either pole.
+  return "WorldCRS84Quad/" + text_of({name.zoom - 1, name.x, name.y - (1u << (name.zoom - 2))});
 }
 
 }  // namespace trapeze::oracle

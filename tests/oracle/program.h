@@ -14,16 +14,19 @@ namespace trapeze::oracle {
 
 class Program {
  public:
-  /// Serves the files as layers of their names.
-  Program(const std::vector<std::string>& files, CoverageMode coverage);
+  /// Serves the files as layers of their names, drawn in that map.
+  Program(const std::vector<std::string>& files, CoverageMode coverage, Map map = Map::mercator);
 
   /// Of layers, the lowest one first; empty, with a failure of the test, if there is none.
   Picture tile(const std::vector<std::string>& layers, TileName name, const std::string& query);
 
  private:
   testing::SampleSite site_{false};
+  Map map_;
 };
 
 std::string text_of(TileName name);
+/// As URLs have it. In degrees zoom is at least 2, and the tile between the poles.
+std::string path_of(TileName name, Map map);
 
 }  // namespace trapeze::oracle

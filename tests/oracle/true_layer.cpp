@@ -22,10 +22,10 @@ double area_of(const std::vector<Place>& places) {
   return std::abs(doubled) / 2;
 }
 
-void append_ring(const OGRLinearRing& ring, TruePart& part) {
+void append_ring(const OGRLinearRing& ring, Map map, TruePart& part) {
   TrueRing read;
   for (int i = 0; i < ring.getNumPoints(); ++i) {
-    read.places.push_back(place_of_lonlat(ring.getX(i), ring.getY(i)));
+    read.places.push_back(place_of_lonlat(ring.getX(i), ring.getY(i), map));
     part.bounds.include(read.places.back());
   }
   if (read.places.empty()) return;
@@ -36,16 +36,18 @@ void append_ring(const OGRLinearRing& ring, TruePart& part) {
   part.rings.push_back(std::move(read));
 }
 
-void append_parts(const OGRGeometry* geometry, TrueFeature& feature) {
+void append_parts(const OGRGeometry* geometry, Map map, TrueFeature& feature) {
   if (geometry == nullptr) return;
   const OGRwkbGeometryType type = wkbFlatten(geometry->getGeometryType());
   if (type == wkbPolygon) {
     TruePart part;
-    for (const OGRLinearRing* ring : *geometry->toPolygon()) append_ring(*ring, part);
+    for (const OGRLinearRing* ring : *geometry->toPolygon()) append_ring(*ring, map, part);
     feature.bounds.include(part.bounds);
     feature.parts.push_back(std::move(part));
   } else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
-    for (const OGRGeometry* one : *geometry->toGeometryCollection()) append_parts(one, feature);
+    for (const OGRGeometry* one : *geometry->toGeometryCollection()) {
+      append_parts(one, map, feature);
+    }
   }
 }
 
@@ -84,7 +86,7 @@ std::vector<Place> TrueLayer::vertices() const {
   return all;
 }
 
-TrueLayer read_layer(const std::string& source, const std::string& attribute) {
+TrueLayer read_layer(const std::string& source, const std::string& attribute, Map map) {
   GDALAllRegister();
   const GDALDatasetUniquePtr dataset(
       GDALDataset::Open(source.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY));
@@ -97,13 +99,14 @@ TrueLayer read_layer(const std::string& source, const std::string& attribute) {
     if (field >= 0 && row->IsFieldSetAndNotNull(field)) {
       feature.attributes[attribute] = row->GetFieldAsString(field);
     }
-    append_parts(row->GetGeometryRef(), feature);
+    append_parts(row->GetGeometryRef(), map, feature);
     layer.features.push_back(std::move(feature));
   }
   return layer;
 }
 
-Place place_of_lonlat(double lon, double lat) {
+Place place_of_lonlat(double lon, double lat, Map map) {
+  if (map == Map::degrees) return {lon / 360 + 0.5, 0.5 - lat / 360};
   const double radians = std::clamp(lat, -89.9, 89.9) * std::numbers::pi / 180;
   return {lon / 360 + 0.5, 0.5 - std::asinh(std::tan(radians)) / (2 * std::numbers::pi)};
 }

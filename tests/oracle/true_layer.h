@@ -11,7 +11,13 @@
 
 namespace trapeze::oracle {
 
-/// On the square of Web Mercator: 0 is its western or northern edge, 1 its eastern or southern one.
+/// How the world is laid on a square.
+enum class Map {
+  mercator,
+  degrees,  // all of them equal; the poles are a quarter away from the square's north and south
+};
+
+/// On the square of a map: 0 is its western or northern edge, 1 its eastern or southern one.
 struct Place {
   double x = 0;
   double y = 0;
@@ -60,8 +66,9 @@ struct TrueLayer {
 
 /// The first layer of a source in longitude and latitude; of its attributes those of that name.
 /// Throws std::runtime_error if it cannot be read.
-TrueLayer read_layer(const std::string& source, const std::string& attribute);
+TrueLayer read_layer(const std::string& source, const std::string& attribute,
+                     Map map = Map::mercator);
 
-Place place_of_lonlat(double lon, double lat);
+Place place_of_lonlat(double lon, double lat, Map map = Map::mercator);
 
 }  // namespace trapeze::oracle

@@ -16,6 +16,7 @@ namespace {
 constexpr int kFirstZoom = 8;
 constexpr int kLastZoom = 18;
 constexpr int kFirstDeepZoom = 14;
+constexpr int kFirstZoomInDegrees = 4;
 
 /// Layers of one place, the lowest one first.
 struct Real {
@@ -110,10 +111,10 @@ const std::vector<Exception> kExceptions = {
 
 class RealLayers {
  public:
-  RealLayers(const std::filesystem::path& folder, const Real& real) {
+  RealLayers(const std::filesystem::path& folder, const Real& real, Map map = Map::mercator) {
     for (const char* name : real.names) {
       files_.push_back((folder / (std::string(name) + ".fgb")).string());
-      layers_.push_back(read_layer(files_.back(), real.attribute));
+      layers_.push_back(read_layer(files_.back(), real.attribute, map));
       names_.emplace_back(name);
     }
     vertices_ = layers_.back().vertices();
@@ -173,6 +174,25 @@ TEST_P(TruePicturesTest, AreTrueInEveryStyleAtEveryZoom) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Layers, TruePicturesTest, ::testing::ValuesIn(kReal),
+                         [](const auto& test) { return name_of(test.param); });
+
+class TrueInDegreesTest : public TruePicturesTest {};
+
+TEST_P(TrueInDegreesTest, AreTrueInEveryStyleAtEveryZoom) {
+  RealLayers real(std::getenv("TRAPEZE_DATA"), GetParam(), Map::degrees);
+  Program automatic(real.files(), CoverageMode::automatic, Map::degrees);
+  HeldToTruth held({real.names(), real.layers(), {{"degrees", &automatic}}});
+  const TrueClasses classes = classes_of(real.upper(), GetParam().attribute);
+  for (int zoom = kFirstZoomInDegrees; zoom <= kLastZoom; zoom += 2) {
+    for (const TileName tile : real.tiles(zoom)) held.look_at(tile, classes);
+  }
+  expect_true(held, name_of(GetParam()), kExceptions);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layers, TrueInDegreesTest,
+                         ::testing::Values(Real{{"europe_countries"}, "iso_a3"},
+                                           Real{{"lands_complex"}, "name"}, Real{{"malta_natural"}},
+                                           Real{{"usa48_land", "us_counties"}}),
                          [](const auto& test) { return name_of(test.param); });
 
 /// Pixels around which, two pixels wide, every point is covered.

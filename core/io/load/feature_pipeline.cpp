@@ -81,8 +81,11 @@ unsigned thread_count(unsigned wanted) {
 /// One of the threads that bring features to the grid, and its worker.
 class FeaturePipeline::Lane {
  public:
-  Lane(const FeatureSource& source, const LayerOptions& options, FeatureWorker& worker)
-      : reader_(source), are_to_wait_(options.coverage != CoverageMode::off), worker_(worker) {}
+  Lane(const FeatureSource& source, const LayerOptions& options, FeatureWorker& worker,
+       std::shared_ptr<const TargetGrid> grid)
+      : reader_(source, std::move(grid)),
+        are_to_wait_(options.coverage != CoverageMode::off),
+        worker_(worker) {}
 
   void take(const Job& job) {
     FeatureRings& feature = reader_.read(*job.geometry, job.layer_index);
@@ -190,10 +193,11 @@ class FeaturePipeline::Pool {
 
 FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                                  const std::vector<FeatureWorker*>& workers,
-                                 std::function<void(double)> progress, const EarlierLayer* earlier)
+                                 std::function<void(double)> progress, const EarlierLayer* earlier,
+                                 const std::shared_ptr<const TargetGrid>& grid)
     : source_(source), options_(options), progress_(std::move(progress)), earlier_(earlier) {
   for (FeatureWorker* worker : workers) {
-    lanes_.push_back(std::make_unique<Lane>(source, options, *worker));
+    lanes_.push_back(std::make_unique<Lane>(source, options, *worker, grid));
   }
 }
 

@@ -71,10 +71,12 @@ class FeaturePipeline {
   /// called now and then with the share of the expected time that has gone, as far as it is spent
   /// here.
   /// Of `earlier`, if it is not null, is taken which features share borders: it was built with the
-  /// same options, and must outlive the pipeline.
+  /// same options, and must outlive the pipeline. Features come on the grid, null being that of Web
+  /// Mercator.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                   const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress,
-                  const EarlierLayer* earlier = nullptr);
+                  const EarlierLayer* earlier = nullptr,
+                  const std::shared_ptr<const TargetGrid>& grid = {});
   ~FeaturePipeline();
 
   /// Reads features until the limit is reached or the source has no more, and has all of them

@@ -14,6 +14,7 @@
 #include "core/io/source/attribute_reader.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
+#include "core/io/source/target_grid.h"
 #include "core/layer/earlier_layer.h"
 #include "core/layer/layer_arrays.h"
 
@@ -152,7 +153,8 @@ LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_
     progress(kPipelineShare + share * (1 - kPipelineShare));
   };
   FeaturePipeline pipeline(source, options.generalization, workers, building,
-                           earlier ? &*earlier : nullptr);
+                           earlier ? &*earlier : nullptr,
+                           options.grid.empty() ? nullptr : find_target_grid(options.grid));
   pipeline.run([&table](SourceFeature& next) { return table.append(next); }, {});
   fill_report(pipeline, builders, source, options.division == nullptr || options.part == 1,
               loaded.report);

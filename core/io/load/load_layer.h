@@ -24,9 +24,12 @@ struct LoadOptions {
   unsigned threads = 0;  // 0: one a core
   LayerOptions generalization = {};
   SourceSelection selection = {};
-  /// A layer of which to take over what is built of the same rings, or null: the result is the same
-  /// and is there sooner. Nothing is taken over of one that was built with other options. It was
-  /// built by the same program: see build_fingerprint().
+  /// The reference system on whose grid the layer is built, see find_target_grid(); empty: Web
+  /// Mercator.
+  std::string grid = {};
+  /// A layer, on the same grid, of which to take over what is built of the same rings, or null: the
+  /// result is the same and is there sooner. Nothing is taken over of one that was built with other
+  /// options. It was built by the same program: see build_fingerprint().
   std::shared_ptr<const Layer> earlier = {};
   /// Into which the source is divided, with the same selection and options; null: it is read whole.
   std::shared_ptr<const SourceDivision> division = {};

@@ -32,7 +32,7 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              "`trapeze prepare`");
   }
   const PreparedDemands demands = {options.weights, options.prepared_from, options.coverage,
-                                   options.close_gaps};
+                                   options.close_gaps, options.grid};
   if (!is_pattern_of_files(path)) return open_single(path, demands);
   LoadedLayer loaded =
       open_prepared_parts(files_of_pattern(path), demands, options.earlier_parts.get());
@@ -123,6 +123,7 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   load.selection = options.selection;
   load.progress = options.progress;
   load.earlier = options.earlier;
+  load.grid = options.grid;
   return load_layer(path, load);
 }
 

@@ -21,6 +21,7 @@ struct OpenOptions {
   std::optional<CoverageMode> coverage =
       {};                                 // unset: that of a prepared layer, else kUsualCoverage
   std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
+  std::string grid = {};                  // see LoadOptions
   std::shared_ptr<const Layer> earlier = {};  // see LoadOptions; of no use to a prepared layer
   std::shared_ptr<const PreparedParts> earlier_parts = {};  // see open_prepared_parts()
 };

@@ -9,10 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/digest.h"
 #include "core/io/file/byte_stream.h"
 #include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/build_fingerprint.h"
+#include "core/io/source/target_grid.h"
 #include "core/layer/layer_arrays.h"
 
 namespace trapeze {
@@ -310,9 +312,25 @@ void check_options(const LayerOptions& options, const PreparedDemands& demands) 
   }
 }
 
-void check_fingerprint(const LayerOptions& options, std::uint64_t fingerprint) {
-  if (build_fingerprint(options) == fingerprint) return;
-  throw UnfitError("was prepared by a version of Trapeze that builds layers otherwise");
+/// Of how layers are built, and on which grid.
+std::uint64_t fingerprint_on(const std::string& grid, const LayerOptions& options) {
+  const std::uint64_t fingerprint = build_fingerprint(options);
+  if (grid.empty()) return fingerprint;
+  const auto where = find_target_grid(grid);
+  Digester digester;
+  digester.add(fingerprint);
+  for (const char c : where->name) digester.add(static_cast<std::uint64_t>(c));
+  for (const double side : {where->middle_x, where->middle_y, where->half_side}) {
+    digester.add(std::bit_cast<std::uint64_t>(side));
+  }
+  return digester.digest().low;
+}
+
+void check_fingerprint(const LayerOptions& options, const std::string& grid,
+                       std::uint64_t fingerprint) {
+  if (fingerprint_on(grid, options) == fingerprint) return;
+  throw UnfitError("was prepared by a version of Trapeze that builds layers otherwise" +
+                   (grid.empty() ? "" : ", or not for " + grid));
 }
 
 void check_source(const SourceStamp& stamp, const PreparedDemands& demands) {
@@ -378,7 +396,7 @@ LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
   SectionReader sections(file->bytes());
   Description description = take_description(sections);
   const double read_seconds = seconds_since(start);
-  check_fingerprint(description.numbers.options, sections.fingerprint());
+  check_fingerprint(description.numbers.options, demands.grid, sections.fingerprint());
   check_options(description.numbers.options, demands);
   check_source(description.source, demands);
   LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
@@ -392,7 +410,7 @@ LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
 }  // namespace
 
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
-                         const SourceStamp& source) {
+                         const SourceStamp& source, const std::string& grid) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !is_prepared_file(path)) {
     throw std::runtime_error(path + ": is there already and is no prepared file; not replaced");
@@ -402,7 +420,7 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
   add_arrays(arrays, sections);
-  sections.write(path, build_fingerprint(arrays.options));
+  sections.write(path, fingerprint_on(grid, arrays.options));
 }
 
 LoadedLayer open_prepared_layer(const std::string& path, const PreparedDemands& demands) {
@@ -443,7 +461,8 @@ LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary
   });
 }
 
-EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options) {
+EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options,
+                                   const std::string& grid) {
   EarlierPrepared earlier;
   try {
     const auto file = std::make_shared<const MappedFile>(path);
@@ -451,7 +470,7 @@ EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& 
     Description description = take_description(sections);
     check_options(description.numbers.options,
                   {options.weights, "", options.coverage, options.close_gaps});
-    check_fingerprint(options, sections.fingerprint());
+    check_fingerprint(options, grid, sections.fingerprint());
     earlier.layer = layer_from_sections(sections, std::move(description), file).layer;
     earlier.file = file;
   } catch (const UnfitError& error) {

@@ -18,9 +18,10 @@ namespace trapeze {
 
 /// Saves a layer that was loaded from the source of the stamp, or a part of one, under a `revision`
 /// that it is to have when it is opened. A prepared file of that name is replaced, see
-/// write_atomically; any other one is not. Throws std::runtime_error that names the path.
+/// write_atomically; any other one is not. `grid` is the one it was built on. Throws
+/// std::runtime_error that names the path.
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
-                         const SourceStamp& source);
+                         const SourceStamp& source, const std::string& grid = {});
 
 /// The demands on a prepared layer.
 struct PreparedDemands {
@@ -28,6 +29,7 @@ struct PreparedDemands {
   std::string source;  // what it must have been prepared from; empty: what it names itself
   std::optional<CoverageMode> coverage = {};  // unset: any
   std::optional<double> close_gaps = {};      // unset: any
+  std::string grid = {};                      // see LoadOptions
 };
 
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large
@@ -83,7 +85,8 @@ struct EarlierPrepared {
 /// version of Trapeze, or prepared with other options than these, is unfit. Throws
 /// std::runtime_error that names the path if there is no file, or one that is no prepared file or
 /// is damaged.
-EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options);
+EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options,
+                                   const std::string& grid = {});
 
 /// The same of a file in memory, kept by `memory` and beginning at a multiple of 64 bytes; its
 /// source and its fingerprint are not checked. Throws std::exception.

@@ -132,6 +132,7 @@ RingReader::RingReader(const SourceCrs& crs, Options options) : crs_(crs), optio
   if (crs.kind == SourceCrs::Kind::geographic || crs.kind == SourceCrs::Kind::projected) {
     transform_ = std::make_unique<LonLatTransform>(crs);
   }
+  if (options_.grid != nullptr) grid_ = std::make_unique<GridRings>(options_.grid);
 }
 
 void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
@@ -142,13 +143,15 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
   part_ends_.clear();
   collect(geometry, feature);
   check_coordinates(feature);
+  if (feature.failure.empty() && grid_ != nullptr) cut_source_edges(feature);
   if (feature.failure.empty() && transform_ != nullptr) to_lonlat(feature);
   if (!feature.failure.empty()) return;
   feature.rings.points.reserve(x_.size());
   std::size_t begin = 0;
   std::size_t part = 0;
   for (std::size_t ring = 0; ring < ends_.size(); ++ring) {
-    append_ring(begin, ends_[ring], feature.rings);
+    append_ring(begin, ends_[ring], feature);
+    if (!feature.failure.empty()) return feature.rings.clear();
     begin = ends_[ring];
     if (part == part_ends_.size() || ring + 1 < part_ends_[part]) continue;
     feature.part_ends.push_back(static_cast<std::uint32_t>(feature.rings.size()));
@@ -221,12 +224,66 @@ void RingReader::to_lonlat(FeatureRings& feature) {
   }
 }
 
-void RingReader::append_ring(std::size_t begin, std::size_t end, Rings& rings) {
+bool RingReader::map_to_lonlat(std::vector<double>& x, std::vector<double>& y) {
+  if (transform_ != nullptr) {
+    return transform_->apply(x, y).empty() && are_finite(x) && are_finite(y);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const GridPosition cell = grid_from_metres(x[i], y[i]);
+    const LonLat place = lonlat_from_grid(cell.x, cell.y);
+    x[i] = place.lon;
+    y[i] = place.lat;
+  }
+  return true;
+}
+
+// Where edges are straight on a plane, they are curves in degrees. What cannot be cut is left as it
+// is, to be told of where all of it is brought to degrees.
+void RingReader::cut_source_edges(FeatureRings& feature) {
+  const bool is_plane =
+      crs_.kind == SourceCrs::Kind::projected || crs_.kind == SourceCrs::Kind::web_mercator;
+  if (!is_plane) return;
+  const PointMap map = [this](std::vector<double>& x, std::vector<double>& y) {
+    return map_to_lonlat(x, y);
+  };
+  std::vector<double> x;
+  std::vector<double> y;
+  std::size_t begin = 0;
+  for (std::size_t& end : ends_) {
+    MappedRing ring;
+    for (std::size_t i = begin; i < end; ++i) ring.before.push_back({x_[i], y_[i]});
+    begin = end;
+    const PositionRing whole = ring.before;
+    if (!cut_edges(ring, map, metres_of_degrees, GridRings::kMostOffMetres)) ring.before = whole;
+    for (const Position p : ring.before) {
+      x.push_back(p.x);
+      y.push_back(p.y);
+    }
+    end = x.size();
+  }
+  x_.swap(x);
+  y_.swap(y);
+  if (transform_ == nullptr && !map_to_lonlat(x_, y_)) {
+    feature.failure = "lies where its coordinate reference system is not defined";
+  }
+}
+
+void RingReader::append_on_grid(FeatureRings& feature) {
+  if (!grid_->project(ring_, parts_)) {
+    feature.failure = "lies where " + grid_->grid().name + " is not defined";
+    return;
+  }
+  for (const PositionRing& part : parts_) append_snapped(part, feature.rings);
+}
+
+void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& feature) {
   // The closing vertex repeats the first one; a ring that lacks it is closed all the same.
   if (end - begin > 1 && x_[begin] == x_[end - 1] && y_[begin] == y_[end - 1]) --end;
   ring_.clear();
   for (std::size_t i = begin; i < end; ++i) ring_.push_back({x_[i], y_[i]});
   if (crs_.kind == SourceCrs::Kind::projected) unwrap_longitudes(ring_);
+  if (grid_ != nullptr) return append_on_grid(feature);
+  Rings& rings = feature.rings;
   project_ring();
 
   const Extent extent = extent_of(ring_);

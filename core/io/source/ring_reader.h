@@ -11,6 +11,7 @@
 
 #include "core/grid/rings.h"
 #include "core/io/source/clip_ring.h"
+#include "core/io/source/grid_rings.h"
 #include "core/io/source/source_crs.h"
 
 namespace trapeze {
@@ -40,11 +41,15 @@ bool has_polygons(const OGRGeometry& geometry);
 /// square, and snapped to the nearest cell, without consecutive duplicates. What lies beyond the
 /// 180th meridian comes back in on the other side. Rings are neither sorted nor validated.
 ///
+/// On the grid of another system, rings are clipped to what that shows, and edges, which are
+/// straight in the source, are cut so finely that they stay where they are: see GridRings.
+///
 /// Belongs to the thread that made it.
 class RingReader {
  public:
   struct Options {
     bool shells_are_clockwise = false;  // count clockwise rings as polygons, not OGR's polygons
+    std::shared_ptr<const TargetGrid> grid = {};  // null: Web Mercator
   };
 
   /// `crs` must outlive the reader. Throws SourceError if it cannot be projected.
@@ -59,7 +64,10 @@ class RingReader {
   void collect_ring(const OGRLinearRing& ring, FeatureRings& feature);
   void check_coordinates(FeatureRings& feature) const;
   void to_lonlat(FeatureRings& feature);
-  void append_ring(std::size_t begin, std::size_t end, Rings& rings);
+  void cut_source_edges(FeatureRings& feature);
+  bool map_to_lonlat(std::vector<double>& x, std::vector<double>& y);
+  void append_on_grid(FeatureRings& feature);
+  void append_ring(std::size_t begin, std::size_t end, FeatureRings& feature);
   void project_ring();
   void clip_latitude();
   void append_clipped(double shift, Rings& rings);
@@ -67,6 +75,7 @@ class RingReader {
   const SourceCrs& crs_;
   Options options_;
   std::unique_ptr<LonLatTransform> transform_;  // for the kinds that need one
+  std::unique_ptr<GridRings> grid_;             // null: Web Mercator
 
   // Of the current feature, ring after ring: coordinates of the source, then degrees or metres.
   std::vector<double> x_;
@@ -78,6 +87,7 @@ class RingReader {
   PositionRing ring_;
   PositionRing clipped_;
   PositionRing scratch_;
+  std::vector<PositionRing> parts_;  // of it on the grid of another system
 };
 
 }  // namespace trapeze

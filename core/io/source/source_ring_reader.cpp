@@ -1,13 +1,17 @@
 #include "core/io/source/source_ring_reader.h"
 
+#include <utility>
+
 #include "core/io/source/open_source.h"
 
 namespace trapeze {
 
-SourceRingReader::SourceRingReader(const FeatureSource& source)
+SourceRingReader::SourceRingReader(const FeatureSource& source,
+                                   std::shared_ptr<const TargetGrid> grid)
     : layers_(source.layers()),
       driver_(source.driver()),
-      options_{.shells_are_clockwise = has_clockwise_shells(source.driver())},
+      options_{.shells_are_clockwise = has_clockwise_shells(source.driver()),
+               .grid = std::move(grid)},
       stores_rings_alone_(source.driver() == "OSM"),
       readers_(source.layers().size()) {}
 

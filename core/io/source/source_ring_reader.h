@@ -16,8 +16,9 @@ namespace trapeze {
 /// Belongs to the thread that made it; several may read geometries of one source at once.
 class SourceRingReader {
  public:
-  /// `source` must outlive the reader.
-  explicit SourceRingReader(const FeatureSource& source);
+  /// On that grid, null being Web Mercator. `source` must outlive the reader.
+  explicit SourceRingReader(const FeatureSource& source,
+                            std::shared_ptr<const TargetGrid> grid = {});
 
   /// The rings of a geometry of that layer; they are overwritten by the next call, and the caller
   /// may change them. Throws SourceError if the whole source cannot be understood: it names no CRS

@@ -120,6 +120,36 @@ TEST_F(GdalClientsTest, TheWmtsClientReadsOurTiles) {
       0);
 }
 
+// In degrees, where version 1.3.0 has latitudes first.
+TEST_F(GdalClientsTest, TheWmsClientReadsOurMapsInDegrees) {
+  for (const char* version : {"1.1.1", "1.3.0"}) {
+    const std::string system = version == std::string("1.1.1") ? "SRS" : "CRS";
+    const std::string order = version == std::string("1.1.1") ? "xyXY" : "yxYX";
+    const std::string file = folder_ + "/degrees" + version + ".xml";
+    std::ofstream(file) << "<GDAL_WMS><Service name=\"WMS\"><Version>" << version
+                        << "</Version><ServerUrl>" << url_ << "/wms?</ServerUrl><" << system
+                        << ">EPSG:4326</" << system << "><BBoxOrder>" << order
+                        << "</BBoxOrder><ImageFormat>image/png</ImageFormat>"
+                           "<Transparent>TRUE</Transparent>"
+                           "<Layers>rings</Layers></Service><DataWindow>"
+                           "<UpperLeftX>-180</UpperLeftX><UpperLeftY>90</UpperLeftY>"
+                           "<LowerRightX>180</LowerRightX><LowerRightY>-90</LowerRightY>"
+                           "<SizeX>512</SizeX><SizeY>512</SizeY></DataWindow>"
+                           "<BlockSizeX>512</BlockSizeX><BlockSizeY>512</BlockSizeY>"
+                           "<Projection>EPSG:4326</Projection><BandsCount>4</BandsCount>"
+                           "</GDAL_WMS>";
+    const Picture read = world(file);
+    const Picture own = decode_png(
+        *sample_.get("/map/rings.png?crs=CRS:84&bbox=-180,-90,180,90&width=512&height=512").body);
+    ASSERT_EQ(read.width, own.width);
+    int count = 0;
+    for (int y = 0; y < 512; ++y) {
+      for (int x = 0; x < 512; ++x) count += read.at(x, y) != own.at(x, y);
+    }
+    EXPECT_EQ(count, 0) << version;
+  }
+}
+
 TEST_F(GdalClientsTest, TheWmsClientReadsOurMaps) {
   for (const char* version : {"1.1.1", "1.3.0"}) {
     const std::string system = version == std::string("1.1.1") ? "SRS" : "CRS";

@@ -217,7 +217,7 @@ TEST_F(MapPictureTest, TellsWhatIsWrong) {
       {"/map/rings.png?bbox=1,2,3,4&width=16385", 400},
       {"/map/rings@4x.png?bbox=1,2,3,4&width=16384&height=1", 400},
       {"/map/rings.png?bbox=1,2,3,4&width=2049&height=2048", 400},
-      {"/map/rings.png?bbox=1,2,3,4&crs=EPSG:4326", 400},
+      {"/map/rings.png?bbox=1,2,3,4&crs=EPSG:2056", 400},
       {"/map/rings.png?bbox=1,2,3,4&fil=red", 400},
       {"/map/rings.gif?bbox=1,2,3,4", 400},
       {"/map/rings@5x.png?bbox=1,2,3,4", 400},

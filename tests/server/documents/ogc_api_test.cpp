@@ -50,7 +50,7 @@ TEST_F(OgcApiTest, TheLinksLeadFromTheLandingPageToATile) {
   const std::string self = link(rings, "self");
   EXPECT_EQ(json(self), rings);
   const auto tilesets = json(link(rings, "http://www.opengis.net/def/rel/ogc/1.0/tilesets-map"));
-  ASSERT_EQ(tilesets["tilesets"].size(), 1u);
+  ASSERT_EQ(tilesets["tilesets"].size(), 2u);
   EXPECT_EQ(tilesets["tilesets"][0]["dataType"], "map");
   EXPECT_EQ(tilesets["tilesets"][0]["tileMatrixSetURI"],
             "http://www.opengis.net/def/tilematrixset/OGC/1.0/WebMercatorQuad");

@@ -90,8 +90,8 @@ TEST_F(OgcMapTest, IsLinkedToAndConformsToWhatHolds) {
 TEST_F(OgcMapTest, TellsWhatIsWrong) {
   const std::string map = "/ogc/collections/rings/map?";
   for (const char* query :
-       {"bbox=1,2,3", "bbox=a,b,c,d", "bbox=3,2,3,4", "bbox-crs=EPSG:4326", "crs=CRS:84", "width=0",
-        "width=99999", "bgcolor=cake", "transparent=maybe", "f=json", "cake=1",
+       {"bbox=1,2,3", "bbox=a,b,c,d", "bbox=3,2,3,4", "bbox-crs=EPSG:2056", "crs=EPSG:2056",
+        "width=0", "width=99999", "bgcolor=cake", "transparent=maybe", "f=json", "cake=1",
         "bbox=0,0,1,1&width=16000&height=16000"}) {
     EXPECT_EQ(sample_.get(map + query).status, 400) << query;
   }

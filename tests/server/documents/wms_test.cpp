@@ -299,7 +299,7 @@ TEST_F(WmsTest, TellsWhatIsWrongInTheWordsOfItsVersion) {
         << one.target;
     EXPECT_THAT(*response.body, Not(HasSubstr("<b>")));
   }
-  const auto old = sample_.get(changed(kOldMap, "EPSG:3857", "EPSG:4326"));
+  const auto old = sample_.get(changed(kOldMap, "EPSG:3857", "EPSG:2056"));
   EXPECT_EQ(old.header("Content-Type"), "application/vnd.ogc.se_xml");
   EXPECT_THAT(*old.body, HasSubstr("<ServiceExceptionReport version=\"1.1.1\">"));
   EXPECT_THAT(*old.body, HasSubstr("<ServiceException code=\"InvalidSRS\">"));

@@ -201,7 +201,7 @@ TEST_F(WmtsTest, WhatIsWrongIsAnExceptionWithItsCodeAndItsParameter) {
       {changed(kTile, "=rings", "=a%20b"), 400, "InvalidParameterValue", "Layer"},
       {changed(kTile, "default", "nosuch"), 400, "InvalidParameterValue", "Style"},
       {changed(kTile, "image/png", "image/jpeg"), 400, "InvalidParameterValue", "Format"},
-      {changed(kTile, "WebMercatorQuad", "WorldCRS84Quad"), 400, "InvalidParameterValue",
+      {changed(kTile, "WebMercatorQuad", "GlobalCRS84Scale"), 400, "InvalidParameterValue",
        "TileMatrixSet"},
       {changed(kTile, "MATRIX=3", "MATRIX=25"), 400, "InvalidParameterValue", "TileMatrix"},
       {changed(kTile, "TILEROW=2", "TILEROW=8"), 400, "TileOutOfRange", "TileRow"},

@@ -1,0 +1,85 @@
+// Trapezoids and edges of the grid as they are drawn in plate carree.
+//
+// Points go where they belong, rounded to cells. Edges that are so high that they would not be
+// straight (see plate_carree.h) are cut at certain rows of the grid, the same in all pictures of
+// that resolution, and trapezoids with them: so neighbours still share their sides, nothing
+// overlaps and nothing gapes. A side is never farther from its curve than kMostCurved of a row.
+//
+// Thread-safety: one thread at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/grid/grid.h"
+#include "core/mesh/trapezoid_mesh.h"
+
+namespace trapeze {
+
+/// From y of the grid to rounded y of plate carree. Remembers some, as vertices come more than
+/// once.
+class PlateCarreeRows {
+ public:
+  std::int32_t row_of(std::int64_t y);
+
+ private:
+  struct Known {
+    std::int64_t y = kGridSize;  // off the grid: none
+    std::int32_t row = 0;
+  };
+  static constexpr unsigned kBits = 10;
+  std::array<Known, std::size_t{1} << kBits> known_{};
+};
+
+class PlateCarreeMesh {
+ public:
+  /// How far a side may be from the curve that it stands for, in rows of the picture.
+  static constexpr double kMostCurved = 0.01;
+
+  /// Begins a picture whose rows have that many cells of plate carree, and which shows nothing of
+  /// the grid above or below the box.
+  void begin(double cells_per_row, const Box& box);
+
+  /// Adds trapezoids, as far as they lie in the box.
+  void add(const MeshView& mesh, std::span<const TrapezoidRange> ranges);
+
+  /// Of an edge, or a piece of one: the points between which it is drawn, from end to end, as far
+  /// as they matter to the box; nothing if it does not. Replaces `points`, which have shares of the
+  /// way from one end to the other, ascending.
+  struct PointOnWay {
+    Point place;
+    double share = 0;
+  };
+  void cut(Point from, Point to, std::vector<PointOnWay>& points);
+
+  std::span<const Point> vertices() const { return vertices_; }
+  std::span<const MeshEdge> edges() const { return edges_; }
+  std::span<const MeshTrapezoid> trapezoids() const { return trapezoids_; }
+
+  Point projected(Point p) { return {p.x, rows_.row_of(p.y)}; }
+
+ private:
+  // The two ends of a side, upper first.
+  struct Side {
+    Point upper;
+    Point lower;
+  };
+
+  void add(const MeshView& mesh, const MeshTrapezoid& trapezoid);
+  void append(std::int64_t top, std::int64_t bottom, const Side& left, const Side& right);
+  bool is_cut(const Side& side) const;
+  Side piece_at(const Side& side, std::int64_t y) const;
+  Point on_side(const Side& side, std::int64_t y) const;
+
+  std::int64_t height_ = kGridSize;  // of pieces, a power of two
+  std::int64_t north_ = kGridMin;
+  std::int64_t south_ = kGridMax;
+  PlateCarreeRows rows_;
+  std::vector<Point> vertices_;
+  std::vector<MeshEdge> edges_;
+  std::vector<MeshTrapezoid> trapezoids_;
+};
+
+}  // namespace trapeze
