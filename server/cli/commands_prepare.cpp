@@ -9,10 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-<<<<<<< HEAD
 #include <utility>
-=======
->>>>>>> grids
 #include <vector>
 
 #include "core/io/file/mapped_file.h"
@@ -159,7 +156,6 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   }
 }
 
-<<<<<<< HEAD
 std::shared_ptr<const SourceDivision> divide(const std::string& file, const LoadOptions& how,
                                              std::uint32_t count) {
   std::shared_ptr<const SourceDivision> division;
@@ -234,7 +230,8 @@ int run_join(const PrepareArguments& arguments) {
   }
   join(files, output.string());
   return 0;
-=======
+}
+
 /// That of Web Mercator, which has no name, and those of the systems.
 std::vector<std::string> grids_or_throw(const std::vector<std::string>& names) {
   std::vector<std::string> grids = {""};
@@ -248,7 +245,6 @@ std::vector<std::string> grids_or_throw(const std::vector<std::string>& names) {
     grids.push_back(name);
   }
   return grids;
->>>>>>> grids
 }
 
 }  // namespace
@@ -264,35 +260,28 @@ int run_prepare(const PrepareArguments& arguments) {
   if (!arguments.part.empty()) parts = parts_or_throw(arguments.part);
   const std::vector<LayerConfig> layers = layers_or_throw(arguments.files);
   const std::vector<std::string> grids = grids_or_throw(arguments.crs);
+  if (parts && grids.size() > 1) {
+    throw UsageError("--part and --crs exclude each other: layers in parts are in EPSG:3857");
+  }
   make_folder(arguments.output);
   bool is_all_prepared = true;
   for (const LayerConfig& layer : layers) {
     const auto output = std::filesystem::path(arguments.output) / (layer.name + kExtension);
-<<<<<<< HEAD
-    try {
-      if (parts) {
-        prepare_parts(layer, how, *parts, arguments);
-      } else {
-        prepare(layer.file, stamp_or_throw(layer.file), how, arguments.max_skipped, output.string(),
-                arguments.reuse);
-      }
-    } catch (const std::exception& error) {
-      // Reported here and not by main, so that the files after this one are prepared too.
-      fmt::print(stderr, "trapeze: {}\n", error.what());
-      is_all_prepared = false;
-=======
     for (const std::string& grid : grids) {
+      how.grid = grid;
       try {
-        how.grid = grid;
-        prepare(layer.file, how, arguments.max_skipped,
-                grid.empty() ? output.string() : prepared_on_grid(output.string(), grid),
-                arguments.reuse);
+        if (parts) {
+          prepare_parts(layer, how, *parts, arguments);
+        } else {
+          prepare(layer.file, stamp_or_throw(layer.file), how, arguments.max_skipped,
+                  grid.empty() ? output.string() : prepared_on_grid(output.string(), grid),
+                  arguments.reuse);
+        }
       } catch (const std::exception& error) {
         // Reported here and not by main, so that the files after this one are prepared too.
         fmt::print(stderr, "trapeze: {}\n", error.what());
         is_all_prepared = false;
       }
->>>>>>> grids
     }
   }
   return is_all_prepared ? 0 : 1;
