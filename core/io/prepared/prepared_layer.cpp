@@ -438,7 +438,7 @@ PreparedSummary read_prepared_summary(const std::string& path) {
 void check_prepared_summary(const std::string& path, const PreparedSummary& summary,
                             const PreparedDemands& demands) {
   opened(path, [&] {
-    check_fingerprint(summary.options, summary.fingerprint);
+    check_fingerprint(summary.options, demands.grid, summary.fingerprint);
     check_options(summary.options, demands);
     check_source(summary.source, demands);
   });
