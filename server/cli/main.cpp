@@ -365,9 +365,10 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
       ->required()
       ->type_name("DIR");
   prepare
-      ->add_option("--part", arguments.part,
-                   "Prepare the I-th of N parts with about as many vertices each, or those from "
-                   "the A-th to the B-th one after the other")
+      ->add_option(
+          "--part", arguments.part,
+          "Prepare the I-th of N parts with about as many vertices each; A-B/N: those from "
+          "the A-th to the B-th, one after the other")
       ->type_name("I/N");
   prepare
       ->add_option("--join", arguments.join,
