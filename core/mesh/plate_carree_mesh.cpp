@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/grid/plate_carree.h"
-
 namespace trapeze {
 namespace {
 
@@ -14,16 +12,6 @@ std::int64_t cut_before(std::int64_t y, std::int64_t height) {
 }
 
 }  // namespace
-
-std::int32_t PlateCarreeRows::row_of(std::int64_t y) {
-  const std::size_t place = static_cast<std::uint64_t>(y) * 0x9e3779b97f4a7c15u >> (64 - kBits);
-  Known& known = known_[place];
-  if (known.y != y) {
-    known = {y, static_cast<std::int32_t>(
-                    std::lround(plate_carree_from_mercator(static_cast<double>(y))))};
-  }
-  return known.row;
-}
 
 void PlateCarreeMesh::begin(double cells_per_row, const Box& box) {
   height_ = straight_height(kMostCurved * cells_per_row);
@@ -57,8 +45,8 @@ void PlateCarreeMesh::add(const MeshView& mesh, const MeshTrapezoid& trapezoid) 
 
 void PlateCarreeMesh::append(std::int64_t top, std::int64_t bottom, const Side& left,
                              const Side& right) {
-  const std::int32_t from = rows_.row_of(top);
-  const std::int32_t to = rows_.row_of(bottom);
+  const std::int32_t from = plate_carree_row(static_cast<std::int32_t>(top));
+  const std::int32_t to = plate_carree_row(static_cast<std::int32_t>(bottom));
   if (from >= to) return;
   const auto v = static_cast<std::uint32_t>(vertices_.size());
   const auto e = static_cast<std::uint32_t>(edges_.size());

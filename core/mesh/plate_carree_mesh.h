@@ -8,30 +8,15 @@
 // Thread-safety: one thread at a time.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/grid/grid.h"
+#include "core/grid/plate_carree.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
-
-/// From y of the grid to rounded y of plate carree. Remembers some, as vertices come more than
-/// once.
-class PlateCarreeRows {
- public:
-  std::int32_t row_of(std::int64_t y);
-
- private:
-  struct Known {
-    std::int64_t y = kGridSize;  // off the grid: none
-    std::int32_t row = 0;
-  };
-  static constexpr unsigned kBits = 10;
-  std::array<Known, std::size_t{1} << kBits> known_{};
-};
 
 class PlateCarreeMesh {
  public:
@@ -58,7 +43,7 @@ class PlateCarreeMesh {
   std::span<const MeshEdge> edges() const { return edges_; }
   std::span<const MeshTrapezoid> trapezoids() const { return trapezoids_; }
 
-  Point projected(Point p) { return {p.x, rows_.row_of(p.y)}; }
+  static Point projected(Point p) { return {p.x, plate_carree_row(p.y)}; }
 
  private:
   // The two ends of a side, upper first.
@@ -76,7 +61,6 @@ class PlateCarreeMesh {
   std::int64_t height_ = kGridSize;  // of pieces, a power of two
   std::int64_t north_ = kGridMin;
   std::int64_t south_ = kGridMax;
-  PlateCarreeRows rows_;
   std::vector<Point> vertices_;
   std::vector<MeshEdge> edges_;
   std::vector<MeshTrapezoid> trapezoids_;

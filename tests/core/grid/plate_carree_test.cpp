@@ -22,6 +22,20 @@ TEST(PlateCarreeTest, RowsAreLatitudes) {
   }
 }
 
+TEST(PlateCarreeTest, TheTableHasTheSameRows) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<std::int32_t> any(kGridMin, kGridMax);
+  for (int i = 0; i < 100'000; ++i) {
+    const std::int32_t y = any(random);
+    ASSERT_NEAR(plate_carree_row(y), plate_carree_from_mercator(y), 0.5001) << y;
+  }
+  for (const std::int32_t y : {kGridMin, 0, kGridMax}) {
+    EXPECT_EQ(plate_carree_row(y), std::lround(plate_carree_from_mercator(y)));
+  }
+}
+
 TEST(PlateCarreeTest, PolesAreFarFromTheGrid) {
   for (const double y : {1.0 * kQuarterTurn, 1.5 * kQuarterTurn, 1e12}) {
     EXPECT_GT(mercator_from_plate_carree(y), 4.0 * kGridMax);

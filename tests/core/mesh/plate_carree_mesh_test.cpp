@@ -68,8 +68,7 @@ TEST(PlateCarreeMeshTest, NeighboursNeitherOverlapNorGape) {
     mesh.begin(kCellsPerRow, kAll);
     const TrapezoidRange all{0, static_cast<std::uint32_t>(made.trapezoids.size())};
     mesh.add(made.view(), {&all, 1});
-    PlateCarreeRows rows;
-    const double whole = (static_cast<double>(rows.row_of(bottom)) - rows.row_of(top)) *
+    const double whole = (static_cast<double>(plate_carree_row(bottom)) - plate_carree_row(top)) *
                          static_cast<double>(kGridSize);
     EXPECT_NEAR(area_of(mesh) / whole, 1, 1e-12);
   }
