@@ -72,6 +72,13 @@ Result<Json> joins_json(std::string_view id, const std::shared_ptr<const ValueTa
   Json joins = Json::array();
   for (const ServedLayer& served : dataset.layers()) {
     if (query.layer && served.config.name != *query.layer) continue;
+    if (served.parts != nullptr) {
+      if (!query.layer) continue;
+      return Problem{400,
+                     fmt::format("The layer {} is in several parts: no values are joined to such.",
+                                 served.config.name),
+                     "layer", served.config.name};
+    }
     const int field = served.layer->features().field_index(join);
     if (field < 0 && query.layer && !query.join.empty()) {
       return unknown_property("join", join, served.layer->features());

@@ -82,10 +82,10 @@ class BoundFilter {
   /// compared with what it cannot be.
   static Result<BoundFilter> bind(std::shared_ptr<const Filter> filter, Attributes attributes);
 
-  /// The same over another table that has the same fields.
+  /// The same over another table that has the same fields, without joined values.
   BoundFilter over(const FeatureTable& features) const {
     BoundFilter other = *this;
-    other.features_ = &features;
+    other.attributes_ = Attributes(features);
     return other;
   }
 

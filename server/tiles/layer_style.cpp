@@ -198,6 +198,15 @@ struct Making {
   }
 };
 
+/// What takes all features at once is not told of a layer of many parts.
+Problem not_in_parts(const std::string& parameter, const std::string& allowed,
+                     const ServedLayer& served) {
+  return {400,
+          fmt::format("The layer {} is in several parts, and \"{}\" would have to read all of them.",
+                      served.config.name, parameter),
+          parameter, "", allowed};
+}
+
 // ---- joined values
 
 Problem unknown_table(const std::string& name, const ServedLayer& served) {
@@ -250,6 +259,7 @@ std::optional<Problem> make_joined(Making& making) {
     }
     return problem;
   }
+  if (making.served.parts != nullptr) return not_in_parts("values", "no table", making.served);
   auto joined = making.derived().join(making.served.revision, *making.served.layer, field, table);
   if (!joined) return std::move(joined).problem();
   making.style.classing.joined = *std::move(joined);
@@ -366,6 +376,9 @@ std::optional<Problem> make_breaks(Making& making, const Field& field) {
   const auto& ramp = *settings.find<std::string>(ParameterId::ramp);
   const ParameterValue& setting = *settings.find_value(ParameterId::breaks);
   const auto* rule = std::get_if<BreakRule>(&setting);
+  if (rule != nullptr && making.served.parts != nullptr) {
+    return not_in_parts("breaks", "numbers", making.served);
+  }
   making.style.origin->rule = rule == nullptr ? std::nullopt : std::optional(*rule);
   const std::vector<double> breaks =
       rule == nullptr ? std::get<std::vector<double>>(setting) : ruled_breaks(making, *rule);
