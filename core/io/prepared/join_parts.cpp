@@ -59,6 +59,7 @@ int last_zoom_of_overview(std::span<const Box> boxes) {
 LoadedLayer overview_of(const std::vector<std::shared_ptr<const PreparedPart>>& parts,
                         const std::function<void(double)>& progress) {
   std::vector<Box> boxes;
+  boxes.reserve(parts.size());
   for (const auto& part : parts) boxes.push_back(part->summary().bounds);
   const int zoom = last_zoom_of_overview(boxes);
   const double pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / kTilePixels;  // in cells
