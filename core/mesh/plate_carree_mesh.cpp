@@ -23,6 +23,11 @@ void PlateCarreeMesh::begin(double cells_per_row, const Box& box) {
 }
 
 void PlateCarreeMesh::add(const MeshView& mesh, std::span<const TrapezoidRange> ranges) {
+  std::size_t count = trapezoids_.size();  // at least, and mostly not many more
+  for (const TrapezoidRange& range : ranges) count += range.count;
+  trapezoids_.reserve(count);
+  edges_.reserve(2 * count);
+  vertices_.reserve(6 * count);
   for_each_trapezoid(ranges, [&](std::uint32_t i) { add(mesh, mesh.trapezoids[i]); });
 }
 

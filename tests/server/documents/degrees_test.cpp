@@ -70,7 +70,7 @@ TEST_F(DegreesTest, BeyondTheMapOfWebMercatorThereIsNothing) {
       std::string(
           "/map/west.png?crs=EPSG:4326&background=fff&fill=000&fill-opacity=1&quality=exact&") +
       kWorld);
-  EXPECT_EQ(map.at(100, 9), (Rgba{255, 255, 255, 255}));  // 85.5 to 85
+  EXPECT_EQ(map.at(100, 8), (Rgba{255, 255, 255, 255}));  // 86 to 85.5
   EXPECT_EQ(map.at(100, 10), (Rgba{0, 0, 0, 255}));
   EXPECT_EQ(map.at(100, 349), (Rgba{0, 0, 0, 255}));
   EXPECT_EQ(map.at(100, 351), (Rgba{255, 255, 255, 255}));

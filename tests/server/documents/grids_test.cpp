@@ -31,8 +31,8 @@ constexpr const char* kSeam = R"({"type":"FeatureCollection","features":[
 [[[[178,-18],[180,-18],[180,-16],[178,-16],[178,-18]]],
 [[[-180,-18],[-178,-18],[-178,-16],[-180,-16],[-180,-18]]]]}},
 {"type":"Feature","properties":{"name":"pole"},"geometry":{"type":"Polygon","coordinates":
-[[[-180,-90],[180,-90],[180,-70],[120,-66],[60,-70],[0,-68],[-60,-72],[-120,-69],[-180,-70],
-[-180,-90]]]}}]})";
+[[[-180,-90],[180,-90],[180,-88],[120,-87.5],[60,-88],[0,-87.8],[-60,-88.2],[-120,-87.9],
+[-180,-88],[-180,-90]]]}}]})";
 
 class GridsTest : public ::testing::Test {
  protected:
@@ -112,7 +112,8 @@ TEST_F(GridsTest, TilesAreThoseOfTheSet) {
 
 TEST_F(GridsTest, WhatIsNotBuiltIsRefusedWithTheNamesOfWhatIs) {
   for (const char* target :
-       {"/map/seam.png?crs=EPSG:2056&bbox=2500000,1100000,2600000,1200000", "/tiles/seam/SwissLV95/17/7/3.png",
+       {"/map/seam.png?crs=EPSG:2056&bbox=2500000,1100000,2600000,1200000",
+        "/tiles/seam/SwissLV95/17/7/3.png",
         "/wms?VERSION=1.3.0&REQUEST=GetMap&LAYERS=seam&STYLES=&CRS=EPSG:2056&WIDTH=256&HEIGHT=256&"
         "BBOX=2500000,1100000,2600000,1200000&FORMAT=image/png"}) {
     const auto response = sample_.get(target);
@@ -124,7 +125,9 @@ TEST_F(GridsTest, WhatIsNotBuiltIsRefusedWithTheNamesOfWhatIs) {
   }
   EXPECT_EQ(sample_.get("/ogc/collections/seam/map/tiles/SwissLV95").status, 404);
   EXPECT_EQ(sample_.get("/wmts/seam/default/SwissLV95/17/3/7.png").status, 404);
-  EXPECT_EQ(sample_.get("/map/seam,swiss.png?crs=EPSG:2056&bbox=2500000,1100000,2600000,1200000").status, 400);
+  EXPECT_EQ(
+      sample_.get("/map/seam,swiss.png?crs=EPSG:2056&bbox=2500000,1100000,2600000,1200000").status,
+      400);
 }
 
 TEST_F(GridsTest, DocumentsListWhatIsBuilt) {
@@ -170,15 +173,16 @@ std::string map_around(const std::string& grid, double lon, double lat, double u
   EXPECT_TRUE(transform.to_cells(x, y));
   const double east = target->middle_x + x[0] / target->cells_per_unit();
   const double north = target->middle_y - y[0] / target->cells_per_unit();
-  return fmt::format("/map/seam.png?crs={}&bbox={},{},{},{}&width=200&height=200&stroke=000&"
-                     "stroke-width=3",
-                     grid, east - units, north - units, east + units, north + units);
+  return fmt::format(
+      "/map/seam.png?crs={}&bbox={},{},{},{}&width=200&height=200&stroke=000&"
+      "stroke-width=3",
+      grid, east - units, north - units, east + units, north + units);
 }
 
 TEST_F(GridsTest, NoLineRunsAlongTheSeam) {
   for (const std::string& target :
-       {map_around("EPSG:32760", 180, -17, 20'000), map_around("EPSG:5042", 180, -85, 400'000),
-        map_around("EPSG:5042", 0, -90, 600'000)}) {
+       {map_around("EPSG:32760", 180, -17, 20'000), map_around("EPSG:5042", 180, -89, 50'000),
+        map_around("EPSG:5042", 0, -90, 80'000)}) {
     const Picture map = picture(target);
     int others = 0;
     for (int row = 0; row < 200; ++row) {
@@ -188,7 +192,7 @@ TEST_F(GridsTest, NoLineRunsAlongTheSeam) {
     }
     EXPECT_EQ(others, 0) << target;
   }
-  const Picture shore = picture(map_around("EPSG:5042", 60, -70, 400'000));
+  const Picture shore = picture(map_around("EPSG:5042", 60, -88, 60'000));
   int lines = 0;
   for (int i = 0; i < 200; ++i) lines += shore.at(i, 100) == Rgba{0, 0, 0, 255};
   EXPECT_GT(lines, 0) << "there is no outline at all";

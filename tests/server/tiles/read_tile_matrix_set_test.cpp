@@ -43,12 +43,11 @@ TEST(ReadTileMatrixSetTest, ReadsBothVersionsOfTheStandard) {
   EXPECT_EQ(set->matrices[0].origin_y, 1'350'000);
   EXPECT_EQ(set->matrices[0].width, 7u);
   std::string old = set_of(kMatrix, "urn:ogc:def:crs:EPSG::2056");
-  for (const auto& [from, to] : {std::pair("\"id\":\"Own\"", "\"identifier\":\"Own\""),
-                                 std::pair("\"id\":\"0\"", "\"identifier\":\"0\""),
-                                 std::pair("\"crs\"", "\"supportedCRS\""),
-                                 std::pair("tileMatrices", "tileMatrix"),
-                                 std::pair("\"cellSize\":280,", ""),
-                                 std::pair("pointOfOrigin", "topLeftCorner")}) {
+  for (const auto& [from, to] :
+       {std::pair("\"id\":\"Own\"", "\"identifier\":\"Own\""),
+        std::pair("\"id\":\"0\"", "\"identifier\":\"0\""), std::pair("\"crs\"", "\"supportedCRS\""),
+        std::pair("tileMatrices", "tileMatrix"), std::pair("\"cellSize\":280,", ""),
+        std::pair("pointOfOrigin", "topLeftCorner")}) {
     old = changed(old, from, to);
   }
   const auto of_old = parse_tile_matrix_set(old);
@@ -86,7 +85,8 @@ TEST(ReadTileMatrixSetTest, TellsWhatIsWrong) {
   EXPECT_THAT(failure_of("{"), HasSubstr("is no JSON object"));
   EXPECT_THAT(failure_of("[1]"), HasSubstr("is no JSON object"));
   EXPECT_THAT(failure_of(set_of("")), HasSubstr("tileMatrices is no list of 1 to 100"));
-  EXPECT_THAT(failure_of(set_of(kMatrix + "," + kMatrix)), HasSubstr("two tile matrices are \"0\""));
+  EXPECT_THAT(failure_of(set_of(kMatrix + "," + kMatrix)),
+              HasSubstr("two tile matrices are \"0\""));
   EXPECT_THAT(failure_of(set_of("3")), HasSubstr("tile matrix 0 is no object"));
   EXPECT_THAT(failure_of(set_of(kMatrix, "EPSG:99999")), HasSubstr("PROJ does not know"));
   EXPECT_THAT(failure_of(set_of(kMatrix, "http://example.org/")), HasSubstr("is not understood"));
@@ -108,9 +108,9 @@ TEST(ReadTileMatrixSetTest, TellsWhatIsWrong) {
 
 TEST(ReadTileMatrixSetTest, TheExamplesAreSound) {
   const std::string folder = TRAPEZE_CONFIG_FOLDER "/tile_matrix_sets/";
-  const TileMatrixSets sets = tile_matrix_sets_with(
-      {folder + "swiss_lv95.json", folder + "british_national_grid.json", folder + "dutch_rd.json",
-       folder + "german_utm32.json"});
+  const TileMatrixSets sets =
+      tile_matrix_sets_with({folder + "swiss_lv95.json", folder + "british_national_grid.json",
+                             folder + "dutch_rd.json", folder + "german_utm32.json"});
   for (const auto& [id, system] :
        {std::pair("SwissLV95", "EPSG:2056"), std::pair("BritishNationalGrid", "EPSG:27700"),
         std::pair("DutchRD", "EPSG:28992"), std::pair("GermanUTM32", "EPSG:25832"),

@@ -51,7 +51,8 @@ double distance_to_ring(double x, double y, std::span<const Point> ring) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Point a = ring[i];
     const Point b = ring[(i + 1) % ring.size()];
-    least = std::min(least, distance_on_plane({x, y}, {1.0 * a.x, 1.0 * a.y}, {1.0 * b.x, 1.0 * b.y}));
+    least =
+        std::min(least, distance_on_plane({x, y}, {1.0 * a.x, 1.0 * a.y}, {1.0 * b.x, 1.0 * b.y}));
   }
   return least;
 }
@@ -94,8 +95,8 @@ TEST(TargetGridTest, RefusesWhatIsNoPlaneOrNotKnown) {
       find_target_grid(name);
       FAIL() << name;
     } catch (const std::runtime_error& error) {
-      EXPECT_THAT(error.what(), ::testing::AllOf(::testing::StartsWith(name),
-                                                 ::testing::HasSubstr(words)));
+      EXPECT_THAT(error.what(),
+                  ::testing::AllOf(::testing::StartsWith(name), ::testing::HasSubstr(words)));
     }
   }
 }
@@ -124,11 +125,10 @@ TEST_P(EdgesOnGridTest, StayWhereTheyAre) {
       OGRCreateCoordinateTransformation(&source, &target));
   ASSERT_NE(straight, nullptr);
   // What rounding to cells takes, and what edges may be off.
-  const double most =
-      std::max(0.25, GridRings::kMostOffMetres / grid->metres_per_cell()) +
-      (std::string(one.crs) == "EPSG:4326" ? 0 : 1) * GridRings::kMostOffMetres /
-          grid->metres_per_cell() +
-      0.75;
+  const double most = std::max(0.25, GridRings::kMostOffMetres / grid->metres_per_cell()) +
+                      (std::string(one.crs) == "EPSG:4326" ? 0 : 1) * GridRings::kMostOffMetres /
+                          grid->metres_per_cell() +
+                      0.75;
   double worst = 0;
   for (int i = 0; i < 5; ++i) {
     std::uniform_real_distribution<double> any_x(one.west, one.east);
@@ -163,27 +163,28 @@ TEST_P(EdgesOnGridTest, StayWhereTheyAre) {
               1000 * worst * grid->metres_per_cell());
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Systems, EdgesOnGridTest,
-    ::testing::Values(Case{"EPSG:2056", "EPSG:4326", 6.2, 45.9, 10.3, 47.7},
-                      Case{"EPSG:27700", "EPSG:4326", -6, 50, 1.5, 58},
-                      Case{"EPSG:28992", "EPSG:4326", 3.4, 50.8, 7, 53.4},
-                      Case{"EPSG:25832", "EPSG:4326", 6, 47.5, 14, 55},
-                      Case{"EPSG:3035", "EPSG:4326", -9, 36, 30, 70},
-                      Case{"EPSG:5042", "EPSG:4326", -170, -85, 170, -62},
-                      Case{"EPSG:3035", "EPSG:3857", -1e6, 4.5e6, 3e6, 1e7},
-                      Case{"EPSG:25832", "EPSG:3035", 4.1e6, 2.7e6, 4.6e6, 3.4e6}),
-    [](const auto& test) {
-      std::string name = std::string(test.param.grid) + "_of_" + test.param.crs;
-      std::ranges::replace(name, ':', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Systems, EdgesOnGridTest,
+                         ::testing::Values(Case{"EPSG:2056", "EPSG:4326", 6.2, 45.9, 10.3, 47.7},
+                                           Case{"EPSG:27700", "EPSG:4326", -6, 50, 1.5, 58},
+                                           Case{"EPSG:28992", "EPSG:4326", 3.4, 50.8, 7, 53.4},
+                                           Case{"EPSG:25832", "EPSG:4326", 6, 47.5, 14, 55},
+                                           Case{"EPSG:3035", "EPSG:4326", -9, 36, 30, 70},
+                                           Case{"EPSG:5042", "EPSG:4326", -170, -85, 170, -62},
+                                           Case{"EPSG:3035", "EPSG:3857", -1e6, 4.5e6, 3e6, 1e7},
+                                           Case{"EPSG:25832", "EPSG:3035", 4.1e6, 2.7e6, 4.6e6,
+                                                3.4e6}),
+                         [](const auto& test) {
+                           std::string name =
+                               std::string(test.param.grid) + "_of_" + test.param.crs;
+                           std::ranges::replace(name, ':', '_');
+                           return name;
+                         });
 
 TEST(GridRingsTest, NeighboursCutTheirCommonEdgeAlike) {
-  const FeatureRings west = read_on_grid("POLYGON((5 45,10 45,11 50,5 50,5 45))", "EPSG:4326",
-                                         "EPSG:3035");
-  const FeatureRings east = read_on_grid("POLYGON((10 45,15 45,15 50,11 50,10 45))", "EPSG:4326",
-                                         "EPSG:3035");
+  const FeatureRings west =
+      read_on_grid("POLYGON((5 45,10 45,11 50,5 50,5 45))", "EPSG:4326", "EPSG:3035");
+  const FeatureRings east =
+      read_on_grid("POLYGON((10 45,15 45,15 50,11 50,10 45))", "EPSG:4326", "EPSG:3035");
   const auto points_of = [](const FeatureRings& feature) {
     std::set<std::pair<int, int>> points;
     for (const Point p : feature.rings[0]) points.emplace(p.x, p.y);
