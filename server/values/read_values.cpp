@@ -160,7 +160,7 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   }
   ValueTableBuilder builder({names[places->key], names[places->value]}, options.max_rows,
                             delimiter == ';');
-  builder.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1);
+  builder.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1, text.size());
   while (true) {
     const auto has_record = reader.next();
     if (!has_record) return has_record.problem();

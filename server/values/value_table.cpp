@@ -137,8 +137,7 @@ ValueTableBuilder::ValueTableBuilder(ValueNames names, std::size_t max_rows,
   table_.names_ = std::move(names);
 }
 
-void ValueTableBuilder::reserve(std::size_t rows) {
-  const std::size_t bytes = 24 * rows;
+void ValueTableBuilder::reserve(std::size_t rows, std::size_t bytes) {
   const std::size_t most = std::min(rows, max_rows_);
   table_.text_.reserve(bytes);
   table_.rows_.reserve(most);
@@ -227,10 +226,6 @@ Result<ValueTable> ValueTableBuilder::finish() && {
 
 /// Numbers, if all values are; the problem is one that would be, and has no end.
 std::optional<Problem> ValueTableBuilder::find_type() {
-  const auto text_of_value = [this](std::uint32_t row) {
-    const ValueTable::Row& place = table_.rows_[row];
-    return std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
-  };
   bool has_words = false;
   bool has_reals = false;
   std::optional<std::uint32_t> endless;
@@ -267,14 +262,19 @@ std::optional<Problem> ValueTableBuilder::find_type() {
   } else {
     table_.type_ = has_reals ? FieldType::real : FieldType::integer;
     table_.numbers_ = std::move(numbers);
-    fill_numbers();
+    give_up_text();
   }
   table_.missing_ = static_cast<std::size_t>(std::count(has_value.begin(), has_value.end(), false));
   return std::nullopt;
 }
 
+std::string_view ValueTableBuilder::text_of_value(std::uint32_t row) const {
+  const ValueTable::Row& place = table_.rows_[row];
+  return std::string_view(table_.text_).substr(place.begin + place.key_size, place.value_size);
+}
+
 /// Of numbers: keys are all that is left of it, and move together.
-void ValueTableBuilder::fill_numbers() {
+void ValueTableBuilder::give_up_text() {
   std::string& text = table_.text_;
   std::uint32_t end = 0;
   for (ValueTable::Row& place : table_.rows_) {

@@ -73,8 +73,8 @@ class ValueTableBuilder {
   /// Rows beyond `max_rows` are refused. With `has_decimal_commas`, "1,5" is a number.
   ValueTableBuilder(ValueNames names, std::size_t max_rows, bool has_decimal_commas = false);
 
-  /// For so many rows there is room at once.
-  void reserve(std::size_t rows);
+  /// For so many rows, and bytes of text in them, there is room at once.
+  void reserve(std::size_t rows, std::size_t bytes);
   /// `place` tells people where the row is, such as "line 7"'s 7. Blanks around both do not count.
   /// The problem, 400 or 413, is a row that cannot be taken.
   std::optional<Problem> add(std::string_view key, std::string_view value, std::size_t place);
@@ -89,7 +89,8 @@ class ValueTableBuilder {
   bool insert(std::string_view key, std::uint32_t row);
   void grow_slots(std::size_t rows);
   std::optional<Problem> find_type();
-  void fill_numbers();
+  std::string_view text_of_value(std::uint32_t row) const;
+  void give_up_text();
   std::string identity() const;
 
   ValueTable table_;

@@ -53,8 +53,8 @@ TEST_F(AttributeValuesTest, WhatIsWrongIsSaid) {
     EXPECT_EQ(nlohmann::json::parse(*response.body)["parameter"], "bbox") << box;
   }
   EXPECT_EQ(sample_.get("/values/rings/rank?simplify=-1").status, 400);
-  for (const char* target : {"/values", "/values/rings", "/values/rings/nosuch",
-                             "/values/nosuch/rank", "/values/rings/rank/1"}) {
+  for (const char* target :
+       {"/values/rings", "/values/rings/nosuch", "/values/nosuch/rank", "/values/rings/rank/1"}) {
     EXPECT_EQ(sample_.get(target).status, 404) << target;
   }
 }

@@ -108,6 +108,10 @@ TEST_F(AllRoutesTest, AreAnsweredWithWhatTheyPromise) {
     if (route.method != "GET") continue;
     std::string target = filled_in(std::string(route.path));
     if (route.id == RouteId::style) target = "/styles/night";
+    if (route.id == RouteId::value_table) {
+      const auto posted = site_.handle({"POST", "/values", "maps.example:8080", {}, "k,v\na,1\n"});
+      target = posted.header("Location");
+    }
     if (route.id == RouteId::wmts_key_values) target += "?service=WMTS&request=GetCapabilities";
     if (route.id == RouteId::wms) target += "?service=WMS&request=GetCapabilities";
     if (route.id == RouteId::map_window) target += "?bbox=-10,-10,20,10&width=64";
