@@ -249,9 +249,9 @@ Result<Json> identify(const PlaceQuery& query, const Dataset& dataset) {
   for (auto name = query.layers.rbegin(); name != query.layers.rend(); ++name) {
     const auto position = dataset.find(*name);
     if (!position) return unknown_layer(*name, dataset);
-    const ServedLayer* found = served_in(dataset, *name, *query.system);
-    if (found == nullptr) return not_built(*name, *query.system, dataset);
-    const ServedLayer& served = *found;
+    const ServedLayer* of_system = served_in(dataset, *name, *query.system);
+    if (of_system == nullptr) return not_built(*name, *query.system, dataset);
+    const ServedLayer& served = *of_system;
     if (!served.is_whole()) return damaged_layer(served);
     const auto found = find_features(query, served, *position);
     if (!found) return found.problem();

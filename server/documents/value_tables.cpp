@@ -77,7 +77,7 @@ Result<Json> joins_json(std::string_view id, const std::shared_ptr<const ValueTa
       return Problem{400,
                      fmt::format("The layer {} is in several parts: no values are joined to such.",
                                  served.config.name),
-                     "layer", served.config.name};
+                     "layer", served.config.name, "a layer in one piece"};
     }
     const int field = served.layer->features().field_index(join);
     if (field < 0 && query.layer && !query.join.empty()) {

@@ -41,6 +41,7 @@ std::size_t Classing::class_of_others() const {
 
 Classing Classing::over(const FeatureTable& features) const {
   Classing other = *this;
+  if (joined != nullptr) return other;  // of a layer that is in one piece
   if (filter != nullptr) other.filter = std::make_shared<const BoundFilter>(filter->over(features));
   return other;
 }
