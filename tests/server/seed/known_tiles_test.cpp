@@ -72,7 +72,7 @@ TEST(KnownTilesTest, TilesOfAScaleAndAFormatAreThoseOfTheServer) {
 
 TEST(KnownTilesTest, LayersOfSomeZoomsOnlyAreSeenThereOnly) {
   const auto all = testing::sample_dataset();
-  auto layers = all->layers();
+  std::vector<ServedLayer> layers = all->layers_on_all_grids();
   layers[0].config.min_zoom = 3;
   layers[1].config.max_zoom = 4;
   const auto dataset = std::make_shared<const Dataset>(layers);
