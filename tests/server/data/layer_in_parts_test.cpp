@@ -341,6 +341,15 @@ TEST_F(LayerInThreeParts, TellsOfFeaturesAndValuesAsTheWholeDoes) {
   }
 }
 
+TEST_F(LayerInThreeParts, WhatWouldReadAllOfThemForATileIsRefused) {
+  testing::SampleSite site(false);
+  site.data().set(parts_);
+  const auto refused = site.get("/tiles/places/3/4/2.png?color-by=number&breaks=quantile:3");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(*refused.body, ::testing::HasSubstr("in several parts"));
+  EXPECT_EQ(site.get("/tiles/places/3/4/2.png?color-by=number&breaks=3,9").status, 200);
+}
+
 TEST_F(LayerInThreeParts, DiffersInTheTilesInWhichTheWholeDoes) {
   std::string changed_text = Villages(1).geojson();
   // One house gets another kind.
