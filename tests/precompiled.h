@@ -1,5 +1,5 @@
-// What most tests include, compiled once for each program: half of the time to compile a test goes into it. Tests
-// name what they use all the same; -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON finds out.
+// What most tests include, compiled once for each program: half of the time to compile a test goes
+// into it. Tests name what they use all the same; -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON finds out.
 #pragma once
 
 #include <gmock/gmock.h>

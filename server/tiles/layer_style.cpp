@@ -201,10 +201,11 @@ struct Making {
 /// What takes all features at once is not told of a layer of many parts.
 Problem not_in_parts(const std::string& parameter, const std::string& allowed,
                      const ServedLayer& served) {
-  return {400,
-          fmt::format("The layer {} is in several parts, and \"{}\" would have to read all of them.",
-                      served.config.name, parameter),
-          parameter, "", allowed};
+  return {
+      400,
+      fmt::format("The layer {} is in several parts, and \"{}\" would have to read all of them.",
+                  served.config.name, parameter),
+      parameter, "", allowed};
 }
 
 // ---- joined values
