@@ -85,6 +85,9 @@ constexpr Limits kLines{1, 0.002};
 
 // What is off there is about four fifths of these limits.
 const std::vector<Exception> kExceptions = {
+    // As below, and seen from farther away, zooms 4 and 6, where coasts are denser.
+    {"europe_countries", "degrees, classes and outline", {2, 0.0026}},
+    {"europe_countries", "degrees, outline", {1.3, 0.002}},
     // A line that is a quarter of a pixel off is off by up to half of its ink. And where lines are
     // nearer to each other than they are wide, the greatest value of a pixel counts, not what they
     // cover together (see render/mask/stroke.h). Lines of features that are narrower than the
