@@ -178,7 +178,8 @@ TEST_F(GdalClientsTest, TheWmsClientReadsOurMaps) {
 TEST_F(GdalClientsTest, TheOgcApiClientReadsOurTiles) {
   // GDAL 3.6 takes the bounds of a collection for metres, so it is told those of the world.
   const std::string options =
-      "-oo API=TILES -oo MINX=-20037508.342789244 -oo MINY=-20037508.342789244 "
+      "-oo API=TILES -oo TILEMATRIXSET=WebMercatorQuad -oo MINX=-20037508.342789244 -oo "
+      "MINY=-20037508.342789244 "
       "-oo MAXX=20037508.342789244 -oo MAXY=20037508.342789244";
   for (const int zoom : {1, 3}) {  // at 3, the layer has neither the first rows nor the last
     const Picture picture = world("OGCAPI:" + url_ + "/ogc/collections/rings", options, zoom);
