@@ -344,10 +344,11 @@ TEST_F(LayerInThreeParts, TellsOfFeaturesAndValuesAsTheWholeDoes) {
 TEST_F(LayerInThreeParts, WhatWouldReadAllOfThemForATileIsRefused) {
   testing::SampleSite site(false);
   site.data().set(parts_);
-  const auto refused = site.get("/tiles/places/3/4/2.png?color-by=number&breaks=quantile:3");
+  const auto refused =
+      site.get("/tiles/places/3/4/2.png?color-by=number&breaks=quantile:3&ramp=YlGnBu");
   EXPECT_EQ(refused.status, 400);
   EXPECT_THAT(*refused.body, ::testing::HasSubstr("in several parts"));
-  EXPECT_EQ(site.get("/tiles/places/3/4/2.png?color-by=number&breaks=3,9").status, 200);
+  EXPECT_EQ(site.get("/tiles/places/3/4/2.png?color-by=number&breaks=3,9&ramp=YlGnBu").status, 200);
 }
 
 TEST_F(LayerInThreeParts, DiffersInTheTilesInWhichTheWholeDoes) {
