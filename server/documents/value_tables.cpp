@@ -40,9 +40,8 @@ Json summary_json(std::string_view id, const ValueTable& table) {
 
 /// As a query has it, without the '?'.
 std::string example_query(std::string_view id, const ValueTable& table, const std::string& join) {
-  const std::string query =
-      fmt::format("values={}&join={}&color-by=value", id, percent_encode(join));
-  if (table.type() != FieldType::text) return query + "&breaks=quantile:5&ramp=YlGnBu";
+  std::string query = fmt::format("values={}&join={}&color-by=value", id, percent_encode(join));
+  if (table.type() != FieldType::text) query += "&breaks=quantile:5&ramp=YlGnBu";
   return query;
 }
 

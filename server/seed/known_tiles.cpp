@@ -68,8 +68,8 @@ bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::S
 
 }  // namespace
 
-KnownTiles::KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes)
-    : plan_(plan), classes_(classes) {
+KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes)
+    : plan_(plan), classes_(std::move(classes)) {
   const ZoomRange zooms = plan.zooms();
   steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
   looks_.resize(steps_.size());

@@ -31,7 +31,7 @@ using TileLook = std::string;
 class KnownTiles {
  public:
   /// `plan` must outlive it.
-  KnownTiles(const SeedPlan& plan, const std::shared_ptr<FeatureClassCache>& classes);
+  KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes);
 
   /// Looks at a tile of a zoom up to the last. It is of zoom 0, or a child of the tile of the
   /// zoom before that was looked at last.

@@ -604,8 +604,9 @@ bool Site::answer_known(const HttpRequest& request, const Respond& respond) cons
   });
   if (!is_whole) return false;
   auto held = find_held(request, *known);
-  if (held) respond(*std::move(held));
-  return held.has_value();
+  if (!held) return false;
+  respond(*std::move(held));
+  return true;
 }
 
 /// The answer if the tile need not be drawn: for who holds it, or from the cache.
