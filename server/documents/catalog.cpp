@@ -16,22 +16,10 @@
 namespace trapeze {
 namespace {
 
-std::string_view name_of(FieldType type) {
-  switch (type) {
-    case FieldType::integer:
-      return "integer";
-    case FieldType::real:
-      return "number";
-    case FieldType::text:
-      return "string";
-  }
-  return "string";
-}
-
 Json fields_json(const FeatureTable& features) {
   Json fields = Json::array();
   for (const Field& field : features.fields()) {
-    fields.push_back({{"name", field.name}, {"type", name_of(field.type)}});
+    fields.push_back({{"name", field.name}, {"type", json_type_of(field.type)}});
   }
   return fields;
 }
@@ -158,6 +146,18 @@ std::string legend_url(const TileJsonRequest& request, const std::string& base_u
 }
 
 }  // namespace
+
+std::string_view json_type_of(FieldType type) {
+  switch (type) {
+    case FieldType::integer:
+      return "integer";
+    case FieldType::real:
+      return "number";
+    case FieldType::text:
+      return "string";
+  }
+  return "string";
+}
 
 std::string catalog_json(const Dataset& dataset, const std::string& renderer,
                          const ViewerConfig& viewer, const std::string& base_url) {

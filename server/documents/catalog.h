@@ -2,12 +2,17 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
+#include "core/layer/feature_table.h"
 #include "server/base/result.h"
 #include "server/data/dataset.h"
 #include "server/tiles/tile_request.h"
 
 namespace trapeze {
+
+/// As values of that type are called in JSON Schema.
+std::string_view json_type_of(FieldType type);
 
 /// {"layers": [...], "generation": ..., "renderer": ..., "parameters": [...], "viewer": {"title":
 /// ..., "start": ...}}. The bounds of a layer without polygons are null; "title_attribute", "group"

@@ -8,22 +8,11 @@
 
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
+#include "server/documents/catalog.h"
 #include "server/styles/filter.h"
 
 namespace trapeze {
 namespace {
-
-std::string_view type_name(FieldType type) {
-  switch (type) {
-    case FieldType::integer:
-      return "integer";
-    case FieldType::real:
-      return "number";
-    case FieldType::text:
-      return "string";
-  }
-  return "string";
-}
 
 Json summary_json(std::string_view id, const ValueTable& table) {
   Json json;
@@ -31,7 +20,7 @@ Json summary_json(std::string_view id, const ValueTable& table) {
   json["rows"] = table.size();
   json["key"] = table.names().key;
   json["value"] = table.names().value;
-  json["type"] = type_name(table.type());
+  json["type"] = json_type_of(table.type());
   json["missing"] = table.missing();
   if (table.without_key() > 0) json["rows_without_key"] = table.without_key();
   if (!table.first_word().empty()) json["first_word"] = table.first_word();

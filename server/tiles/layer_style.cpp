@@ -415,7 +415,8 @@ std::optional<Problem> make_classes(Making& making) {
                                                            : make_breaks(making, field);
   if (problem) return problem;
   const bool is_wanted = making.style.origin->rule || making.looking == Looking::for_legend;
-  if (is_wanted && field.type != FieldType::text) {
+  // Of a layer in parts, nothing but the breaks themselves is known here.
+  if (is_wanted && field.type != FieldType::text && making.served.parts == nullptr) {
     making.style.origin->spread = spread_of_field(making, number);
   }
   return std::nullopt;

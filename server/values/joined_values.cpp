@@ -131,20 +131,11 @@ std::string JoinedValues::key_of(const ValueTable& table, int field) {
 }
 
 ValueSpread JoinedValues::spread() const {
-  std::vector<double> numbers;
-  std::size_t missing = 0;
+  SpreadCollector collector;
   for (std::uint32_t row = 0; row < table_->size(); ++row) {
-    if (!is_matched_[row]) continue;
-    const Value value = table_->value(row);
-    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-      numbers.push_back(static_cast<double>(*integer));
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      numbers.push_back(*real);
-    } else {
-      ++missing;
-    }
+    if (is_matched_[row]) collector.add(table_->value(row));
   }
-  return spread_of(std::move(numbers), missing);
+  return collector.take();
 }
 
 std::size_t JoinedValues::memory() const {

@@ -30,22 +30,24 @@ ValueSpread spread_of(std::vector<double> numbers, std::size_t missing) {
   return spread;
 }
 
+void SpreadCollector::add(const Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    numbers_.push_back(static_cast<double>(*integer));
+  } else if (const auto* real = std::get_if<double>(&value)) {
+    numbers_.push_back(*real);
+  } else {
+    ++missing_;
+  }
+}
+
 ValueSpread spread_of(const Layer& layer, int field) {
-  std::vector<double> numbers;
-  std::size_t missing = 0;
+  SpreadCollector collector;
   const FeatureTable& features = layer.features();
   for (std::uint32_t row = 0; row < features.size(); ++row) {
     if (layer.is_removed(row)) continue;
-    const Value value = features.value(row, field);
-    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-      numbers.push_back(static_cast<double>(*integer));
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      numbers.push_back(*real);
-    } else {
-      ++missing;
-    }
+    collector.add(features.value(row, field));
   }
-  return spread_of(std::move(numbers), missing);
+  return collector.take();
 }
 
 std::vector<std::size_t> histogram(const ValueSpread& spread, std::size_t bins) {

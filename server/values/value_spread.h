@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/layer/layer.h"
@@ -26,7 +27,19 @@ struct ValueSpread {
 
 /// What is not finite counts as missing.
 ValueSpread spread_of(std::vector<double> numbers, std::size_t missing);
-/// Of an attribute of numbers, of all features of the layer.
+
+/// Takes values one after the other; what is no number counts as missing.
+class SpreadCollector {
+ public:
+  void add(const Value& value);
+  ValueSpread take() { return spread_of(std::move(numbers_), missing_); }
+
+ private:
+  std::vector<double> numbers_;
+  std::size_t missing_ = 0;
+};
+
+/// The same of an attribute of numbers, of all features of the layer.
 ValueSpread spread_of(const Layer& layer, int field);
 
 /// How many numbers lie in each of `bins` >= 1 parts of equal width from the least to the greatest.

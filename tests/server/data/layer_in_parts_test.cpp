@@ -349,6 +349,11 @@ TEST_F(LayerInThreeParts, WhatWouldReadAllOfThemForATileIsRefused) {
   EXPECT_EQ(refused.status, 400);
   EXPECT_THAT(*refused.body, ::testing::HasSubstr("in several parts"));
   EXPECT_EQ(site.get("/tiles/places/3/4/2.png?color-by=number&breaks=3,9&ramp=YlGnBu").status, 200);
+  // Nor is it said that there are no numbers.
+  const std::string legend =
+      body_of("/legend/places.json?color-by=number&breaks=3,9&ramp=YlGnBu", parts_);
+  EXPECT_THAT(legend, ::testing::HasSubstr("\"breaks\""));
+  EXPECT_THAT(legend, ::testing::Not(::testing::HasSubstr("\"count\"")));
 }
 
 TEST_F(LayerInThreeParts, DiffersInTheTilesInWhichTheWholeDoes) {

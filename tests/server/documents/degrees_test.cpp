@@ -7,6 +7,7 @@
 
 #include "render/picture/png.h"
 #include "server/tiles/open_fonts.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -35,11 +36,7 @@ class DegreesTest : public ::testing::Test {
     options.fonts = open_fonts({});
     return options;
   }
-  Picture picture(const std::string& target) {
-    const HttpResponse response = sample_.get(target);
-    EXPECT_EQ(response.status, 200) << target << " " << *response.body;
-    return response.status == 200 ? decode_png(*response.body) : Picture();
-  }
+  Picture picture(const std::string& target) { return testing::picture_of(sample_, target); }
   void expect_same(const std::string& a, const std::string& b) {
     const HttpResponse one = sample_.get(a);
     const HttpResponse other = sample_.get(b);

@@ -12,6 +12,7 @@
 #include "server/tiles/open_fonts.h"
 #include "server/tiles/read_tile_matrix_set.h"
 #include "tests/core/io/temporary_folder.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -56,11 +57,7 @@ class GridsTest : public ::testing::Test {
         tile_matrix_sets_with({TRAPEZE_CONFIG_FOLDER "/tile_matrix_sets/swiss_lv95.json"}));
     return options;
   }
-  Picture picture(const std::string& target) {
-    const HttpResponse response = sample_.get(target);
-    EXPECT_EQ(response.status, 200) << target << " " << *response.body;
-    return response.status == 200 ? decode_png(*response.body) : Picture();
-  }
+  Picture picture(const std::string& target) { return testing::picture_of(sample_, target); }
   void expect_same(const std::string& a, const std::string& b) {
     const HttpResponse one = sample_.get(a);
     ASSERT_EQ(one.status, 200) << a << " " << *one.body;

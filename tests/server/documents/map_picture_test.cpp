@@ -10,6 +10,7 @@
 #include "render/picture/png.h"
 #include "server/config/load_config.h"
 #include "tests/core/io/temporary_folder.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -43,11 +44,7 @@ class MapPictureTest : public ::testing::Test {
     options.map_pixels = std::uint64_t{1} << 22;
     return options;
   }
-  Picture picture(const std::string& target) {
-    const HttpResponse response = sample_.get(target);
-    EXPECT_EQ(response.status, 200) << target << " " << *response.body;
-    return response.status == 200 ? decode_png(*response.body) : Picture();
-  }
+  Picture picture(const std::string& target) { return testing::picture_of(sample_, target); }
   testing::SampleSite sample_{true, {}, options()};
 };
 

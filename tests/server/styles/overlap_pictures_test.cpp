@@ -8,6 +8,7 @@
 #include "render/picture/png.h"
 #include "server/service/site.h"
 #include "tests/core/shapes/ring_text.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -98,9 +99,7 @@ class OverlapPicturesTest : public ::testing::Test {
  protected:
   Picture tile(const std::string& query) {
     const std::string target = "/tiles/plots/0/0/0.png?quality=exact&" + query;
-    const HttpResponse response = site_.get(target);
-    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
-    return response.status == 200 ? decode_png(*response.body) : Picture();
+    return testing::picture_of(site_, target);
   }
 
   testing::SampleSite site_{false};

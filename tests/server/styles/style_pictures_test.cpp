@@ -10,6 +10,7 @@
 #include "render/picture/webp.h"
 #include "server/service/site.h"
 #include "server/tiles/tile_painter.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -70,9 +71,7 @@ class StylePicturesTest : public ::testing::Test {
  protected:
   Picture tile(const std::string& query, const std::string& name = "0/0/0.png") {
     const std::string target = "/tiles/plots/" + name + "?" + query;
-    const HttpResponse response = site_.get(target);
-    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
-    return response.status == 200 ? decode_png(*response.body) : Picture();
+    return testing::picture_of(site_, target);
   }
   Rgba at(const std::string& query, int column, int row) { return tile(query).at(column, row); }
 

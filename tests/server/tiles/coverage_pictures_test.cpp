@@ -16,6 +16,7 @@
 #include "core/layer/layer_builder.h"
 #include "render/picture/png.h"
 #include "server/service/site.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
@@ -144,9 +145,7 @@ class CoveragePicturesTest : public ::testing::Test {
 
   Picture tile(const std::string& layer, const std::string& name, const std::string& query) {
     const std::string target = "/tiles/" + layer + "/" + name + ".png?" + query;
-    const HttpResponse response = site_.get(target);
-    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
-    return response.status == 200 ? decode_png(*response.body) : Picture();
+    return testing::picture_of(site_, target);
   }
 
   /// The least and the greatest alpha of pixels of the tile of zoom 0 within the plots.

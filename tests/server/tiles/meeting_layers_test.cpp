@@ -7,6 +7,7 @@
 #include "core/layer/layer_builder.h"
 #include "render/picture/png.h"
 #include "server/service/site.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/tile_and_children.h"
 
@@ -79,9 +80,7 @@ class MeetingLayersTest : public ::testing::Test {
   Picture tile(const std::string& layers, const std::string& place, const std::string& query) {
     const std::string target =
         fmt::format("/tiles/{}/{}.png?quality=exact&{}", layers, place, query);
-    const HttpResponse response = site_.get(target);
-    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
-    return response.status == 200 ? decode_png(*response.body) : Picture();
+    return testing::picture_of(site_, target);
   }
 
   /// Pixels in which less is opaque than that, of those inside of both layers together.

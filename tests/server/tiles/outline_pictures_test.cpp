@@ -14,6 +14,7 @@
 #include "core/layer/layer_builder.h"
 #include "render/picture/png.h"
 #include "server/service/site.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/tile_and_children.h"
 
@@ -73,9 +74,7 @@ class OutlinePicturesTest : public ::testing::Test {
 
   Picture tile(const std::string& name, const std::string& query) {
     const std::string target = "/tiles/rings/" + name + ".png?" + query;
-    const HttpResponse response = site_.get(target);
-    EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
-    return response.status == 200 ? decode_png(*response.body) : Picture();
+    return testing::picture_of(site_, target);
   }
 
   /// In pixels.

@@ -10,6 +10,7 @@
 #include "render/picture/png.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
+#include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/tile_and_children.h"
 
@@ -27,10 +28,9 @@ class RealOutlinesTest : public ::testing::TestWithParam<const char*> {
   }
 
   Picture tile(int zoom, std::uint32_t x, std::uint32_t y, const std::string& query) {
-    const HttpResponse response = site_.get(
+    return testing::picture_of(
+        site_,
         fmt::format("/tiles/{}/{}/{}/{}{}", dataset_->layers()[0].config.name, zoom, x, y, query));
-    EXPECT_EQ(response.status, 200);
-    return response.status == 200 ? decode_png(*response.body) : Picture();
   }
 
   std::shared_ptr<const Dataset> dataset_;
