@@ -55,7 +55,8 @@ class Seeding {
     request.zooms = *zooms;
     request.bbox = summarize_layers(request.tile.layers, *dataset_)->bounds();
     plan_ = *SeedPlan::make(request, dataset_);
-    KnownTiles known(*plan_, TilePainter::new_class_cache());
+    KnownTiles known(*plan_, TilePainter::new_class_cache(),
+                     std::make_shared<LabelBook>());
     jobs_ = divide_into_jobs(*plan_, known);
   }
 
@@ -69,7 +70,7 @@ class Seeding {
     const ScratchFolder folder;
     const std::string path = folder.path() + "/log";
     const JobRange all{0, jobs_.jobs.size()};
-    Seeder seeder(*plan_, jobs_, renderers(), std::make_shared<const Fonts>(), {});
+    Seeder seeder(*plan_, jobs_, renderers(), std::make_shared<LabelBook>(), {});
     Run run;
     {
       SeedLog log(path, {plan_->identity("bench"), jobs_.jobs.size(), all, {}, {}});

@@ -2,16 +2,21 @@
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_GLYPH_H
 #include FT_OUTLINE_H
+#include FT_STROKER_H
+#include FT_TRUETYPE_TABLES_H
 #include <hb.h>
 #include <raqm.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <unordered_map>
 #include <vector>
 
 #include "render/picture/blend.h"
@@ -24,11 +29,22 @@ namespace {
 constexpr FT_Int32 kLoadFlags = FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP;
 constexpr std::string_view kEllipsis = "\u2026";
 
+// In ems. Letters with marks above and below them are higher.
+constexpr double kLineHeight = 1.2;
+constexpr double kLineHeightOfMarks = 1.6;
+constexpr int kMeasuredSize = 64;  // pixels: large enough for hinting to change nothing
+
 struct CloseLibrary {
   void operator()(FT_Library library) const { FT_Done_FreeType(library); }
 };
 struct CloseFace {
   void operator()(FT_Face face) const { FT_Done_Face(face); }
+};
+struct DoneStroker {
+  void operator()(FT_Stroker stroker) const { FT_Stroker_Done(stroker); }
+};
+struct DoneGlyph {
+  void operator()(FT_Glyph glyph) const { FT_Done_Glyph(glyph); }
 };
 struct DestroyLayout {
   void operator()(raqm_t* layout) const { raqm_destroy(layout); }
@@ -36,6 +52,8 @@ struct DestroyLayout {
 using Library = std::unique_ptr<FT_LibraryRec_, CloseLibrary>;
 using Face = std::unique_ptr<FT_FaceRec_, CloseFace>;
 using Layout = std::unique_ptr<raqm_t, DestroyLayout>;
+using Stroker = std::unique_ptr<FT_StrokerRec_, DoneStroker>;
+using Glyph = std::unique_ptr<FT_GlyphRec_, DoneGlyph>;
 
 Library open_library() {
   FT_Library library = nullptr;
@@ -135,6 +153,61 @@ void draw_glyph(const PlacedGlyph& glyph, int base, Rgba colour, Picture& pictur
   }
 }
 
+/// Whether letters of the script stand side by side, each for itself, but for kerning: Latin, Greek
+/// and Cyrillic with their punctuation; Chinese, Japanese and Korean.
+bool stands_for_itself(char32_t c) {
+  return (c >= 0x20 && c < 0x300) || (c >= 0x370 && c < 0x483) || (c >= 0x48a && c < 0x530) ||
+         (c >= 0x1e00 && c < 0x2000) || (c >= 0x2010 && c < 0x2028) ||
+         (c >= 0x3000 && c < 0xa000) || (c >= 0xac00 && c < 0xd7a4);
+}
+
+/// Of what is drawn of a bitmap, in a mask, the greater value.
+void raise(const FT_Bitmap& bitmap, int left, int top, TextMask& mask,
+           std::vector<std::uint8_t>& values) {
+  for (int y = 0; y < static_cast<int>(bitmap.rows); ++y) {
+    const unsigned char* row = bitmap.buffer + std::ptrdiff_t{y} * bitmap.pitch;
+    if (top + y < 0 || top + y >= mask.height) continue;
+    for (int x = 0; x < static_cast<int>(bitmap.width); ++x) {
+      if (left + x < 0 || left + x >= mask.width) continue;
+      auto& value =
+          values[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(mask.width) +
+                 static_cast<std::size_t>(left + x)];
+      value = std::max(value, row[x]);
+    }
+  }
+}
+
+/// Adds a glyph to the letters, and with what the stroker puts around it to the halo, if there is a
+/// stroker. x and y, in 64ths of a pixel, y downwards, are where the glyph's origin is in the mask.
+void add_glyph(const PlacedGlyph& glyph, FT_Pos x, FT_Pos y, FT_Stroker stroker, TextMask& mask) {
+  FT_GlyphSlot slot = glyph.face->glyph;
+  if (FT_Load_Glyph(glyph.face, glyph.index, kLoadFlags) != 0) return;
+  if (slot->format != FT_GLYPH_FORMAT_OUTLINE) return;
+  const auto draw = [&](std::vector<std::uint8_t>& values, bool is_halo) {
+    FT_Glyph copied = nullptr;
+    if (FT_Get_Glyph(slot, &copied) != 0) return;
+    Glyph drawn(copied);
+    const auto replace = [&drawn](FT_Glyph made) {
+      (void)drawn.release();
+      drawn.reset(made);
+    };
+    if (is_halo) {
+      FT_Glyph stroked = drawn.get();
+      if (FT_Glyph_Stroke(&stroked, stroker, 1) != 0) return;
+      replace(stroked);
+    }
+    const FT_Vector origin{x & 63, -(y & 63)};
+    FT_Glyph rendered = drawn.get();
+    if (FT_Glyph_To_Bitmap(&rendered, FT_RENDER_MODE_NORMAL, &origin, 1) != 0) return;
+    replace(rendered);
+    const auto* bitmap = reinterpret_cast<const FT_BitmapGlyphRec*>(drawn.get());
+    raise(bitmap->bitmap, static_cast<int>(x >> 6) + bitmap->left,
+          static_cast<int>(y >> 6) - bitmap->top, mask, values);
+  };
+  draw(mask.letters, false);
+  if (stroker != nullptr) draw(mask.halo, true);
+}
+
 /// The longest beginning of at most so many bytes that does not end within a character.
 std::string_view beginning_of(std::string_view text, std::size_t bytes) {
   if (bytes >= text.size()) return text;
@@ -149,16 +222,38 @@ class Fonts::Faces {
   void add(const std::string& file) {
     faces_.push_back(open_face(library_.get(), file));
     size_ = 0;
+    advances_.clear();
   }
   bool is_empty() const { return faces_.empty(); }
+
+  std::string identity() const {
+    int major = 0;
+    int minor = 0;
+    int patch = 0;
+    FT_Library_Version(library_.get(), &major, &minor, &patch);
+    std::string text = "FreeType " + std::to_string(major) + "." + std::to_string(minor) + "." +
+                       std::to_string(patch) + ", HarfBuzz " + hb_version_string() + ", Raqm " +
+                       raqm_version_string();
+    for (const Face& face : faces_) {
+      const auto* head = static_cast<const TT_Header*>(FT_Get_Sfnt_Table(face.get(), FT_SFNT_HEAD));
+      text += std::string(", ") + (face->family_name == nullptr ? "" : face->family_name) + "/" +
+              (face->style_name == nullptr ? "" : face->style_name) + "/" +
+              std::to_string(face->num_glyphs) + "/" +
+              std::to_string(head == nullptr ? 0 : head->CheckSum_Adjust);
+    }
+    return text;
+  }
 
   /// To be locked as long as faces are used.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
-  ShapedLine shape(std::string_view line, int size) {
-    const std::u32string text = characters_of_line(line, kMostCharacters);
+  ShapedLine shape(std::string_view line, double size) {
+    return shape(characters_of_line(line, kMostCharacters), size);
+  }
+
+  ShapedLine shape(const std::u32string& text, double size) {
     if (text.empty() || is_empty()) return {};
-    set_size(std::clamp(size, 1, kMostTextSize));
+    set_size(std::clamp<FT_F26Dot6>(std::lround(size * 64), 64, kMostTextSize * 64));
     const Layout layout = lay_out(text);
     std::size_t count = 0;
     const raqm_glyph_t* glyphs = raqm_get_glyphs(layout.get(), &count);
@@ -172,11 +267,47 @@ class Fonts::Faces {
     return shaped;
   }
 
+  /// A halo of that width, in pixels.
+  Stroker stroker(double width) {
+    FT_Stroker made = nullptr;
+    if (FT_Stroker_New(library_.get(), &made) != 0) throw std::bad_alloc();
+    FT_Stroker_Set(made, std::lround(width * 64), FT_STROKER_LINECAP_ROUND,
+                   FT_STROKER_LINEJOIN_ROUND, 0);
+    return Stroker(made);
+  }
+
+  Extent extent_of(std::string_view line) {
+    const std::u32string text = characters_of_line(line, kMostCharacters);
+    if (text.empty() || is_empty()) return {0, kLineHeight};
+    if (!std::ranges::all_of(text, stands_for_itself)) {
+      return {static_cast<double>(shape(text, kMeasuredSize).width) / 64 / kMeasuredSize,
+              kLineHeightOfMarks};
+    }
+    double width = 0;
+    for (const char32_t c : text) width += advance_of(c);
+    return {width, kLineHeight};
+  }
+
  private:
-  void set_size(int size) {
+  /// In 64ths of a pixel.
+  void set_size(FT_F26Dot6 size) {
     if (size == size_) return;
-    for (const Face& face : faces_) FT_Set_Pixel_Sizes(face.get(), 0, static_cast<FT_UInt>(size));
+    for (const Face& face : faces_) FT_Set_Char_Size(face.get(), 0, size, 72, 72);
     size_ = size;
+  }
+
+  /// In ems.
+  double advance_of(char32_t c) {
+    const auto found = advances_.find(c);
+    if (found != advances_.end()) return found->second;
+    const std::u32string text(1, c);
+    FT_Face face = face_for(text, 0, 1);
+    const bool is_known = FT_Load_Glyph(face, FT_Get_Char_Index(face, c), FT_LOAD_NO_SCALE) == 0 &&
+                          face->units_per_EM > 0;
+    const double ems =
+        is_known ? static_cast<double>(face->glyph->advance.x) / face->units_per_EM : 0;
+    advances_.emplace(c, ems);
+    return ems;
   }
 
   Layout lay_out(const std::u32string& text) const {
@@ -224,7 +355,8 @@ class Fonts::Faces {
   std::mutex mutex_;
   Library library_ = open_library();  // outlives the faces
   std::vector<Face> faces_;
-  int size_ = 0;  // of all faces; 0: not yet set
+  FT_F26Dot6 size_ = 0;                            // of all faces; 0: not yet set
+  std::unordered_map<char32_t, double> advances_;  // in ems, of letters that stand for themselves
 };
 
 Fonts::Fonts() : faces_(std::make_unique<Faces>()) {}
@@ -236,6 +368,10 @@ void Fonts::add(const std::string& file) {
 
 bool Fonts::is_empty() const {
   return faces_->is_empty();
+}
+
+std::string Fonts::identity() const {
+  return faces_->identity();
 }
 
 int Fonts::width_of(std::string_view line, int size) const {
@@ -265,6 +401,44 @@ void Fonts::draw(std::string_view line, int left, int base, const TextStyle& sty
     glyph.x += FT_Pos{left} * 64;
     draw_glyph(glyph, base, style.colour, picture);
   }
+}
+
+Fonts::Extent Fonts::extent_of(std::string_view line) const {
+  const auto lock = faces_->lock();
+  return faces_->extent_of(line);
+}
+
+TextMask Fonts::mask_of(std::span<const std::string> lines, double size, double line_height,
+                        double halo, int width, int height) const {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  TextMask mask{width, height, std::vector<std::uint8_t>(pixels), {}};
+  mask.halo = mask.letters;
+  // Between the baseline and the top of capitals is the middle of a line: that is about 0.36 ems
+  // above the baseline in the fonts of most scripts.
+  constexpr double kMiddle = 0.36;
+  double base =
+      height / 2.0 - line_height * (static_cast<double>(lines.size()) - 1) / 2 + kMiddle * size;
+  const auto lock = faces_->lock();
+  const Stroker stroker = halo > 0 ? faces_->stroker(halo) : nullptr;
+  for (const std::string& line : lines) {
+    const ShapedLine shaped = faces_->shape(line, size);
+    const FT_Pos left = FT_Pos{width} * 32 - shaped.width / 2;
+    const auto whole_base = static_cast<FT_Pos>(std::lround(base)) * 64;
+    for (const PlacedGlyph& glyph : shaped.glyphs) {
+      add_glyph(glyph, left + glyph.x, whole_base - glyph.y, stroker.get(), mask);
+    }
+    base += line_height;
+  }
+  // Few steps, so that pictures have few colours.
+  const auto in_steps = [](std::uint8_t value) {
+    constexpr int kStep = 17;
+    return static_cast<std::uint8_t>((value + kStep / 2) / kStep * kStep);
+  };
+  for (std::size_t i = 0; i < pixels; ++i) {
+    mask.letters[i] = in_steps(mask.letters[i]);
+    mask.halo[i] = std::max(in_steps(mask.halo[i]), mask.letters[i]);
+  }
+  return mask;
 }
 
 }  // namespace trapeze

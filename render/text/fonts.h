@@ -1,5 +1,5 @@
-// Draws lines of text, in any script, into a picture: reordered by FriBidi, shaped by HarfBuzz
-// (both through Raqm) and rasterized by FreeType.
+// Draws lines of text, in any script: reordered by FriBidi, shaped by HarfBuzz (both through Raqm)
+// and rasterized by FreeType.
 //
 // Fonts are named by their files, in order of fallback, so that what is drawn depends on these
 // files only. For a family name, fontconfig would return some font even if the name is wrong, by
@@ -14,9 +14,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/picture/picture.h"
 
@@ -28,6 +31,15 @@ struct TextStyle {
 };
 
 constexpr int kMostTextSize = 256;
+
+/// How much of each pixel the letters of a text cover, and how much they cover together with the
+/// halo around them: 0 to 255. Column 0 of row 0 is the north-west pixel.
+struct TextMask {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> letters;  // row by row
+  std::vector<std::uint8_t> halo;     // the same; nowhere less than letters
+};
 
 class Fonts {
  public:
@@ -46,6 +58,9 @@ class Fonts {
   void add(const std::string& file);
   bool is_empty() const;
 
+  /// Equal for fonts, and libraries, that draw any text alike.
+  std::string identity() const;
+
   /// The width of a line in pixels, rounded up. `line` is UTF-8, read as characters_of_line() does.
   int width_of(std::string_view line, int size) const;
 
@@ -57,6 +72,21 @@ class Fonts {
   /// `base`. It is clipped to the picture. `picture` is not indexed.
   void draw(std::string_view line, int left, int base, const TextStyle& style,
             Picture& picture) const;
+
+  struct Extent {
+    double width = 0;   // in ems; a line that is drawn is at most that wide, give or take a pixel
+    double height = 0;  // in ems: from line to line, so that letters of neither meet
+  };
+  /// The room that a line takes at any size. Quick where letters are not combined: of scripts in
+  /// which each stands for itself, their widths are added up.
+  Extent extent_of(std::string_view line) const;
+
+  /// The lines one below the other, each in the middle from west to east. The middle of the text,
+  /// from which half of `line_height` per line reaches upwards and downwards, is the middle of the
+  /// mask, where the corners of four pixels meet. What reaches out of the mask is cut off. `size`,
+  /// 1 to kMostTextSize, and `halo`, its width, 0 or more, are in pixels.
+  TextMask mask_of(std::span<const std::string> lines, double size, double line_height, double halo,
+                   int width, int height) const;
 
  private:
   class Faces;

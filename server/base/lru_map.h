@@ -37,6 +37,15 @@ class LruMap {
     return entries_.front().value;
   }
 
+  /// Nothing happens if it is not there.
+  void erase(const Key& key) {
+    const auto found = by_key_.find(key);
+    if (found == by_key_.end()) return;
+    bytes_ -= found->second->bytes;
+    entries_.erase(found->second);
+    by_key_.erase(found);
+  }
+
   std::size_t bytes() const { return bytes_; }
   std::size_t budget() const { return budget_; }
 

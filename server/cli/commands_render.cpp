@@ -82,7 +82,9 @@ int run_render(const RenderArguments& arguments) {
   }
   const RendererKind kind = word_or_throw("--renderer", arguments.renderer, kRendererNames);
   auto renderers = start_renderers({kind, arguments.device}, 1);
-  TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), open_fonts({}));
+  const auto fonts = open_fonts({});
+  TilePainter painter(std::move(renderers.front()), TilePainter::new_class_cache(), fonts,
+                      std::make_shared<LabelBook>(FontChoice{fonts}));
   const auto plan = plan_tile(request, Dataset::load(layers));
   if (!plan) throw_wrong_style(plan.problem());
   const TilePainter::Job job{&*plan};

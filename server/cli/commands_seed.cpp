@@ -126,7 +126,7 @@ SeedRequest make_request(const SeedArguments& arguments, const Config& config) {
   request.tile.layers = layers_of(arguments, config);
   request.tile.scale = arguments.scale;
   request.tile.format = format_or_throw(arguments.format);
-  request.tile.style = style_or_throw(arguments.style, request.tile.layers, config.styles);
+  request.tile.style = style_or_throw(arguments.style, request.tile.layers, config);
   request.zooms = zooms_or_throw(arguments.zooms, config.limits.zoom);
   if (!arguments.bbox.empty()) {
     request.bbox = parse_bbox(arguments.bbox);
@@ -190,6 +190,7 @@ struct Work {
   JobRange range;
   std::vector<std::unique_ptr<MaskRenderer>> renderers;
   std::string renderer;  // its identity
+  std::shared_ptr<LabelBook> labels;
 };
 
 Work prepare_work(const SeedArguments& arguments, const Config& config) {
@@ -202,8 +203,8 @@ Work prepare_work(const SeedArguments& arguments, const Config& config) {
   if (!plan) throw UsageError(plan.problem().detail);
   std::string renderer = renderers.front()->identity();
   Work work{std::move(request), dataset, *std::move(plan), {}, {}, std::move(renderers),
-            std::move(renderer)};
-  KnownTiles known(work.plan, TilePainter::new_class_cache());
+            std::move(renderer), std::make_shared<LabelBook>(open_font_choice(config))};
+  KnownTiles known(work.plan, TilePainter::new_class_cache(), work.labels);
   work.jobs = divide_into_jobs(work.plan, known);
   work.range = jobs_of_part(work.jobs, part);
   return work;
@@ -314,8 +315,7 @@ int run_seed(const SeedArguments& arguments) {
     earlier.emplace(arguments.update);
     find_known = [&earlier](const Digest& fingerprint) { return earlier->find(fingerprint); };
   }
-  Seeder seeder(work.plan, work.jobs, std::move(work.renderers), open_fonts(config.text.fonts),
-                find_known);
+  Seeder seeder(work.plan, work.jobs, std::move(work.renderers), work.labels, find_known);
   if (arguments.is_dry_run) return tell_estimate(work, seeder);
   seed_into(arguments, work, seeder);
   if (!arguments.part.empty()) return 0;

@@ -105,10 +105,12 @@ void apply(const CoverageArguments& arguments, LayerConfig& layer) {
 }
 
 StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,
-                          const std::map<std::string, StyleQuery>& named) {
+                          const Config& config) {
   const auto parameters = decode_query(query);
   if (!parameters) throw UsageError("--style takes a query string such as fill=red");
-  const auto style = StyleBook(named).read(*parameters);
+  std::vector<std::string> fonts;
+  for (const auto& [name, files] : config.fonts) fonts.push_back(name);
+  const auto style = StyleBook(config.styles, 0, nullptr, std::move(fonts)).read(*parameters);
   if (!style) throw_wrong_style(style.problem());
   auto of_layers = style->style_for(layers);
   if (!of_layers) throw_wrong_style(of_layers.problem());

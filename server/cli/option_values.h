@@ -63,9 +63,9 @@ void apply(const CoverageArguments& arguments, LayerOptions& options);
 /// What is not said stays as the layer has it.
 void apply(const CoverageArguments& arguments, LayerConfig& layer);
 
-/// A style for these layers, written as in the query of a URL; it may name one of `named`.
+/// A style for these layers, written as in the query of a URL; it may name what the configuration has.
 StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,
-                          const std::map<std::string, StyleQuery>& named = {});
+                          const Config& config = {});
 /// A problem with a style as a sentence for the command line.
 [[noreturn]] void throw_wrong_style(const Problem& problem);
 

@@ -65,6 +65,11 @@ struct ValueTableConfig {
   std::string attribution;  // what maps must say about where they are from
 };
 
+/// Fonts by a name.
+struct FontsConfig {
+  std::vector<std::string> files;  // as Fonts::add() takes them, in order
+};
+
 struct ServerConfig {
   std::string address{defaults::kAddress};
   std::uint16_t port = defaults::kPort;                // 0: any free port
@@ -155,6 +160,7 @@ struct Config {
   ChangesConfig changes;
   std::map<std::string, StyleQuery> styles;        // by name, for which is_url_name() holds
   std::map<std::string, ValueTableConfig> values;  // tables by name, which is as those of styles
+  std::map<std::string, FontsConfig> fonts;        // for labels; names are as those of styles
   std::vector<LayerConfig> layers;                 // names are unique
 };
 

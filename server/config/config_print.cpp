@@ -76,6 +76,16 @@ std::string print_value_table(const std::string& name, const ValueTableConfig& t
   return text;
 }
 
+std::string print_fonts(const std::string& name, const FontsConfig& fonts,
+                        const LoadedConfig& loaded) {
+  std::string text = fmt::format("\n[fonts.{}]\n", name);
+  for (const auto& setting : fonts_settings()) {
+    text += line(setting.key, toml_text(setting.get(fonts)), loaded,
+                 fmt::format("fonts.{}.{}", name, setting.key));
+  }
+  return text;
+}
+
 /// Connection strings may hold one.
 SettingValue without_password(const Setting<LayerConfig>& setting, const SettingValue& value) {
   if (setting.type != SettingType::path) return value;
@@ -167,6 +177,18 @@ Json styles_schema() {
           {"additionalProperties", style}};
 }
 
+Json fonts_schema() {
+  Json table = closed_object();
+  for (const auto& setting : fonts_settings()) {
+    table["properties"][setting.key] = setting_schema(setting);
+  }
+  table["required"] = {"files"};
+  return {{"type", "object"},
+          {"description", "fonts by name, for label-font=NAME"},
+          {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
+          {"additionalProperties", table}};
+}
+
 Json value_tables_schema() {
   Json table = closed_object();
   for (const auto& setting : value_table_settings()) {
@@ -206,6 +228,7 @@ std::string print_config(const LoadedConfig& loaded) {
     text += line(setting.key, toml_text(setting.get(loaded.config)), loaded, setting.name());
   }
   for (const auto& [name, style] : loaded.config.styles) text += print_named_style(name, style);
+  for (const auto& [name, fonts] : loaded.config.fonts) text += print_fonts(name, fonts, loaded);
   for (const auto& [name, values] : loaded.config.values) {
     text += print_value_table(name, values, loaded);
   }
@@ -226,6 +249,7 @@ std::string config_schema() {
     table["properties"][setting.key] = setting_schema(setting);
   }
   schema["properties"]["styles"] = styles_schema();
+  schema["properties"]["fonts"] = fonts_schema();
   schema["properties"]["values"] = value_tables_schema();
   schema["properties"]["layer"] = {{"type", "array"},
                                    {"description", "the layers, the first lies lowest"},

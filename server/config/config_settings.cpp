@@ -529,7 +529,8 @@ void append_text(std::vector<Setting<Config>>& all) {
       "a list of files of fonts, of a collection \"FILE#N\", its font number N from 0",
       [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
       same,
-      "the fonts of legends and marks: each character is of the first that has it; an empty list: "
+      "the fonts of legends, labels and marks: each character is of the first that has it; an "
+      "empty list: "
       "those of the Debian packages fonts-dejavu-core, fonts-noto-core and fonts-noto-cjk that are "
       "installed");
   fonts.type = SettingType::paths;
@@ -605,6 +606,21 @@ const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
       text<ValueTableConfig>(
           "values.attribution", [](auto& table) -> auto& { return table.attribution; },
           "what maps must say about where they are from; may hold links in HTML")};
+  return settings;
+}
+
+const std::vector<Setting<FontsConfig>>& fonts_settings() {
+  static const std::vector<Setting<FontsConfig>> settings = [] {
+    auto files = list<FontsConfig>(
+        "fonts.files", [](auto& fonts) -> auto& { return fonts.files; },
+        "a list of files of fonts, of a collection \"FILE#N\", its font number N from 0",
+        [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
+        same,
+        "the fonts that labels with this label-font are written in: each character is of the "
+        "first that has it");
+    files.type = SettingType::paths;
+    return std::vector<Setting<FontsConfig>>{std::move(files)};
+  }();
   return settings;
 }
 

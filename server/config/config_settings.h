@@ -40,6 +40,8 @@ struct Setting {
 const std::vector<Setting<Config>>& config_settings();
 /// All of [[layer]] that is one value: all but its style.
 const std::vector<Setting<LayerConfig>>& layer_settings();
+/// All of [fonts.NAME].
+const std::vector<Setting<FontsConfig>>& fonts_settings();
 /// All of [values.NAME].
 const std::vector<Setting<ValueTableConfig>>& value_table_settings();
 

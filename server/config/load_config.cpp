@@ -65,15 +65,17 @@ class ConfigReader {
         read_styles(node);
       } else if (key.str() == "values") {
         read_value_tables(node);
+      } else if (key.str() == "fonts") {
+        read_fonts(node);
       } else if (is_table_of_settings(key.str())) {
         read_table(key.str(), node);
       } else {
         fail(key.source().begin,
              fmt::format("unknown key {}; allowed here are server, viewer, limits, text, log, "
-                         "admin, styles, values, layer{}",
+                         "admin, styles, fonts, values, layer{}",
                          key.str(),
                          did_you_mean(key.str(), {"server", "viewer", "limits", "text", "log",
-                                                  "admin", "styles", "values", "layer"})));
+                                                  "admin", "styles", "fonts", "values", "layer"})));
       }
     }
   }
@@ -393,6 +395,27 @@ class ConfigReader {
     const toml::table* table = node.as_table();
     if (table == nullptr) return fail(node, "styles are tables, begun by [styles.NAME]");
     for (const auto& [key, style] : *table) read_named_style(std::string(key.str()), style);
+  }
+
+  void read_fonts(const toml::node& node) {
+    const toml::table* tables = node.as_table();
+    if (tables == nullptr) return fail(node, "fonts are tables, begun by [fonts.NAME]");
+    for (const auto& [key, table] : *tables) {
+      const std::string name(key.str());
+      if (!is_url_name(name) || !table.is_table()) {
+        fail(table,
+             "fonts are tables, each begun by [fonts.NAME] with a name of 1 to 64 letters, digits, "
+             "'_' or '-'");
+        continue;
+      }
+      FontsConfig read;
+      const std::size_t before = loaded_.problems.size();
+      read_settings(*table.as_table(), fonts_settings(), read, "fonts." + name);
+      if (loaded_.problems.size() == before && read.files.empty()) {
+        fail(table, fmt::format("fonts \"{}\" need files", name));
+      }
+      loaded_.config.fonts.emplace(name, std::move(read));
+    }
   }
 
   void read_value_tables(const toml::node& node) {

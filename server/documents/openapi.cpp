@@ -49,8 +49,10 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::breaks:  // numbers with commas between them, or a rule
     case ParameterType::format:
     case ParameterType::table:
+    case ParameterType::font:
       return {{"type", "string"}};
     case ParameterType::text:
+    case ParameterType::label:
       return {{"type", "string"}, {"maxLength", parameter.max_items}};
   }
   return Json::object();

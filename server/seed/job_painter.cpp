@@ -22,14 +22,16 @@ Digest digest_of_hex(std::string_view hex) {
 }  // namespace
 
 JobPainter::JobPainter(const SeedPlan& plan, TilePainter painter,
-                       const std::shared_ptr<FeatureClassCache>& classes, FindKnown find_known)
+                       const std::shared_ptr<FeatureClassCache>& classes,
+                       const std::shared_ptr<LabelBook>& labels, FindKnown find_known)
     : plan_(plan),
       painter_(std::move(painter)),
-      known_(plan, classes),
+      known_(plan, classes, labels),
       find_known_(std::move(find_known)),
       approached_(static_cast<std::size_t>(plan.zooms().last) + 1) {
   TilePlan nothing = plan.at(plan.zooms().first);
   nothing.layers.clear();
+  nothing.labels.clear();
   nothing.debug = {};
   nothing.background = kTransparent;
   const TilePainter::Job job{&nothing};

@@ -29,7 +29,8 @@ class JobPainter {
 
   /// `plan` must outlive it.
   JobPainter(const SeedPlan& plan, TilePainter painter,
-             const std::shared_ptr<FeatureClassCache>& classes, FindKnown find_known = {});
+             const std::shared_ptr<FeatureClassCache>& classes,
+             const std::shared_ptr<LabelBook>& labels, FindKnown find_known = {});
 
   /// The tiles of the units. Throws what drawing throws.
   SeedBlockBuilder paint(std::span<const SeedUnit> units);

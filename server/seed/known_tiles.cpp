@@ -68,8 +68,9 @@ bool has_dust_or_edges(const Layer& layer, const LevelSpan& span, const Layer::S
 
 }  // namespace
 
-KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes)
-    : plan_(plan), classes_(std::move(classes)) {
+KnownTiles::KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes,
+                       std::shared_ptr<LabelBook> labels)
+    : plan_(plan), classes_(std::move(classes)), labels_(std::move(labels)) {
   const ZoomRange zooms = plan.zooms();
   steps_.resize(static_cast<std::size_t>(zooms.last) + 1);
   looks_.resize(steps_.size());
@@ -229,10 +230,18 @@ bool KnownTiles::find(Drawn& drawn, const LevelSpanSelection& selection, const T
   return span.find(*drawn.opened, classes, selection, kMostTrapezoids);
 }
 
+// At any zoom from its own on.
+bool KnownTiles::may_have_labels(const TileId& tile) const {
+  const TilePlan& plan = plan_.at(first_zoom(tile));
+  return !plan.labels.empty() &&
+         labels_->is_any_from({*plan.dataset, plan.labels, View::of_tile(tile), 1});
+}
+
 void KnownTiles::find_looks(const Step& step) {
   tile_ = step.tile;
   is_known_ = false;
   std::ranges::fill(looks_, std::nullopt);
+  if (may_have_labels(tile_)) return;
   for (int zoom = first_zoom(tile_); zoom <= plan_.zooms().last; ++zoom) {
     std::optional<TileLook>& look = looks_[static_cast<std::size_t>(zoom)];
     look = find_look(step, zoom);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/layer/level_span.h"
+#include "server/labels/label_book.h"
 #include "server/seed/seed_plan.h"
 #include "server/styles/feature_classes.h"
 
@@ -31,7 +32,8 @@ using TileLook = std::string;
 class KnownTiles {
  public:
   /// `plan` must outlive it.
-  KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes);
+  KnownTiles(const SeedPlan& plan, std::shared_ptr<FeatureClassCache> classes,
+             std::shared_ptr<LabelBook> labels);
 
   /// Looks at a tile of a zoom up to the last. It is of zoom 0, or a child of the tile of the
   /// zoom before that was looked at last.
@@ -76,6 +78,7 @@ class KnownTiles {
   bool find(Drawn& drawn, const LevelSpanSelection& selection, const TileId& tile, LevelSpan& span);
   LevelSpanSelection selection_of(const Drawn& drawn, const TileId& tile) const;
   int first_zoom(const TileId& tile) const;
+  bool may_have_labels(const TileId& tile) const;
   void find_looks(const Step& step);
   std::optional<TileLook> find_look(const Step& step, int zoom);
   enum class Seen : std::uint8_t { nothing, one_colour, something };
@@ -89,6 +92,7 @@ class KnownTiles {
 
   const SeedPlan& plan_;
   std::shared_ptr<FeatureClassCache> classes_;
+  std::shared_ptr<LabelBook> labels_;
   std::vector<Drawn> drawn_;  // from the top
   std::vector<Step> steps_;   // by zoom
   TileId tile_;

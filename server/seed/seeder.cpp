@@ -41,12 +41,13 @@ std::vector<std::size_t> spread(std::size_t count) {
 
 Seeder::Seeder(const SeedPlan& plan, const SeedJobs& jobs,
                std::vector<std::unique_ptr<MaskRenderer>> renderers,
-               const std::shared_ptr<const Fonts>& fonts, const JobPainter::FindKnown& find_known)
+               const std::shared_ptr<LabelBook>& labels, const JobPainter::FindKnown& find_known)
     : plan_(plan), jobs_(jobs) {
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
-    painters_.emplace_back(plan, TilePainter(std::move(renderer), classes, fonts), classes,
-                           find_known);
+    // Marks are for looking at, and need no fonts here.
+    painters_.emplace_back(plan, TilePainter(std::move(renderer), classes, nullptr, labels),
+                           classes, labels, find_known);
   }
 }
 

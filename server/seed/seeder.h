@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "render/mask/mask.h"
-#include "render/text/fonts.h"
 #include "server/seed/job_painter.h"
 #include "server/seed/seed_block.h"
 #include "server/seed/seed_jobs.h"
@@ -31,7 +30,7 @@ class Seeder {
   /// `plan` and `jobs` must outlive it.
   Seeder(const SeedPlan& plan, const SeedJobs& jobs,
          std::vector<std::unique_ptr<MaskRenderer>> renderers,
-         const std::shared_ptr<const Fonts>& fonts, const JobPainter::FindKnown& find_known);
+         const std::shared_ptr<LabelBook>& labels, const JobPainter::FindKnown& find_known);
 
   /// Does the jobs of the range that the log has not got. `report` is called after each, one call
   /// at a time. Throws what drawing and the log throw, and std::runtime_error if the file of a

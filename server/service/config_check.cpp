@@ -45,9 +45,9 @@ class ConfigCheck {
     for (const auto& [name, table] : config_.values) {
       if (!table.file.empty()) note(fmt::format("values.{}.file", name), find_table_problem(table));
     }
-    for (const auto& [name, style] : config_.styles) check_tables("styles." + name, style);
+    for (const auto& [name, style] : config_.styles) check_names("styles." + name, style);
     for (const LayerConfig& layer : config_.layers) {
-      check_tables(fmt::format("layer.{}.style", layer.name), layer.style);
+      check_names(fmt::format("layer.{}.style", layer.name), layer.style);
       check_layer(layer);
     }
     if (config_.layers.empty() && findings_.problems.empty()) {
@@ -78,9 +78,16 @@ class ConfigCheck {
     }
     note("server.tile_matrix_sets",
          failure_of([this] { tile_matrix_sets_with(config_.server.tile_matrix_sets); }));
-    for (std::size_t i = 0; i < config_.text.fonts.size(); ++i) {
-      for (const std::string& problem : find_font_problems({config_.text.fonts[i]})) {
-        findings_.warnings.push_back(found("text.fonts", problem, i));
+    check_fonts("text.fonts", config_.text.fonts);
+    for (const auto& [name, fonts] : config_.fonts) {
+      check_fonts(fmt::format("fonts.{}.files", name), fonts.files);
+    }
+  }
+
+  void check_fonts(const std::string& setting, const std::vector<std::string>& files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      for (const std::string& problem : find_font_problems({files[i]})) {
+        findings_.warnings.push_back(found(setting, problem, i));
       }
     }
   }
@@ -110,9 +117,13 @@ class ConfigCheck {
 
   static bool is_any(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
 
-  /// A style that names a table which is not there draws nothing.
-  void check_tables(const std::string& setting, const StyleQuery& style) {
+  /// A style that names a table or fonts which are not there draws nothing.
+  void check_names(const std::string& setting, const StyleQuery& style) {
     for (const StyleSetting& each : style.settings()) {
+      if (each.parameter == ParameterId::label_font &&
+          !config_.fonts.contains(std::get<std::string>(each.value))) {
+        note(setting, fmt::format("there are no fonts [fonts.{}]", format_value(each.value)));
+      }
       const auto* choice = std::get_if<TableChoice>(&each.value);
       if (choice == nullptr || config_.values.contains(choice->name)) continue;
       note(setting, fmt::format("there is no table [values.{}]", choice->name));

@@ -184,6 +184,7 @@ bool Reloader::follow_live() {
 }
 
 void Reloader::publish(std::shared_ptr<const Dataset> loaded) {
+  tiles_.place_usual_labels(loaded);
   const Dataset* served = loaded.get();
   data_.set({served, [loaded = std::move(loaded), retired = retired_](const Dataset*) mutable {
                const std::lock_guard lock(retired->mutex);

@@ -40,6 +40,7 @@ SiteOptions site_options(const Config& config) {
       std::make_shared<const TileMatrixSets>(tile_matrix_sets_with(config.server.tile_matrix_sets));
   options.viewer = config.viewer;
   options.styles = config.styles;
+  for (const auto& [name, fonts] : config.fonts) options.label_fonts.push_back(name);
   options.posted_styles = std::size_t{config.server.posted_styles_mb} << 20;
   options.max_layers = config.limits.layers;
   options.max_scale = config.limits.scale;
@@ -136,6 +137,7 @@ Service::Service(const Config& config, LayerSource source)
   drawing.deadline = milliseconds(config.server.deadline_ms);
   drawing.batch = config.server.batch;
   drawing.fonts = open_fonts(config.text.fonts);
+  drawing.labels = std::make_shared<LabelBook>(open_font_choice(config, drawing.fonts));
   drawing.find_kept = [this](const std::string& fingerprint) { return cache_.find(fingerprint); };
   drawing.observe = [this](const TileAnswer& tile) { metrics_.count(tile); };
   auto renderers = start_renderers(config.server.renderer, renderer_count(config.server.workers));

@@ -303,7 +303,8 @@ Site::Site(SiteOptions options, StaticFiles files, const CurrentDataset& data, T
       known_targets_(std::make_unique<KnownTargets>(kKnownTargetBytes)),
       known_fingerprints_(std::make_shared<KnownFingerprints>(kKnownFingerprintBytes)),
       values_(std::make_shared<ValueBook>(options_.posted_values)),
-      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles, values_)),
+      styles_(std::make_unique<StyleBook>(options_.styles, options_.posted_styles, values_,
+                                          options_.label_fonts)),
       documents_(std::make_unique<DocumentWorker>()) {}
 
 void Site::handle(const HttpRequest& request, Respond respond) const {

@@ -71,6 +71,7 @@ struct SiteOptions {
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
   /// Styles by name, and the memory in bytes for those that are posted.
   std::map<std::string, StyleQuery> styles = {};
+  std::vector<std::string> label_fonts = {};  // that styles may name
   std::size_t posted_styles = StyleBook::kDefaultBudget;
   /// Rows of a table that is posted, and the memory in bytes for all of them.
   std::size_t values_rows = defaults::kValuesRows;

@@ -19,6 +19,13 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
   return styles;
 }
 
+Problem unknown_fonts(const std::string& name, const std::vector<std::string>& known) {
+  return {400, fmt::format("There are no fonts of that name{}", suggestion_or_stop(name, known)),
+          "label-font", name,
+          known.empty() ? "nothing: the configuration names no fonts"
+                        : fmt::format("one of {}", fmt::join(known, ", "))};
+}
+
 std::size_t memory_of_text(std::string_view canonical_text) {
   constexpr std::size_t kOverhead = 512;  // of an entry and the values of its settings, about
   return kOverhead + 4 * canonical_text.size();
@@ -31,6 +38,13 @@ Result<StyleQuery> StyledQuery::style_for(std::span<const std::string> layers,
   auto style = StyleQuery::parse(pairs, layers, others);
   if (!style) return style;
   StyleQuery made = named == nullptr ? *std::move(style) : style->over(*named, layers);
+  for (const StyleSetting& setting : made.settings()) {
+    if (setting.parameter != ParameterId::label_font) continue;
+    const auto& font = std::get<std::string>(setting.value);
+    if (fonts == nullptr || std::ranges::find(*fonts, font) == fonts->end()) {
+      return unknown_fonts(font, fonts == nullptr ? std::vector<std::string>() : *fonts);
+    }
+  }
   if (tables == nullptr) return made;
   return std::move(made).with_tables([this](const std::string& id) { return tables->find(id); });
 }
@@ -49,21 +63,24 @@ std::string StyleLink::query() const {
 }
 
 StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget,
-                     std::shared_ptr<const ValueBook> tables)
-    : named_(shared(std::move(named))), tables_(std::move(tables)), posted_(budget) {}
+                     std::shared_ptr<const ValueBook> tables, std::vector<std::string> fonts)
+    : named_(shared(std::move(named))),
+      tables_(std::move(tables)),
+      fonts_(std::make_shared<const std::vector<std::string>>(std::move(fonts))),
+      posted_(budget) {}
 
 Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
-  if (asked == query.end()) return StyledQuery{std::move(query), nullptr, {}, tables_};
+  if (asked == query.end()) return StyledQuery{std::move(query), nullptr, {}, tables_, fonts_};
   const std::string name = asked->second;
   if (std::any_of(asked + 1, query.end(), is_style)) {
     return Problem{400, "The parameter style is given twice.", "style", name, "one name, once"};
   }
-  if (name == kDefaultName) return StyledQuery{std::move(query), nullptr, {}, tables_};
+  if (name == kDefaultName) return StyledQuery{std::move(query), nullptr, {}, tables_, fonts_};
   auto style = find(name);
   if (style == nullptr) return unknown(name);
-  return StyledQuery{std::move(query), std::move(style), name, tables_};
+  return StyledQuery{std::move(query), std::move(style), name, tables_, fonts_};
 }
 
 Problem StyleBook::unknown(const std::string& name) const {

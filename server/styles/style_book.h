@@ -39,9 +39,11 @@ struct StyledQuery {
   std::shared_ptr<const StyleQuery> named;       // null: none, or the one that sets nothing
   std::string name = {};                         // of that style
   std::shared_ptr<const ValueBook> tables = {};  // that were posted; null: none were
+  std::shared_ptr<const std::vector<std::string>> fonts = {};  // that labels may choose; null: none
 
   /// What the pairs set and, where they are silent, the named style, with the tables that were
-  /// posted. Problems, and the names of `others`, are those of StyleQuery::parse().
+  /// posted. Problems, and the names of `others`, are those of StyleQuery::parse(), and fonts that
+  /// there are not, 400.
   Result<StyleQuery> style_for(std::span<const std::string> layers,
                                std::span<const std::string_view> others = {}) const;
   /// The same for links; with the same problems.
@@ -53,10 +55,12 @@ class StyleBook {
  public:
   /// `named` are kept as long as the book; `budget`, in bytes, is for those that are posted. Of
   /// these, the ones not asked for longest go first.
-  /// Styles find the tables that they name in `tables`, which may be null.
+  /// Styles find the tables that they name in `tables`, which may be null. `fonts` are the names of
+  /// those that labels may choose.
   explicit StyleBook(std::map<std::string, StyleQuery> named = {},
                      std::size_t budget = kDefaultBudget,
-                     std::shared_ptr<const ValueBook> tables = nullptr);
+                     std::shared_ptr<const ValueBook> tables = nullptr,
+                     std::vector<std::string> fonts = {});
 
   /// The query with the style that its `style` names. The problem, 400, is a style that there is
   /// not.
@@ -91,7 +95,8 @@ class StyleBook {
   Problem unknown(const std::string& name) const;
 
   const std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> named_;
-  const std::shared_ptr<const ValueBook> tables_;                          // null: none
+  const std::shared_ptr<const ValueBook> tables_;  // null: none
+  const std::shared_ptr<const std::vector<std::string>> fonts_;
   mutable std::mutex mutex_;                                               // guards posted_
   mutable LruMap<std::string, std::shared_ptr<const StyleQuery>> posted_;  // by id
 };

@@ -13,6 +13,7 @@
 #include "render/picture/pattern.h"
 #include "render/picture/reduce_colours.h"
 #include "server/base/nearest_name.h"
+#include "server/labels/label_template.h"
 #include "server/styles/colour_ramps.h"
 #include "server/styles/debug_marks.h"
 
@@ -26,6 +27,9 @@ constexpr std::size_t kMaxBreaks = 63;
 constexpr std::size_t kMaxIds = 256;
 constexpr std::size_t kMaxNameLength = 128;
 constexpr std::size_t kMaxTextLength = 32;
+constexpr std::size_t kMaxTemplateLength = 200;
+constexpr std::array<std::string_view, 2> kLabelPartsWords = {"all", "largest"};
+constexpr std::array<std::string_view, 2> kYesOrNoWords = {"no", "yes"};
 
 using Type = ParameterType;
 
@@ -117,11 +121,88 @@ constexpr std::array kParameters = {
                    .default_text = "the property that is called as the key of the table",
                    .description = "property whose value is the key of a polygon in the table of "
                                   "values"},
+    StyleParameter{.id = ParameterId::label,
+                   .name = "label",
+                   .type = Type::label,
+                   .max_items = kMaxTemplateLength,
+                   .default_text = "no labels",
+                   .description = "what stands in the polygons: the property of that name, or text "
+                                  "with properties in braces; of joined values, value"},
+    StyleParameter{.id = ParameterId::label_color,
+                   .name = "label-color",
+                   .type = Type::colour,
+                   .default_text = "222222",
+                   .description = "colour of the letters of labels"},
+    StyleParameter{.id = ParameterId::label_font,
+                   .name = "label-font",
+                   .type = Type::font,
+                   .default_text = "the fonts of legends",
+                   .description = "fonts of the configuration that labels are written in"},
     StyleParameter{.id = ParameterId::label_format,
                    .name = "label-format",
                    .type = Type::format,
                    .default_text = "as many digits as it takes",
-                   .description = "how the legend writes numbers"},
+                   .description = "how the legend and labels write numbers"},
+    StyleParameter{.id = ParameterId::label_halo_color,
+                   .name = "label-halo-color",
+                   .type = Type::colour,
+                   .default_text = "ffffffcc",
+                   .description = "colour around the letters of labels"},
+    StyleParameter{.id = ParameterId::label_halo_width,
+                   .name = "label-halo-width",
+                   .type = Type::number,
+                   .max = 8,
+                   .default_text = "1.5",
+                   .description = "how far around its letters a label is filled with the colour of "
+                                  "the halo, in pixels"},
+    StyleParameter{.id = ParameterId::label_max_width,
+                   .name = "label-max-width",
+                   .type = Type::number,
+                   .max = 1024,
+                   .default_text = "120",
+                   .description = "width in pixels beyond which a label is broken into lines"},
+    StyleParameter{.id = ParameterId::label_min_size,
+                   .name = "label-min-size",
+                   .type = Type::number,
+                   .max = 1024,
+                   .default_text = "0",
+                   .description = "polygons that are smaller have no label: the side of a square "
+                                  "as large as the polygon, in pixels"},
+    StyleParameter{.id = ParameterId::label_overhang,
+                   .name = "label-overhang",
+                   .type = Type::number,
+                   .max = 1024,
+                   .default_text = "8",
+                   .description = "by how many pixels a label may reach out of its polygon; one "
+                                  "that would reach farther waits for a larger scale"},
+    StyleParameter{.id = ParameterId::label_parts,
+                   .name = "label-parts",
+                   .type = Type::word,
+                   .words = kLabelPartsWords,
+                   .default_text = "largest",
+                   .description = "which parts of a feature have a label: the largest, or all that "
+                                  "it fits into"},
+    StyleParameter{.id = ParameterId::label_priority,
+                   .name = "label-priority",
+                   .type = Type::name,
+                   .default_text = "area",
+                   .description = "property, a number, by which the greater are labelled first "
+                                  "where there is no room for all; area stands for the size of "
+                                  "the polygon"},
+    StyleParameter{.id = ParameterId::label_repeat,
+                   .name = "label-repeat",
+                   .type = Type::word,
+                   .words = kYesOrNoWords,
+                   .default_text = "yes",
+                   .description = "whether features that have the same label are all labelled; no: "
+                                  "only the first of them"},
+    StyleParameter{.id = ParameterId::label_size,
+                   .name = "label-size",
+                   .type = Type::number,
+                   .min = 6,
+                   .max = 64,
+                   .default_text = "12",
+                   .description = "size of the letters of labels, in pixels"},
     StyleParameter{.id = ParameterId::no_data_color,
                    .name = "no-data-color",
                    .type = Type::colour,
@@ -245,12 +326,12 @@ constexpr std::array kParameters = {
                    .max_items = kMaxTextLength,
                    .default_text = "none",
                    .description = "what the legend writes behind numbers"},
-    StyleParameter{.id = ParameterId::values,
-                   .name = "values",
-                   .type = Type::table,
-                   .default_text = "none",
-                   .description =
-                       "table of values by the keys of polygons, posted to /values or of "
+    StyleParameter{
+        .id = ParameterId::values,
+        .name = "values",
+        .type = Type::table,
+        .default_text = "none",
+        .description = "table of values by the keys of polygons, posted to /values or of "
                        "the configuration: color-by and filter call them value"},
 };
 
@@ -431,6 +512,11 @@ std::optional<ParameterValue> parse_text(const StyleParameter& parameter, std::s
   return std::string(text);
 }
 
+std::optional<ParameterValue> parse_label(const StyleParameter& parameter, std::string_view text) {
+  auto parsed = parse_text(parameter, text);
+  return parsed && LabelTemplate::is_valid(text) ? std::move(parsed) : std::nullopt;
+}
+
 std::optional<ParameterValue> parse_filter(std::string_view text) {
   auto parsed = Filter::parse(text);
   if (auto* filter = std::get_if<0>(&parsed)) return std::move(*filter);
@@ -608,6 +694,11 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
     case Type::table:
       if (is_url_name(text)) return TableChoice{std::string(text)};
       break;
+    case Type::label:
+      return parse_label(parameter, text);
+    case Type::font:
+      if (is_url_name(text)) return std::string(text);
+      break;
   }
   return std::nullopt;
 }
@@ -662,6 +753,12 @@ std::string describe_values(const StyleParameter& parameter) {
       return fmt::format("1 to {} bytes of text", parameter.max_items);
     case Type::table:
       return "the id that POST /values has given, or the name of a table of the configuration";
+    case Type::label:
+      return fmt::format(
+          "the name of a property, or text with names of properties in braces, of at most {} bytes",
+          parameter.max_items);
+    case Type::font:
+      return "the name of fonts of the configuration";
   }
   return {};
 }

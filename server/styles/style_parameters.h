@@ -37,7 +37,19 @@ enum class ParameterId : std::uint8_t {
   highlight_stroke,
   ids,
   join,
+  label,
+  label_color,
+  label_font,
   label_format,
+  label_halo_color,
+  label_halo_width,
+  label_max_width,
+  label_min_size,
+  label_overhang,
+  label_parts,
+  label_priority,
+  label_repeat,
+  label_size,
   no_data_color,
   opacity,
   pattern,
@@ -76,6 +88,8 @@ enum class ParameterType : std::uint8_t {
   format,   // a NumberFormat
   text,     // a few words
   table,    // the name or id of a ValueTable
+  label,    // a LabelTemplate
+  font,     // the name of a font
 };
 
 struct StyleParameter {

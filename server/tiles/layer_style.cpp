@@ -435,6 +435,52 @@ std::optional<Problem> make_selection(Making& making) {
   return std::nullopt;
 }
 
+// ---- labels
+
+/// The number of the attribute by which labels are ordered, -1 if that is by area.
+Result<int> label_priority(const Making& making) {
+  const auto* name = making.settings.find<std::string>(ParameterId::label_priority);
+  if (name == nullptr || *name == "area") return -1;
+  const Attributes attributes = making.attributes();
+  const int number = attributes.field_index(*name);
+  if (number < 0) return unknown_property("label-priority", *name, attributes);
+  if (attributes.field(number).type == FieldType::text) {
+    return Problem{400,
+                   fmt::format("The property {} holds text, which has no order of size.", *name),
+                   "label-priority", *name, "a property of numbers, or area"};
+  }
+  return number;
+}
+
+std::optional<Problem> make_label(Making& making) {
+  const LayerSettings& settings = making.settings;
+  const auto* written = settings.find<std::string>(ParameterId::label);
+  if (written == nullptr) return std::nullopt;
+  if (making.served.parts != nullptr) return not_in_parts("label", "no labels", making.served);
+  auto text = LabelTemplate::bind(*written, making.attributes());
+  if (!text) return std::move(text).problem();
+  auto priority = label_priority(making);
+  if (!priority) return std::move(priority).problem();
+  LabelStyle style;
+  style.written = *written;
+  style.text = *std::move(text);
+  style.format = making.style.label_format;
+  style.joined = making.style.classing.joined;
+  style.font = settings.value_or(ParameterId::label_font, std::string());
+  style.size = settings.value_or(ParameterId::label_size, style.size);
+  style.colour = settings.value_or(ParameterId::label_color, style.colour);
+  style.halo_colour = settings.value_or(ParameterId::label_halo_color, style.halo_colour);
+  style.halo_width = settings.value_or(ParameterId::label_halo_width, style.halo_width);
+  style.max_width = settings.value_or(ParameterId::label_max_width, style.max_width);
+  style.min_size = settings.value_or(ParameterId::label_min_size, style.min_size);
+  style.overhang = settings.value_or(ParameterId::label_overhang, style.overhang);
+  style.priority = *priority;
+  style.repeats = settings.value_or(ParameterId::label_repeat, std::string("yes")) == "yes";
+  style.all_parts = settings.value_or(ParameterId::label_parts, std::string("largest")) == "all";
+  making.style.label = std::make_shared<const LabelStyle>(std::move(style));
+  return std::nullopt;
+}
+
 void make_paints(Making& making) {
   const LayerSettings& settings = making.settings;
   const double opacity = settings.value_or(ParameterId::stroke_opacity, 1.0);
@@ -473,7 +519,9 @@ std::string LayerStyle::key() const {
     text += fmt::format("pattern {} {} {} {} {} ", static_cast<int>(pattern.kind),
                         to_hex(pattern.colour), pattern.size, pattern.angle, pattern.width);
   }
-  return text + fmt::format("{}", opacity);
+  text += fmt::format("{}", opacity);
+  if (label != nullptr) text += " label " + label->key();
+  return text;
 }
 
 Result<StyleQuery> complete_style(const StyleQuery& query, const LayerConfig& config) {
@@ -496,6 +544,7 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
   making.style.units = making.settings.value_or(ParameterId::units, std::string());
   const auto* format = making.settings.find<NumberFormat>(ParameterId::label_format);
   if (format != nullptr) making.style.label_format = *format;
+  if (auto problem = make_label(making)) return std::move(*problem);
   make_paints(making);
   return std::move(making.style);
 }

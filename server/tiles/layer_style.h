@@ -15,6 +15,7 @@
 #include "server/base/result.h"
 #include "server/config/config.h"
 #include "server/data/dataset.h"
+#include "server/labels/label_style.h"
 #include "server/styles/feature_classes.h"
 #include "server/styles/style_parameters.h"
 #include "server/values/class_breaks.h"
@@ -48,11 +49,12 @@ struct LayerStyle {
   std::optional<ClassOrigin> origin = {};  // of classes by value; nothing of what it says is drawn
   std::optional<NumberFormat> label_format = {};
   std::string units = {};
-  std::string join_attribute = {};  // by which classing.joined is joined
+  std::string join_attribute = {};               // by which classing.joined is joined
+  std::shared_ptr<const LabelStyle> label = {};  // null: no labels
 
   /// How features are drawn that are in no class by value.
   const ClassPaint& paint_of_others() const { return paints[classing.class_of_others()]; }
-  /// Whether anything is drawn with it.
+  /// Whether any polygon or outline is drawn with it.
   bool is_visible() const;
   /// Equal for styles that draw the same features of one layer in the same way.
   std::string key() const;

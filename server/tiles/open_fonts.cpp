@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "render/text/usual_fonts.h"
 
@@ -35,6 +36,15 @@ std::shared_ptr<const Fonts> open_fonts(const std::vector<std::string>& files) {
         "text.fonts");
   }
   return fonts;
+}
+
+FontChoice open_font_choice(const Config& config, std::shared_ptr<const Fonts> usual) {
+  FontChoice choice;
+  choice.usual = usual == nullptr ? open_fonts(config.text.fonts) : std::move(usual);
+  for (const auto& [name, fonts] : config.fonts) {
+    choice.named.emplace(name, open_fonts(fonts.files));
+  }
+  return choice;
 }
 
 std::vector<std::string> find_font_problems(const std::vector<std::string>& files) {

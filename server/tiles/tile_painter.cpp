@@ -13,6 +13,7 @@
 #include "render/text/label.h"
 #include "server/base/build_id.h"
 #include "server/base/content_hash.h"
+#include "server/labels/draw_labels.h"
 #include "server/tiles/layer_pieces.h"
 #include "server/tiles/map_window.h"
 
@@ -66,11 +67,12 @@ void add_times(const PaintTimes& more, PaintTimes& times) {
 
 TilePainter::TilePainter(std::unique_ptr<MaskRenderer> renderer,
                          std::shared_ptr<FeatureClassCache> classes,
-                         std::shared_ptr<const Fonts> fonts)
+                         std::shared_ptr<const Fonts> fonts, std::shared_ptr<LabelBook> labels)
     : renderer_(std::move(renderer)),
       renderer_identity_(renderer_->identity()),
       classes_(std::move(classes)),
-      fonts_(std::move(fonts)) {}
+      fonts_(std::move(fonts)),
+      labels_(std::move(labels)) {}
 
 std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
   return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
@@ -150,6 +152,11 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
       hash.add(std::bit_cast<std::uint64_t>(drawings_[k].tolerance()));
     }
     drawings_[k].add_to(hash, view);
+  }
+  for (const DrawnLabel& label : sketch.labels) {
+    hash.add(label.image->identity);
+    hash.add(static_cast<std::uint64_t>(label.left));
+    hash.add(static_cast<std::uint64_t>(label.top));
   }
   return hash.hex();
 }
@@ -249,6 +256,8 @@ void TilePainter::select(const TilePlan& plan, Sketch& sketch) {
     }
     if (drawing_count_ > first && drawings_[first].hides_all()) break;
   }
+  if (plan.labels.empty()) return;
+  sketch.labels = labels_->find({*plan.dataset, plan.labels, sketch.view, plan.scale});
 }
 
 std::vector<DrawnPiece> TilePainter::pieces_for(const TilePlan& plan, const LayerPaint& paint,
@@ -337,9 +346,17 @@ bool TilePainter::compose(const TilePlan& plan, Sketch& sketch) {
     tolerances_.push_back(drawings_[k].tolerance());
   }
   if (!is_constant) meetings_.find(painted_, tolerances_, view.width, view.height);
+  const Quality quality = sketch.labels.empty() ? plan.quality : Quality::exact;
   composer_.compose(painted_, is_constant ? 1 : view.width, is_constant ? 1 : view.height,
-                    plan.background, plan.quality, picture_);
-  return !is_constant;
+                    plan.background, quality, picture_);
+  if (sketch.labels.empty()) return !is_constant;
+  if (is_constant) {
+    const Rgba colour = picture_.at(0, 0);
+    composer_.compose({}, view.width, view.height, colour, Quality::exact, picture_);
+  }
+  draw_labels(sketch.labels, picture_);
+  if (plan.quality == Quality::bounded) ColourReducer().reduce(picture_);
+  return true;
 }
 
 // Of a tile of one colour.

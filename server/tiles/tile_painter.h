@@ -22,6 +22,7 @@
 #include "render/picture/picture.h"
 #include "render/picture/png.h"
 #include "render/text/fonts.h"
+#include "server/labels/label_book.h"
 #include "server/styles/feature_classes.h"
 #include "server/tiles/layer_drawing.h"
 #include "server/tiles/tile_plan.h"
@@ -73,10 +74,12 @@ class TilePainter {
     std::function<bool(const std::string& fingerprint)> is_wanted = {};
   };
 
-  /// Painters may share what keeps the classes of features, and the fonts, which are for marks.
+  /// Painters may share what keeps the classes of features, the fonts, which are for marks, and
+  /// the labels.
   explicit TilePainter(std::unique_ptr<MaskRenderer> renderer,
                        std::shared_ptr<FeatureClassCache> classes = new_class_cache(),
-                       std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>());
+                       std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>(),
+                       std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>());
 
   /// Large enough for the classes that the requests of one map name.
   static std::shared_ptr<FeatureClassCache> new_class_cache();
@@ -119,6 +122,7 @@ class TilePainter {
     std::size_t first_drawing = 0;
     std::size_t end_drawing = 0;
     std::size_t tasks = 0;  // of those to be drawn
+    std::vector<DrawnLabel> labels;
     PaintTimes times;
   };
 
@@ -147,6 +151,7 @@ class TilePainter {
   std::string renderer_identity_;
   std::shared_ptr<FeatureClassCache> classes_;
   std::shared_ptr<const Fonts> fonts_;
+  std::shared_ptr<LabelBook> labels_;
   Composer composer_;
   PngEncoder encoder_;
   using ConstantKey = std::tuple<std::string, int, int, TileFormat>;  // colour, width, height

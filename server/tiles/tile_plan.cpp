@@ -112,6 +112,11 @@ std::string TilePlan::key() const {
                        static_cast<int>(paint.topology), static_cast<int>(paint.small),
                        paint.style.key());
   }
+  for (const LabelledLayer& layer : labels) {
+    const ServedLayer& served = dataset->layers_on_all_grids()[layer.layer];
+    key += fmt::format(" label {:016x} {:d} {} {}", served.revision, layer.is_drawn,
+                       layer.style->key(), layer.classing.is_plain() ? "" : layer.classing.key());
+  }
   if (format == TileFormat::webp) key += " webp";
   if (quality == Quality::exact) key += " exact";
   if (debug.any())
@@ -147,6 +152,7 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
                 request.scale,
                 kTransparent,
                 {},
+                {},
                 debug_marks(request.style),
                 request.format,
                 quality_of(request.style),
@@ -167,7 +173,13 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
     if (!query) return query.problem();
     auto style = layer_style(*query, served, *layer);
     if (!style) return std::move(style).problem();
-    if (!is_drawn_at(config, zoom)) continue;
+    const bool is_drawn = is_drawn_at(config, zoom);
+    if (style->label != nullptr) {
+      plan.labels.push_back({*drawn, style->label, style->classing,
+                             tolerance_in_pixels(*query, name),
+                             static_cast<double>(config.min_zoom), is_drawn});
+    }
+    if (!is_drawn) continue;
     if (!style->is_visible() && !plan.debug.any()) continue;
     const Topology topology = topology_of_layer(*query, name);
     if (served.layer_for(topology) == nullptr) return no_fast_topology(name);

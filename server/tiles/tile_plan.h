@@ -16,6 +16,7 @@
 #include "render/picture/reduce_colours.h"
 #include "server/base/result.h"
 #include "server/data/dataset.h"
+#include "server/labels/label_style.h"
 #include "server/styles/debug_marks.h"
 #include "server/tiles/layer_style.h"
 #include "server/tiles/tile_request.h"
@@ -40,6 +41,9 @@ struct TilePlan {
   double scale = 1;  // of lines and patterns
   Rgba background;
   std::vector<LayerPaint> layers;  // bottom first
+  /// Those of the request that are labelled, bottom first: at other zooms, too, so that at all
+  /// zooms the same labels have the same places.
+  std::vector<LabelledLayer> labels = {};
   DebugMarks debug = {};
   TileFormat format = TileFormat::png;
   Quality quality = Quality::bounded;

@@ -43,9 +43,8 @@ void TileService::start_workers(std::vector<std::unique_ptr<MaskRenderer>> rende
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
-        [this, painter = TilePainter(std::move(renderer), classes, options_.fonts)]() mutable {
-          work(painter);
-        });
+        [this, painter = TilePainter(std::move(renderer), classes, options_.fonts,
+                                     options_.labels)]() mutable { work(painter); });
   }
 }
 
@@ -130,6 +129,17 @@ void TileService::forget(const std::shared_ptr<Flight>& flight) {
   const auto found = flights_.find(flight->order.key);
   // Another one may have begun when nobody wanted this any longer.
   if (found != flights_.end() && found->second == flight) flights_.erase(found);
+}
+
+void TileService::place_usual_labels(const std::shared_ptr<const Dataset>& dataset) {
+  for (const ServedLayer& layer : dataset->layers()) {
+    if (layer.config.style.find({}, ParameterId::label) == nullptr) continue;
+    TileRequest request;
+    request.layers = {layer.config.name};
+    const auto plan = plan_tile(std::move(request), dataset);
+    if (!plan) continue;  // whoever asks is told
+    options_.labels->find({*dataset, plan->labels, plan->view, plan->scale});
+  }
 }
 
 TileService::Figures TileService::figures() const {

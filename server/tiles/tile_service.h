@@ -68,6 +68,7 @@ struct TileServiceOptions {
   std::size_t batch = defaults::kBatch;
   // For marks.
   std::shared_ptr<const Fonts> fonts = std::make_shared<const Fonts>();
+  std::shared_ptr<LabelBook> labels = std::make_shared<LabelBook>();
   // Finds a tile that was drawn before by its fingerprint; its bytes are null if it is not there.
   std::function<TileCache::Tile(const std::string& fingerprint)> find_kept = {};
   // Told once of every tile, however many asked for it, from whatever thread answers.
@@ -123,6 +124,10 @@ class TileService {
 
   /// One word for what draws.
   const std::string& renderer_name() const { return renderer_name_; }
+
+  /// Places the labels that layers have by their configuration alone, each layer for itself, so
+  /// that no tile has to wait for that.
+  void place_usual_labels(const std::shared_ptr<const Dataset>& dataset);
 
   struct Figures {
     std::size_t waiting = 0;  // distinct tiles that wait for a worker

@@ -25,16 +25,16 @@ struct Arrays {
 /// Strips side by side between two rows, from the west of the grid to its east, with slanted sides.
 Arrays strips(std::mt19937& random, std::int32_t top, std::int32_t bottom, int count) {
   Arrays made;
-  const std::int32_t step = (kGridMax / count) * 2;
-  const auto any = [&](std::int32_t x) {
-    return x + static_cast<std::int32_t>(random() % static_cast<unsigned>(step));
+  const std::int64_t step = kGridSize / count;
+  const auto any = [&](std::int64_t x) {
+    return static_cast<std::int32_t>(x + static_cast<std::int64_t>(random() % step));
   };
   for (int i = 0; i <= count; ++i) {
     const bool is_end = i == 0 || i == count;
-    const std::int32_t x = i == count ? kGridMax : kGridMin + i * step;
+    const std::int64_t x = i == count ? kGridMax : kGridMin + i * step;
     const auto v = static_cast<std::uint32_t>(made.vertices.size());
-    made.vertices.push_back({is_end ? x : any(x), top});
-    made.vertices.push_back({is_end ? x : any(x), bottom});
+    made.vertices.push_back({is_end ? static_cast<std::int32_t>(x) : any(x), top});
+    made.vertices.push_back({is_end ? static_cast<std::int32_t>(x) : any(x), bottom});
     made.edges.push_back({v, v + 1});
     if (i == 0) continue;
     const auto e = static_cast<std::uint32_t>(made.edges.size());

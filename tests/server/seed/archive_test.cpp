@@ -49,7 +49,8 @@ ArchiveDescription description(ZoomRange zooms) {
 class Seeding {
  public:
   Seeding(const SeedPlan& plan, ZoomRange zooms) : plan_(plan), zooms_(zooms) {
-    KnownTiles known(plan, TilePainter::new_class_cache());
+    KnownTiles known(plan, TilePainter::new_class_cache(),
+                     std::make_shared<LabelBook>());
     constexpr double kTilesOfJob = 24;  // so that there are many
     jobs_ = divide_into_jobs(plan, known, kTilesOfJob);
   }
@@ -60,7 +61,7 @@ class Seeding {
            const JobPainter::FindKnown& find_known = {}) {
     std::vector<std::unique_ptr<MaskRenderer>> renderers;
     for (int i = 0; i < threads; ++i) renderers.push_back(std::make_unique<SoftwareRenderer>());
-    Seeder seeder(plan_, jobs_, std::move(renderers), std::make_shared<const Fonts>(), find_known);
+    Seeder seeder(plan_, jobs_, std::move(renderers), std::make_shared<LabelBook>(), find_known);
     SeedLog written(log, head(part));
     seeder.seed(jobs_of_part(jobs_, part), written,
                 [this](const SeedProgress& progress) { progress_ = progress; });

@@ -93,7 +93,7 @@ TEST(KnownTilesTest, MostTilesAreNotLookedAt) {
 TEST(KnownTilesTest, NothingIsKnownOfTilesThatAreMarked) {
   const auto dataset = testing::sample_dataset();
   const auto plan = SeedPlan::make(seed_request(*dataset, {0, 3}, "debug=tile"), dataset);
-  KnownTiles known(*plan, TilePainter::new_class_cache());
+  KnownTiles known(*plan, TilePainter::new_class_cache(), std::make_shared<LabelBook>());
   known.look_at({0, 0, 0});
   EXPECT_FALSE(known.look_at_zoom(0).has_value());
   testing::expect_served_bytes(*plan);

@@ -32,7 +32,8 @@ inline SeedRequest seed_request(const Dataset& dataset, ZoomRange zooms, const s
 }
 
 inline TilePainter software_painter() {
-  return TilePainter(std::make_unique<SoftwareRenderer>());
+  return TilePainter(std::make_unique<SoftwareRenderer>(), TilePainter::new_class_cache(),
+                     std::make_shared<const Fonts>(), label_book());
 }
 
 /// What the server answers with.
@@ -47,9 +48,9 @@ class SeededTiles {
  public:
   explicit SeededTiles(const SeedPlan& plan) : plan_(plan) {
     const auto classes = TilePainter::new_class_cache();
-    KnownTiles known(plan, classes);
+    KnownTiles known(plan, classes, label_book());
     jobs_ = divide_into_jobs(plan, known);
-    JobPainter painter(plan, software_painter(), classes);
+    JobPainter painter(plan, software_painter(), classes, label_book());
     for (std::size_t i = 0; i < jobs_.jobs.size(); ++i) {
       memory_.push_back(painter.paint(jobs_.units_of(jobs_.jobs[i])).bytes(i));
       blocks_.push_back(SeedBlock::read(memory_.back()).value());

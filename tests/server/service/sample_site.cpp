@@ -19,6 +19,7 @@ TileServiceOptions tile_options() {
   static const std::shared_ptr<const Fonts> fonts = open_fonts({});
   TileServiceOptions options;
   options.fonts = fonts;
+  options.labels = label_book();
   return options;
 }
 
@@ -42,6 +43,11 @@ std::shared_ptr<const Dataset> sample_dataset() {
   layers[1].min_zoom = 0;
   layers[1].max_zoom = 5;
   return Dataset::load(layers);
+}
+
+std::shared_ptr<LabelBook> label_book() {
+  static const auto book = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  return book;
 }
 
 SampleSite::SampleSite(bool is_loaded, StaticFiles files, SiteOptions options)

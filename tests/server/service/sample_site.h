@@ -6,6 +6,7 @@
 
 #include "server/data/dataset.h"
 #include "server/http/http_server.h"
+#include "server/labels/label_book.h"
 #include "server/service/site.h"
 #include "server/tiles/tile_service.h"
 
@@ -20,6 +21,9 @@ StyleQuery style_of(const std::string& query);
 /// the hole from 96 to 160, in which there is an island from 112 to 144; "west" covers the columns
 /// 0 to 128.
 std::shared_ptr<const Dataset> sample_dataset();
+
+/// Labels in the fonts that are installed; the same for all.
+std::shared_ptr<LabelBook> label_book();
 
 class SampleSite {
  public:

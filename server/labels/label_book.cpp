@@ -1,0 +1,369 @@
+#include "server/labels/label_book.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <thread>
+#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/grid/plate_carree.h"
+#include "core/layer/class_dust.h"
+#include "server/base/content_hash.h"
+#include "server/labels/broken_lines.h"
+
+namespace trapeze {
+namespace {
+
+// Around each label, so that two of them do not touch, also where both are moved to whole pixels.
+constexpr double kGap = 1;  // pixels
+// How much more room than it counts with a label may take, as letters reach beyond their lines.
+constexpr double kSlackPixels = 3;
+constexpr double kSlackEms = 0.35;
+constexpr double kLeastWidth = 1;  // ems, of lines
+// How far a boundary that is simplified may be from where it is, by tolerance: the next larger one
+// of the ladder of tolerances may be taken, and the edge is a pixel wide.
+constexpr double kToleranceReach = 1.5;
+constexpr double kEdgePixels = 0.5;
+constexpr std::size_t kImageBudget = std::size_t{48} << 20;
+
+double slack_of(std::span<const LabelledLayer> layers) {
+  double size = 0;
+  for (const LabelledLayer& layer : layers) size = std::max(size, layer.style->size);
+  return kSlackPixels + kSlackEms * size;
+}
+
+double pixels_per_cell_at_zoom(double zoom) {
+  return std::exp2(zoom) * kTilePixels / static_cast<double>(kGridSize);
+}
+
+/// Of pixels that are not square, the larger ones count: there labels are nearest to each other.
+double pixels_per_cell_of(const LabelledView& wanted) {
+  const View& view = wanted.view;
+  return 1 / (std::max(view.cells_per_pixel, view.cells_per_row()) * wanted.scale);
+}
+
+/// The picture on the plane in which its labels are placed.
+PlaneBox box_of(const View& view) {
+  const double top = static_cast<double>(view.origin_y) + view.first_row * view.cells_per_row();
+  return {static_cast<double>(view.origin_x), top,
+          static_cast<double>(view.origin_x) + view.width * view.cells_per_pixel,
+          top + view.height * view.cells_per_row()};
+}
+
+/// By how many cells the world has to be moved so that it is seen in the box, or what lies near it.
+std::vector<double> shifts_of(const View& view, const PlaneBox& box, double reach) {
+  if (view.projection == Projection::plane) return {0};
+  const auto world = static_cast<double>(kGridSize);
+  std::vector<double> shifts;
+  const double first = std::floor((box.min_x - reach - kGridMin) / world);
+  const double last = std::floor((box.max_x + reach - kGridMin) / world);
+  for (double copy = first; copy <= last; ++copy) shifts.push_back(copy * world);
+  return shifts;
+}
+
+}  // namespace
+
+// A placement with what its labels are of.
+struct LabelBook::Placed {
+  struct Source {
+    std::uint32_t layer = 0;  // among those that are labelled
+    std::uint32_t row = 0;
+  };
+  LabelPlacement placement;
+  std::vector<Source> sources;  // by number of the candidate
+};
+
+struct LabelBook::Entry {
+  std::once_flag once;
+  std::shared_ptr<const LabelAnchors> anchors;
+  std::shared_ptr<const Placed> placed;
+};
+
+// Makes the candidates of one picture's layers.
+class LabelBook::Placing {
+ public:
+  Placing(LabelBook& book, const LabelledView& wanted)
+      : book_(book), wanted_(wanted), projection_(wanted.view.projection) {}
+
+  std::shared_ptr<const Placed> place() {
+    // What lies on top is labelled first.
+    for (std::size_t i = wanted_.layers.size(); i-- > 0;) {
+      add_layer(static_cast<std::uint32_t>(i), wanted_.layers[i]);
+    }
+    const double world = projection_ == Projection::plane ? 0 : static_cast<double>(kGridSize);
+    return std::make_shared<const Placed>(
+        Placed{LabelPlacement(std::move(candidates_), world), std::move(sources_)});
+  }
+
+ private:
+  struct Ranked {
+    double priority = 0;
+    const LabelAnchor* anchor = nullptr;
+    LabelCandidate candidate;
+  };
+
+  void add_layer(std::uint32_t number, const LabelledLayer& layer) {
+    const ServedLayer& served = wanted_.dataset.layers_on_all_grids()[layer.layer];
+    const FeatureTable& features = served.layer->features();
+    const FeatureClassifier classifier(layer.classing, features);
+    const Attributes attributes(features, layer.style->joined);
+    const auto anchors = book_.anchors_of(served);
+    std::vector<Ranked> ranked;
+    std::uint32_t last_row = 0xffffffff;
+    for (const LabelAnchor& anchor : anchors->all()) {
+      const bool is_first = anchor.row != last_row;
+      last_row = anchor.row;
+      if (!is_first && !layer.style->all_parts) continue;
+      if (classifier.class_of(anchor.row) == kNotDrawn) continue;
+      const std::string text =
+          layer.style->text.text_of(attributes, anchor.row, layer.style->format);
+      if (text.empty()) continue;
+      const Room& room = extent_of(layer, text);
+      if (room.width == 0) continue;  // there is no font
+      ranked.push_back(
+          {priority_of(layer, attributes, anchor), &anchor, candidate_of(layer, anchor, room)});
+    }
+    std::ranges::sort(ranked, [](const Ranked& a, const Ranked& b) {
+      const auto key = [](const Ranked& r) {
+        return std::tuple(-r.priority, -r.anchor->area, r.anchor->row);
+      };
+      return key(a) < key(b);
+    });
+    std::unordered_set<std::string> shown;
+    for (const Ranked& each : ranked) {
+      if (!layer.style->repeats &&
+          !shown
+               .insert(layer.style->text.text_of(attributes, each.anchor->row, layer.style->format))
+               .second) {
+        continue;
+      }
+      candidates_.push_back(each.candidate);
+      sources_.push_back({number, each.anchor->row});
+    }
+    extents_.clear();
+  }
+
+  static double priority_of(const LabelledLayer& layer, const Attributes& attributes,
+                            const LabelAnchor& anchor) {
+    constexpr double kLast = -std::numeric_limits<double>::infinity();
+    if (layer.style->priority < 0) return anchor.area;
+    const Value value = attributes.value(anchor.row, layer.style->priority);
+    double number = kLast;
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+      number = static_cast<double>(*integer);
+    } else if (const auto* real = std::get_if<double>(&value)) {
+      number = *real;
+    }
+    return std::isnan(number) ? kLast : number;
+  }
+
+  struct Room {
+    double width = 0;   // pixels, without halo
+    double height = 0;  // the same
+  };
+
+  /// Many features say the same.
+  const Room& extent_of(const LabelledLayer& layer, const std::string& text) {
+    const auto [found, is_new] = extents_.try_emplace(text);
+    if (is_new) {
+      const LabelStyle& style = *layer.style;
+      const double most = std::max(style.max_width / style.size, kLeastWidth);
+      const BrokenLines broken = broken_lines(text, most, book_.fonts_for(style));
+      found->second = {broken.width * style.size,
+                       broken.line_height * style.size * static_cast<double>(broken.lines.size())};
+    }
+    return found->second;
+  }
+
+  LabelCandidate candidate_of(const LabelledLayer& layer, const LabelAnchor& anchor,
+                              const Room& room) const {
+    const LabelStyle& style = *layer.style;
+    LabelCandidate candidate;
+    candidate.x = anchor.place.x;
+    candidate.y = anchor.place.y;
+    const double half_width = room.width / 2 + style.halo_width;
+    const double half_height = room.height / 2 + style.halo_width;
+    candidate.half_width = static_cast<float>(half_width + kGap);
+    candidate.half_height = static_cast<float>(half_height + kGap);
+    double stretch = 1;  // cells of the grid to one of the plane, from north to south
+    if (projection_ == Projection::plate_carree) {
+      stretch = mercator_stretch(candidate.y);
+      candidate.y = plate_carree_from_mercator(candidate.y);
+    }
+    // The ellipse around the anchor holds the corners of what must not reach out.
+    const double inner_width = std::max(half_width - style.overhang, 0.0);
+    const double inner_height = std::max(half_height - style.overhang, 0.0);
+    const double depth = anchor.depth;
+    const double fits =
+        std::hypot(inner_width / LabelAnchors::kSqueeze, inner_height * stretch) / depth;
+    const double is_inside = (kToleranceReach * layer.tolerance + kEdgePixels) * stretch / depth;
+    const double is_large = style.min_size * std::sqrt(stretch / std::max(anchor.area, 1.0F));
+    candidate.least_scale =
+        std::max({fits, is_inside, is_large,
+                  layer.min_zoom > 0 ? pixels_per_cell_at_zoom(layer.min_zoom) : 0.0});
+    return candidate;
+  }
+
+  LabelBook& book_;
+  const LabelledView& wanted_;
+  const Projection projection_;
+  std::unordered_map<std::string, Room> extents_;  // by text, of the layer at hand
+  std::vector<LabelCandidate> candidates_;
+  std::vector<Placed::Source> sources_;
+};
+
+LabelBook::LabelBook(FontChoice fonts, std::size_t budget)
+    : fonts_(std::move(fonts)), kept_(budget), images_(kImageBudget) {}
+
+LabelBook::~LabelBook() = default;
+
+const Fonts& LabelBook::fonts_for(const LabelStyle& style) const {
+  const auto named = fonts_.named.find(style.font);
+  return named == fonts_.named.end() ? *fonts_.usual : *named->second;
+}
+
+std::shared_ptr<LabelBook::Entry> LabelBook::entry(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  if (auto* found = kept_.find(key)) return *found;
+  return kept_.insert(key, std::make_shared<Entry>(), key.size());
+}
+
+// It counts with its size from when that is known.
+void LabelBook::set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  kept_.erase(key);
+  kept_.insert(key, std::move(entry), key.size() + bytes);
+}
+
+std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& served) {
+  const std::string key = fmt::format("anchors {:016x}", served.revision);
+  const auto entry = this->entry(key);
+  std::call_once(entry->once, [&] {
+    const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+    entry->anchors = std::make_shared<const LabelAnchors>(*served.layer, threads);
+    set_size(key, entry, entry->anchors->memory());
+  });
+  return entry->anchors;
+}
+
+std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& wanted) {
+  std::string key = fmt::format("placed {}", static_cast<int>(wanted.view.projection));
+  for (const LabelledLayer& layer : wanted.layers) {
+    const ServedLayer& served = wanted.dataset.layers_on_all_grids()[layer.layer];
+    key += fmt::format(" {:016x} {} {} {} {}", served.revision, layer.tolerance, layer.min_zoom,
+                       layer.style->placement_key(),
+                       layer.classing.is_plain() ? "" : layer.classing.key());
+  }
+  const auto entry = this->entry(key);
+  std::call_once(entry->once, [&] {
+    entry->placed = Placing(*this, wanted).place();
+    set_size(key, entry,
+             entry->placed->placement.memory() +
+                 entry->placed->sources.capacity() * sizeof(Placed::Source));
+  });
+  return entry->placed;
+}
+
+const std::string& LabelBook::identity_of(const Fonts& fonts) {
+  const std::lock_guard lock(mutex_);
+  std::string& identity = identities_[&fonts];
+  if (identity.empty()) identity = fonts.identity();
+  return identity;
+}
+
+std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer,
+                                                      const FeatureTable& features,
+                                                      std::uint32_t row, double scale) {
+  const LabelStyle& style = *layer.style;
+  const std::string text =
+      style.text.text_of(Attributes(features, style.joined), row, style.format);
+  const std::string key =
+      fmt::format("{} {} {} {} {} {} {} {}", style.font, style.size, style.max_width,
+                  style.halo_width, scale, to_hex(style.colour), to_hex(style.halo_colour), text);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto* found = images_.find(key)) return *found;
+  }
+  const Fonts& fonts = fonts_for(style);
+  const double most = std::max(style.max_width / style.size, kLeastWidth);
+  const BrokenLines broken = broken_lines(text, most, fonts);
+  const double half_width = broken.width * style.size / 2 + style.halo_width + kSlackPixels / 2;
+  const double half_height =
+      broken.line_height * style.size * static_cast<double>(broken.lines.size()) / 2 +
+      style.halo_width + kSlackEms * style.size;
+  auto image = std::make_shared<LabelImage>();
+  image->mask =
+      fonts.mask_of(broken.lines, style.size * scale, broken.line_height * style.size * scale,
+                    style.halo_width * scale, 2 * static_cast<int>(std::ceil(half_width * scale)),
+                    2 * static_cast<int>(std::ceil(half_height * scale)));
+  image->letters = style.colour;
+  image->halo = style.halo_colour;
+  ContentHash hash;
+  hash.add(key);
+  hash.add(identity_of(fonts));
+  image->identity = hash.hex();
+  const std::size_t bytes = key.size() + 2 * image->mask.letters.size() + sizeof(LabelImage);
+  const std::lock_guard lock(mutex_);
+  if (const auto* found = images_.find(key)) return *found;
+  return images_.insert(key, std::move(image), bytes);
+}
+
+std::vector<DrawnLabel> LabelBook::find(const LabelledView& wanted) {
+  if (wanted.layers.empty()) return {};
+  const auto placed = this->placed(wanted);
+  const View& view = wanted.view;
+  const double pixels_per_cell = pixels_per_cell_of(wanted);
+  const double slack = slack_of(wanted.layers);
+  const PlaneBox box = box_of(view);
+  std::vector<DrawnLabel> labels;
+  const double reach = placed->placement.reach(pixels_per_cell, slack);
+  for (const double shift : shifts_of(view, box, reach)) {
+    std::vector<std::uint32_t> numbers;
+    placed->placement.find({box.min_x - shift, box.min_y, box.max_x - shift, box.max_y},
+                           pixels_per_cell, slack, numbers);
+    std::ranges::sort(numbers);
+    for (const std::uint32_t number : numbers) {
+      const Placed::Source& source = placed->sources[number];
+      const LabelledLayer& layer = wanted.layers[source.layer];
+      if (!layer.is_drawn) continue;
+      const FeatureTable& features =
+          wanted.dataset.layers_on_all_grids()[layer.layer].layer->features();
+      DrawnLabel label{image_of(layer, features, source.row, wanted.scale)};
+      const LabelCandidate& candidate = placed->placement.candidates()[number];
+      const double column =
+          (candidate.x + shift - static_cast<double>(view.origin_x)) / view.cells_per_pixel;
+      const double row = (candidate.y - static_cast<double>(view.origin_y)) / view.cells_per_row();
+      const TextMask& mask = label.image->mask;
+      label.left = static_cast<int>(std::floor(column + 0.5)) - mask.width / 2;
+      label.top = static_cast<int>(std::floor(row + 0.5)) - view.first_row - mask.height / 2;
+      const bool is_seen = label.left < view.width && label.left + mask.width > 0 &&
+                           label.top < view.height && label.top + mask.height > 0;
+      if (is_seen) labels.push_back(std::move(label));
+    }
+  }
+  return labels;
+}
+
+bool LabelBook::is_any_from(const LabelledView& wanted) {
+  if (wanted.layers.empty()) return false;
+  const auto placed = this->placed(wanted);
+  const double pixels_per_cell = pixels_per_cell_of(wanted);
+  const double slack = slack_of(wanted.layers);
+  const PlaneBox box = box_of(wanted.view);
+  const double reach = placed->placement.reach(pixels_per_cell, slack);
+  return std::ranges::any_of(shifts_of(wanted.view, box, reach), [&](double shift) {
+    return placed->placement.is_any_from(
+        {box.min_x - shift, box.min_y, box.max_x - shift, box.max_y}, pixels_per_cell, slack);
+  });
+}
+
+std::size_t LabelBook::memory() const {
+  const std::lock_guard lock(mutex_);
+  return kept_.bytes() + images_.bytes();
+}
+
+}  // namespace trapeze

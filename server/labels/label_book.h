@@ -1,0 +1,98 @@
+// Labels that were placed, and how they look: kept so that a picture only looks up what reaches
+// into it.
+//
+// A placement is of all layers of a picture that are labelled, in all of the world and at all
+// scales; it depends neither on the picture nor on the zooms at which its layers are drawn.
+//
+// Thread-safety: all methods may be called from any thread; a call for what another thread is
+// making waits for it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/labels/label_anchors.h"
+#include "core/labels/label_placement.h"
+#include "render/mask/mask.h"
+#include "render/text/fonts.h"
+#include "server/base/lru_map.h"
+#include "server/data/dataset.h"
+#include "server/labels/label_style.h"
+
+namespace trapeze {
+
+/// The fonts that labels may be drawn in.
+struct FontChoice {
+  std::shared_ptr<const Fonts> usual = std::make_shared<const Fonts>();
+  std::map<std::string, std::shared_ptr<const Fonts>> named = {};
+};
+
+/// A label as it looks at one scale.
+struct LabelImage {
+  TextMask mask;
+  Rgba letters;
+  Rgba halo;
+  std::string identity;  // equal for those that look the same, whoever drew them
+};
+
+/// Where it lies in a picture: the column and the row of its north-west pixel, which may be
+/// outside.
+struct DrawnLabel {
+  std::shared_ptr<const LabelImage> image;
+  int left = 0;
+  int top = 0;
+};
+
+/// A picture, or a part of one, with its labels. `layers` are those of the plan, bottom first.
+struct LabelledView {
+  const Dataset& dataset;
+  std::span<const LabelledLayer> layers;
+  View view;
+  double scale = 1;
+};
+
+class LabelBook {
+ public:
+  explicit LabelBook(FontChoice fonts = {}, std::size_t budget = kDefaultBudget);
+  ~LabelBook();
+
+  /// The labels that reach into the picture, in the order in which they are drawn.
+  std::vector<DrawnLabel> find(const LabelledView& wanted);
+
+  /// Whether any label may reach into the picture, or into one of the same place at a larger scale.
+  bool is_any_from(const LabelledView& wanted);
+
+  /// Bytes held, about.
+  std::size_t memory() const;
+
+  static constexpr std::size_t kDefaultBudget = std::size_t{192} << 20;
+
+ private:
+  struct Placed;
+  struct Entry;
+  class Placing;
+
+  std::shared_ptr<const Placed> placed(const LabelledView& wanted);
+  std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served);
+  std::shared_ptr<Entry> entry(const std::string& key);
+  void set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes);
+  std::shared_ptr<const LabelImage> image_of(const LabelledLayer& layer,
+                                             const FeatureTable& features, std::uint32_t row,
+                                             double scale);
+  const Fonts& fonts_for(const LabelStyle& style) const;
+  const std::string& identity_of(const Fonts& fonts);
+
+  const FontChoice fonts_;
+  mutable std::mutex mutex_;  // guards all below
+  LruMap<std::string, std::shared_ptr<Entry>> kept_;
+  LruMap<std::string, std::shared_ptr<const LabelImage>> images_;
+  std::map<const Fonts*, std::string> identities_;
+};
+
+}  // namespace trapeze

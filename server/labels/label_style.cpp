@@ -1,0 +1,18 @@
+#include "server/labels/label_style.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace trapeze {
+
+std::string LabelStyle::placement_key() const {
+  return fmt::format("{}:{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}{}", written.size(), written,
+                     format ? number_format_text(*format) : "",
+                     joined == nullptr ? "" : joined->key(), font, size, halo_width, max_width,
+                     priority, min_size, overhang, repeats ? "" : "once", all_parts ? "all" : "");
+}
+
+std::string LabelStyle::key() const {
+  return fmt::format("{}|{}|{}", placement_key(), to_hex(colour), to_hex(halo_colour));
+}
+
+}  // namespace trapeze

@@ -1,0 +1,160 @@
+#include "core/labels/label_anchors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace trapeze {
+namespace {
+
+using Ring = std::vector<Point>;
+
+Rings rings_of(const std::vector<Ring>& all) {
+  Rings rings;
+  for (const Ring& ring : all) rings.add(ring);
+  return rings;
+}
+
+Ring box(std::int32_t min_x, std::int32_t min_y, std::int32_t max_x, std::int32_t max_y) {
+  return {{min_x, min_y}, {max_x, min_y}, {max_x, max_y}, {min_x, max_y}};
+}
+
+bool is_inside(const Rings& rings, double x, double y) {
+  bool inside = false;
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const auto ring = rings[i];
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Point a = ring[k];
+      const Point b = ring[(k + 1) % ring.size()];
+      if ((a.y > y) == (b.y > y)) continue;
+      const double share = (y - a.y) / (static_cast<double>(b.y) - a.y);
+      if (a.x + share * (static_cast<double>(b.x) - a.x) < x) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+/// A star of random spikes around a place: simple, and seldom convex.
+Ring star(std::mt19937& random, Point middle, int corners, double least, double most) {
+  Ring ring;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners;
+    const double radius = std::uniform_real_distribution(least, most)(random);
+    ring.push_back({static_cast<std::int32_t>(std::lround(middle.x + radius * std::cos(angle))),
+                    static_cast<std::int32_t>(std::lround(middle.y + radius * std::sin(angle)))});
+  }
+  return ring;
+}
+
+/// Of what lies inside of the rings, by looking at many places: how deep the deepest is.
+double deepest(const Rings& rings, double step) {
+  Box bounds;
+  for (const Point p : rings.points) bounds.include(p);
+  const auto depth_at = [&](double x, double y) {
+    double nearest = 1e300;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      const auto ring = rings[i];
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const double ax = ring[k].x / LabelAnchors::kSqueeze;
+        const double ay = ring[k].y;
+        const double dx = ring[(k + 1) % ring.size()].x / LabelAnchors::kSqueeze - ax;
+        const double dy = ring[(k + 1) % ring.size()].y - ay;
+        const double px = x / LabelAnchors::kSqueeze - ax;
+        const double along = std::clamp((px * dx + (y - ay) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+        nearest = std::min(nearest, std::hypot(px - along * dx, y - ay - along * dy));
+      }
+    }
+    return nearest;
+  };
+  double most = 0;
+  for (double y = bounds.min_y; y < bounds.max_y; y += step) {
+    for (double x = bounds.min_x; x < bounds.max_x; x += step) {
+      if (is_inside(rings, x, y)) most = std::max(most, depth_at(x, y));
+    }
+  }
+  return most;
+}
+
+TEST(LabelAnchorsTest, OfBoxesIsInTheMiddle) {
+  const auto wide = anchors_of_feature(7, rings_of({box(0, 0, 12'000, 1'000)}));
+  ASSERT_EQ(wide.size(), 1u);
+  EXPECT_EQ(wide[0].row, 7u);
+  EXPECT_NEAR(wide[0].depth, 500, 500 * LabelAnchors::kDepthShare);
+  EXPECT_NEAR(wide[0].place.y, 500, 500 * LabelAnchors::kDepthShare);
+  EXPECT_EQ(wide[0].area, 12e6F);
+  // Where a name has less room than it is high, its width counts.
+  const auto high = anchors_of_feature(0, rings_of({box(0, 0, 600, 6'000)}));
+  ASSERT_EQ(high.size(), 1u);
+  EXPECT_NEAR(high[0].depth, 100, 100 * LabelAnchors::kDepthShare);
+  EXPECT_NEAR(high[0].place.x, 300, 300 * LabelAnchors::kDepthShare);
+}
+
+TEST(LabelAnchorsTest, AHoleIsAvoidedAndItsIslandIsAPart) {
+  const Rings rings =
+      rings_of({box(40'000, 4'000, 60'000, 6'000), box(0, 0, 100'000, 10'000),
+                box(30'000, 3'000, 70'000, 7'000), box(200'000, 0, 210'000, 10'000)});
+  const auto anchors = anchors_of_feature(0, rings);
+  ASSERT_EQ(anchors.size(), 3u);
+  EXPECT_EQ(anchors[0].area, 1e9F - 16e7F);
+  EXPECT_TRUE(is_inside(rings, anchors[0].place.x, anchors[0].place.y));
+  EXPECT_TRUE(anchors[0].place.x < 30'000 || anchors[0].place.x > 70'000);
+  EXPECT_EQ(anchors[1].area, 1e8F);
+  EXPECT_GT(anchors[1].place.x, 200'000);
+  EXPECT_EQ(anchors[2].area, 4e7F);
+  EXPECT_NEAR(anchors[2].place.y, 5'000, 100);
+}
+
+TEST(LabelAnchorsTest, WhatLiesOverAFeatureIsAvoided) {
+  const Rings land = rings_of({box(0, 0, 90'000, 10'000)});
+  const std::vector<Rings> above = {rings_of({box(-5, -5, 60'000, 10'005)}),
+                                    rings_of({box(50'000, 0, 70'000, 10'000)})};
+  const auto anchors = anchors_of_feature(0, land, above);
+  ASSERT_EQ(anchors.size(), 1u);
+  EXPECT_NEAR(anchors[0].place.x, 80'000, 1'000);
+  const std::vector<Rings> all = {rings_of({box(-5, -5, 95'000, 10'005)})};
+  EXPECT_TRUE(anchors_of_feature(0, land, all).empty());
+}
+
+TEST(LabelAnchorsTest, NothingIsDeeper) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 30; ++i) {
+    Rings rings = rings_of({star(random, {0, 0}, 40, 1'500, 6'000)});
+    if (i % 2 == 0) rings.add(star(random, {0, 0}, 20, 300, 1'400));
+    const auto anchors = anchors_of_feature(0, rings);
+    ASSERT_EQ(anchors.size(), 1u);
+    EXPECT_TRUE(is_inside(rings, anchors[0].place.x, anchors[0].place.y));
+    EXPECT_GE(anchors[0].depth, deepest(rings, 60) * (1 - LabelAnchors::kDepthShare) - 1);
+    // The ellipse lies inside, all of it.
+    for (int k = 0; k < 360; ++k) {
+      const double angle = k * std::numbers::pi / 180;
+      const double part = 0.999;
+      EXPECT_TRUE(is_inside(
+          rings,
+          anchors[0].place.x + part * LabelAnchors::kSqueeze * anchors[0].depth * std::cos(angle),
+          anchors[0].place.y + part * anchors[0].depth * std::sin(angle)));
+    }
+  }
+}
+
+TEST(LabelAnchorsTest, DegenerateRingsHaveNone) {
+  EXPECT_TRUE(anchors_of_feature(0, {}).empty());
+  EXPECT_TRUE(anchors_of_feature(0, rings_of({{{0, 0}, {10, 10}}})).empty());
+  EXPECT_TRUE(anchors_of_feature(0, rings_of({{{0, 0}, {100, 0}, {50, 0}}})).empty());
+}
+
+TEST(LabelAnchorsTest, ThousandsOfIslandsAreFoundInTheirSea) {
+  std::vector<Ring> rings;
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 60; ++x) rings.push_back(box(x * 100, y * 100, x * 100 + 60, y * 100 + 30));
+  }
+  rings.push_back(box(-1'000, -1'000, 10'000, 10'000));
+  const auto anchors = anchors_of_feature(0, rings_of(rings));
+  ASSERT_EQ(anchors.size(), 1u) << "each of the islands is a hole";
+  EXPECT_FLOAT_EQ(anchors[0].area, 11'000.0F * 11'000 - 3'600 * 1'800);
+}
+
+}  // namespace
+}  // namespace trapeze

@@ -1,0 +1,243 @@
+// Labels in tiles: whole across borders, the same at all scales, and in all that is served.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "render/software/software_renderer.h"
+#include "server/labels/draw_labels.h"
+#include "server/tiles/tile_painter.h"
+#include "tests/server/seed/seeded_tiles.h"
+#include "tests/server/service/sample_site.h"
+#include "tests/server/tiles/edited_land.h"
+
+namespace trapeze {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::label_book;
+using ::testing::Not;
+
+const std::vector<std::string> kStyles = {
+    "label=kind",
+    "label={kind} {value}&label-parts=all&label-overhang=200",
+    "label={value}&label-size=20&label-halo-width=3&label-overhang=40&label-priority=value",
+    "label={kind} number {value} of many&label-max-width=60&label-repeat=no&label-overhang=1000",
+};
+
+TileRequest request_of(const std::string& target) {
+  return std::get<TileRequest>(
+      *parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook()));
+}
+
+/// A label as any picture has it: by its pixels of the world at that zoom.
+using Seen = std::tuple<std::int64_t, std::int64_t, std::string>;
+
+std::set<Seen> labels_of(const TilePlan& plan) {
+  std::set<Seen> seen;
+  const View& view = plan.view;
+  for (const DrawnLabel& label :
+       label_book()->find({*plan.dataset, plan.labels, view, plan.scale})) {
+    const auto pixel = [&view](std::int64_t origin) {
+      return static_cast<std::int64_t>(static_cast<double>(origin) / view.cells_per_pixel);
+    };
+    seen.emplace(pixel(view.origin_x) + label.left, pixel(view.origin_y) + label.top,
+                 label.image->identity);
+  }
+  return seen;
+}
+
+class LabelledTilesTest : public ::testing::Test {
+ protected:
+  static TilePlan plan_of(const std::string& target) {
+    static const auto dataset = testing::EditedLand(7).load();
+    return *plan_tile(request_of(target), dataset);
+  }
+};
+
+// Where two tiles meet, both have every label that reaches over the border, at the same pixels.
+TEST_F(LabelledTilesTest, NeighboursShowTheSameLabels) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::size_t crossing = 0;
+  for (int i = 0; i < 1'500; ++i) {
+    const int z = std::uniform_int_distribution<int>(0, 11)(random);
+    const int scale = 1 + i % 2;
+    const double tiles = std::exp2(z);
+    const auto at = [&](double from, double to) {
+      const double share = std::uniform_real_distribution<double>(from, to)(random);
+      return std::min(static_cast<int>(share * tiles), static_cast<int>(tiles) - 1);
+    };
+    const int x = at((-5 + 180) / 360.0, (25 + 180) / 360.0);
+    const int y = at(0.45, 0.52);
+    const int east = x + 1 == static_cast<int>(tiles) ? 0 : x + 1;
+    const std::string& style = kStyles[static_cast<std::size_t>(i) % kStyles.size()];
+    const auto plan_at = [&](int column) {
+      return plan_of("land/" + std::to_string(z) + "/" + std::to_string(column) + "/" +
+                     std::to_string(y) + "@" + std::to_string(scale) + "x.png?" + style);
+    };
+    const TilePlan left = plan_at(x);
+    TilePlan right = plan_at(east);
+    if (east == 0) right.view.origin_x += kGridSize;  // beyond the edge of the world
+    const auto of_left = labels_of(left);
+    const auto of_right = labels_of(right);
+    const std::int64_t border =
+        (static_cast<std::int64_t>(x) + 1 - (std::int64_t{1} << z) / 2) * 256 * scale;
+    TilePlan both = left;
+    both.view.width *= 2;
+    std::set<Seen> united = of_left;
+    united.insert(of_right.begin(), of_right.end());
+    EXPECT_EQ(labels_of(both), united) << left.key();
+    for (const Seen& label : of_left) {
+      const bool is_right = of_right.contains(label);
+      crossing += is_right ? 1U : 0U;
+      EXPECT_LT(std::get<0>(label), border);
+    }
+  }
+  EXPECT_GT(crossing, 100u);
+}
+
+TEST_F(LabelledTilesTest, WhatIsShownIsShownAtAllLargerScales) {
+  for (const std::string& style : kStyles) {
+    struct Label {
+      double x;
+      double y;
+      std::string identity;
+    };
+    std::vector<Label> before;
+    double pixel_before = 0;
+    std::size_t most = 0;
+    for (double zoom = 0; zoom <= 11; zoom += 0.25) {
+      TilePlan plan = plan_of("land/0/0/0.png?" + style);
+      // The whole world at that zoom: more than anybody would draw.
+      plan.view.cells_per_pixel = std::exp2(23 - zoom);
+      plan.view.width = plan.view.height = static_cast<int>(std::exp2(8 + zoom));
+      std::vector<Label> now;
+      for (const auto& label :
+           label_book()->find({*plan.dataset, plan.labels, plan.view, plan.scale})) {
+        const double x = (label.left + label.image->mask.width / 2) * plan.view.cells_per_pixel;
+        const double y = (label.top + label.image->mask.height / 2) * plan.view.cells_per_pixel;
+        now.push_back({x, y, label.image->identity});
+      }
+      for (const Label& shown : before) {
+        EXPECT_TRUE(std::ranges::any_of(now,
+                                        [&](const Label& label) {
+                                          return label.identity == shown.identity &&
+                                                 std::abs(label.x - shown.x) < pixel_before &&
+                                                 std::abs(label.y - shown.y) < pixel_before;
+                                        }))
+            << style << " at zoom " << zoom;
+      }
+      most = std::max(most, now.size());
+      before = now;
+      pixel_before = 2 * plan.view.cells_per_pixel;
+    }
+    EXPECT_GT(most, 1u) << style;
+  }
+}
+
+/// The pixels of two pictures that differ.
+std::size_t differences(const Picture& a, const Picture& b, int column_of_a, int column_of_b,
+                        int columns) {
+  std::size_t count = 0;
+  for (int row = 0; row < a.height; ++row) {
+    for (int i = 0; i < columns; ++i) {
+      if (a.at(column_of_a + i, row) != b.at(column_of_b + i, row)) ++count;
+    }
+  }
+  return count;
+}
+
+TEST_F(LabelledTilesTest, ALabelLooksTheSameFromBothSidesOfABorder) {
+  // A picture of labels alone, on nothing.
+  const auto draw = [](const TilePlan& plan) {
+    Picture blank{plan.view.width, plan.view.height,
+                  std::vector<Rgba>(static_cast<std::size_t>(plan.view.width) *
+                                    static_cast<std::size_t>(plan.view.height))};
+    RunPicture runs = to_runs(blank);
+    draw_labels(label_book()->find({*plan.dataset, plan.labels, plan.view, plan.scale}), runs);
+    return to_pixels(runs);
+  };
+  for (const std::string& style : kStyles) {
+    for (const char* tile : {"4/8/7", "5/16/15", "6/33/31", "7/65/62"}) {
+      const TilePlan left = plan_of("land/" + std::string(tile) + ".png?" + style);
+      TilePlan right = left;
+      right.view.origin_x += static_cast<std::int64_t>(256 * left.view.cells_per_pixel);
+      TilePlan both = left;
+      both.view.width = 512;
+      const Picture whole = draw(both);
+      EXPECT_EQ(differences(whole, draw(left), 0, 0, 256), 0u) << style;
+      EXPECT_EQ(differences(whole, draw(right), 256, 0, 256), 0u) << style;
+      EXPECT_GT(to_runs(whole).colours.size(), 3u) << "nothing is drawn";
+    }
+  }
+}
+
+TEST_F(LabelledTilesTest, LabelsDoNotOverlap) {
+  for (const std::string& style : kStyles) {
+    for (const char* tile : {"3/4/3", "5/16/15", "6/33/31", "8/130/125"}) {
+      const TilePlan plan = plan_of("land/" + std::string(tile) + "@2x.png?" + style);
+      std::vector<int> covered(static_cast<std::size_t>(plan.view.width) *
+                               static_cast<std::size_t>(plan.view.height));
+      for (const auto& label :
+           label_book()->find({*plan.dataset, plan.labels, plan.view, plan.scale})) {
+        const TextMask& mask = label.image->mask;
+        for (int row = 0; row < mask.height; ++row) {
+          for (int column = 0; column < mask.width; ++column) {
+            const int x = label.left + column;
+            const int y = label.top + row;
+            if (x < 0 || y < 0 || x >= plan.view.width || y >= plan.view.height) continue;
+            const auto i = static_cast<std::size_t>(row * mask.width + column);
+            if (mask.halo[i] == 0) continue;
+            EXPECT_EQ(++covered[static_cast<std::size_t>(y * plan.view.width + x)], 1)
+                << style << ' ' << tile;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(LabelledTilesTest, SeedingKnowsOfLabels) {
+  const auto dataset = testing::EditedLand(7).load();
+  for (const std::string& style : {kStyles[1], std::string("label=kind&label-overhang=1000")}) {
+    const auto plan = SeedPlan::make(testing::seed_request(*dataset, {0, 7}, style), dataset);
+    ASSERT_TRUE(plan);
+    testing::expect_served_bytes(*plan);
+  }
+}
+
+TEST(LabelRequestsTest, WrongOnesAreTold) {
+  testing::SampleSite site;
+  const auto answer = [&site](const std::string& query) {
+    return site.get("/tiles/rings/0/0/0.png?" + query);
+  };
+  EXPECT_EQ(answer("label=name").status, 200);
+  for (const char* wrong :
+       {"label=", "label={", "label=nothing", "label={name} {nothing}", "label=name&label-size=5",
+        "label=name&label-font=nothing", "label=name&label-priority=name",
+        "label=name&label-parts=some", "label=name&label-repeat=maybe"}) {
+    const HttpResponse response = answer(wrong);
+    EXPECT_EQ(response.status, 400) << wrong;
+    EXPECT_THAT(*response.body, HasSubstr("label")) << wrong;
+  }
+}
+
+TEST(LabelRequestsTest, ATileWithALabelIsNeitherFullNorTheSame) {
+  testing::SampleSite site;
+  const HttpResponse plain = site.get("/tiles/rings/0/0/0.png");
+  const HttpResponse labelled = site.get("/tiles/rings/0/0/0.png?label=name&label-overhang=500");
+  EXPECT_EQ(labelled.status, 200);
+  EXPECT_NE(plain.header("ETag"), labelled.header("ETag"));
+}
+
+}  // namespace
+}  // namespace trapeze
