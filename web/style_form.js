@@ -125,6 +125,8 @@ export class StyleForm {
       if (this.numbers_.is_on()) this.classes_.show(new Map());
       change();
     });
+    this.label_ = choice_control("label", "Names",
+      [["none", "none"], ...fields.map(({ name }) => [name, name])], change);
     this.groups_ = [
       {
         name: "Fill",
@@ -160,6 +162,20 @@ export class StyleForm {
           colour_control("pattern-color", "Colour of pattern", "000000", change),
           number_control("pattern-size", "Size", range(2, 32, 1, 8, pixels), change),
           this.pattern_angle_,
+        ],
+      },
+      {
+        name: "Labels",
+        gate: {
+          control: this.label_,
+          is_on: () => this.label_.read() !== "none",
+          is_usually_on: () => (this.usual_.get("label") ?? "none") !== "none",
+          off: ["label", "none"],
+        },
+        controls: [
+          number_control("label-size", "Letters", range(6, 32, 1, 12, pixels), change),
+          colour_control("label-color", "Colour of labels", "222222", change),
+          number_control("label-overhang", "Overhang", range(0, 100, 2, 8, pixels), change),
         ],
       },
       {

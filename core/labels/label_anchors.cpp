@@ -368,7 +368,7 @@ class Finder {
     }
   }
 
-  void find(std::uint32_t row, std::vector<LabelAnchor>& anchors) {
+  void find(std::uint32_t row, LabelParts parts, std::vector<LabelAnchor>& anchors) {
     for (const Part& part : parts_of(rings)) {
       const Box box = box_of(rings[part.outer]);
       const double small = part.area * LabelAnchors::kSmallShare;
@@ -403,6 +403,7 @@ class Finder {
                          {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
                          static_cast<float>(depth),
                          static_cast<float>(part.area)});
+      if (parts == LabelParts::largest) return;
     }
   }
 
@@ -418,7 +419,7 @@ class Finder {
   std::vector<Above> above_;
 };
 
-void find_rows(const Layer& layer, std::uint32_t first, std::uint32_t end,
+void find_rows(const Layer& layer, LabelParts parts, std::uint32_t first, std::uint32_t end,
                std::vector<LabelAnchor>& anchors) {
   Finder finder;
   std::deque<Rings> above;
@@ -434,18 +435,18 @@ void find_rows(const Layer& layer, std::uint32_t first, std::uint32_t end,
       layer.append_outline(overlap.other, above.emplace_back());
       finder.add_above(above.back());
     }
-    finder.find(row, anchors);
+    finder.find(row, parts, anchors);
   }
 }
 
 }  // namespace
 
-LabelAnchors::LabelAnchors(const Layer& layer, unsigned threads) {
+LabelAnchors::LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads) {
   const std::size_t rows = layer.features().size();
   std::vector<std::vector<LabelAnchor>> found((rows + kRowsAtOnce - 1) / kRowsAtOnce);
   for_each_in_parallel(found.size(), threads, [&](std::size_t i) {
     const std::size_t first = i * kRowsAtOnce;
-    find_rows(layer, static_cast<std::uint32_t>(first),
+    find_rows(layer, parts, static_cast<std::uint32_t>(first),
               static_cast<std::uint32_t>(std::min(first + kRowsAtOnce, rows)), found[i]);
   });
   std::size_t count = 0;
@@ -455,12 +456,12 @@ LabelAnchors::LabelAnchors(const Layer& layer, unsigned threads) {
 }
 
 std::vector<LabelAnchor> anchors_of_feature(std::uint32_t row, const Rings& rings,
-                                            std::span<const Rings> above) {
+                                            std::span<const Rings> above, LabelParts parts) {
   Finder finder;
   finder.rings = rings;
   for (const Rings& other : above) finder.add_above(other);
   std::vector<LabelAnchor> anchors;
-  finder.find(row, anchors);
+  finder.find(row, parts, anchors);
   return anchors;
 }
 

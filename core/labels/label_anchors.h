@@ -24,6 +24,9 @@
 
 namespace trapeze {
 
+/// Which parts of a feature have an anchor.
+enum class LabelParts : std::uint8_t { largest, all };
+
 struct LabelAnchor {
   std::uint32_t row = 0;  // of the feature
   Point place;
@@ -48,8 +51,8 @@ class LabelAnchors {
   static constexpr double kDepthShare = 0.04;
 
   /// Of all features that there are, on up to `threads` threads, on which nothing depends. A part
-  /// without any inside that is seen has none.
-  explicit LabelAnchors(const Layer& layer, unsigned threads = 1);
+  /// without any inside that is seen has none; of a feature whose largest part has none, the next.
+  LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads = 1);
 
   /// In order of rows; those of one feature by area, the largest part first.
   std::span<const LabelAnchor> all() const { return anchors_; }
@@ -63,6 +66,7 @@ class LabelAnchors {
 /// gives them: nested by even-odd and without crossings. `above` are rings of the features over it,
 /// each of them apart.
 std::vector<LabelAnchor> anchors_of_feature(std::uint32_t row, const Rings& rings,
-                                            std::span<const Rings> above = {});
+                                            std::span<const Rings> above = {},
+                                            LabelParts parts = LabelParts::all);
 
 }  // namespace trapeze

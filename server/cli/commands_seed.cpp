@@ -202,8 +202,14 @@ Work prepare_work(const SeedArguments& arguments, const Config& config) {
   auto plan = SeedPlan::make(request, dataset);
   if (!plan) throw UsageError(plan.problem().detail);
   std::string renderer = renderers.front()->identity();
-  Work work{std::move(request), dataset, *std::move(plan), {}, {}, std::move(renderers),
-            std::move(renderer), std::make_shared<LabelBook>(open_font_choice(config))};
+  Work work{std::move(request),
+            dataset,
+            *std::move(plan),
+            {},
+            {},
+            std::move(renderers),
+            std::move(renderer),
+            std::make_shared<LabelBook>(open_font_choice(config))};
   KnownTiles known(work.plan, TilePainter::new_class_cache(), work.labels);
   work.jobs = divide_into_jobs(work.plan, known);
   work.range = jobs_of_part(work.jobs, part);

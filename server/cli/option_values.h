@@ -63,7 +63,8 @@ void apply(const CoverageArguments& arguments, LayerOptions& options);
 /// What is not said stays as the layer has it.
 void apply(const CoverageArguments& arguments, LayerConfig& layer);
 
-/// A style for these layers, written as in the query of a URL; it may name what the configuration has.
+/// A style for these layers, written as in the query of a URL; it may name what the configuration
+/// has.
 StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,
                           const Config& config = {});
 /// A problem with a style as a sentence for the command line.

@@ -111,13 +111,10 @@ class LabelBook::Placing {
     const FeatureTable& features = served.layer->features();
     const FeatureClassifier classifier(layer.classing, features);
     const Attributes attributes(features, layer.style->joined);
-    const auto anchors = book_.anchors_of(served);
+    const auto anchors =
+        book_.anchors_of(served, layer.style->all_parts ? LabelParts::all : LabelParts::largest);
     std::vector<Ranked> ranked;
-    std::uint32_t last_row = 0xffffffff;
     for (const LabelAnchor& anchor : anchors->all()) {
-      const bool is_first = anchor.row != last_row;
-      last_row = anchor.row;
-      if (!is_first && !layer.style->all_parts) continue;
       if (classifier.class_of(anchor.row) == kNotDrawn) continue;
       const std::string text =
           layer.style->text.text_of(attributes, anchor.row, layer.style->format);
@@ -239,12 +236,14 @@ void LabelBook::set_size(const std::string& key, std::shared_ptr<Entry> entry, s
   kept_.insert(key, std::move(entry), key.size() + bytes);
 }
 
-std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& served) {
-  const std::string key = fmt::format("anchors {:016x}", served.revision);
+std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& served,
+                                                          LabelParts parts) {
+  const std::string key =
+      fmt::format("anchors {:016x} {}", served.revision, static_cast<int>(parts));
   const auto entry = this->entry(key);
   std::call_once(entry->once, [&] {
     const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
-    entry->anchors = std::make_shared<const LabelAnchors>(*served.layer, threads);
+    entry->anchors = std::make_shared<const LabelAnchors>(*served.layer, parts, threads);
     set_size(key, entry, entry->anchors->memory());
   });
   return entry->anchors;

@@ -79,7 +79,7 @@ class LabelBook {
   class Placing;
 
   std::shared_ptr<const Placed> placed(const LabelledView& wanted);
-  std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served);
+  std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served, LabelParts parts);
   std::shared_ptr<Entry> entry(const std::string& key);
   void set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes);
   std::shared_ptr<const LabelImage> image_of(const LabelledLayer& layer,

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "render/picture/colour.h"
-#include "server/labels/label_template.h"
 #include "server/styles/feature_classes.h"
+#include "server/styles/label_template.h"
 #include "server/values/joined_values.h"
 #include "server/values/number_format.h"
 

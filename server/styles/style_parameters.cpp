@@ -13,9 +13,9 @@
 #include "render/picture/pattern.h"
 #include "render/picture/reduce_colours.h"
 #include "server/base/nearest_name.h"
-#include "server/labels/label_template.h"
 #include "server/styles/colour_ramps.h"
 #include "server/styles/debug_marks.h"
+#include "server/styles/label_template.h"
 
 namespace trapeze {
 namespace {
@@ -127,7 +127,8 @@ constexpr std::array kParameters = {
                    .max_items = kMaxTemplateLength,
                    .default_text = "no labels",
                    .description = "what stands in the polygons: the property of that name, or text "
-                                  "with properties in braces; of joined values, value"},
+                                  "with properties in braces; of joined values, value; none: "
+                                  "no labels"},
     StyleParameter{.id = ParameterId::label_color,
                    .name = "label-color",
                    .type = Type::colour,

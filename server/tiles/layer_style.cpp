@@ -437,6 +437,8 @@ std::optional<Problem> make_selection(Making& making) {
 
 // ---- labels
 
+constexpr std::string_view kNoLabel = "none";  // an attribute of that name stands in braces
+
 /// The number of the attribute by which labels are ordered, -1 if that is by area.
 Result<int> label_priority(const Making& making) {
   const auto* name = making.settings.find<std::string>(ParameterId::label_priority);
@@ -455,7 +457,7 @@ Result<int> label_priority(const Making& making) {
 std::optional<Problem> make_label(Making& making) {
   const LayerSettings& settings = making.settings;
   const auto* written = settings.find<std::string>(ParameterId::label);
-  if (written == nullptr) return std::nullopt;
+  if (written == nullptr || *written == kNoLabel) return std::nullopt;
   if (making.served.parts != nullptr) return not_in_parts("label", "no labels", making.served);
   auto text = LabelTemplate::bind(*written, making.attributes());
   if (!text) return std::move(text).problem();

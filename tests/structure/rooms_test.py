@@ -9,10 +9,11 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 ROOMS = [
-    "core/grid", "core/mesh", "core/graph", "core/sweep", "core/borders", "core/adapt", "core/layer",
+    "core/grid", "core/mesh", "core/graph", "core/sweep", "core/borders", "core/adapt", "core/layer", "core/labels",
     "core/io/file", "core/io/source", "core/io/load", "core/io/prepared", "core/io/export",
     "render/mask", "render/gl", "render/software", "render/picture", "render/text", "render",
-    "server/base", "server/http", "server/values", "server/styles", "server/config", "server/data", "server/tiles",
+    "server/base", "server/http", "server/values", "server/styles", "server/config", "server/data",
+    "server/labels", "server/tiles",
     "server/changes", "server/seed", "server/documents", "server/service", "server/cli",
 ]
 

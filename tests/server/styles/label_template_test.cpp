@@ -1,4 +1,4 @@
-#include "server/labels/label_template.h"
+#include "server/styles/label_template.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ TEST_F(LabelTemplateTest, SaysWhatAttributesHave) {
   EXPECT_EQ(text("name", 0), "Saint Lucia");
   EXPECT_EQ(text("{name} ({A3})", 0), "Saint Lucia (LCA)");
   EXPECT_EQ(text("{people}/{share}", 0), "183629/0.25");
-  EXPECT_EQ(text("{people}/{share}", 0, parse_number_format(",.1f")), "183,629.0/0.3");
+  EXPECT_EQ(text("{people}/{share}", 0, parse_number_format(",.2f")), "183,629.00/0.25");
 }
 
 TEST_F(LabelTemplateTest, NullSaysNothing) {

@@ -1,4 +1,4 @@
-#include "server/labels/label_template.h"
+#include "server/styles/label_template.h"
 
 #include <spdlog/fmt/fmt.h>
 
