@@ -206,7 +206,7 @@ def settings_page(schema, parameters):
                 ".B trapeze config print", "what comes of it."]
     tables = schema["properties"]
     for name, table in tables.items():
-        if name in ("styles", "values", "layer"):
+        if name in ("styles", "fonts", "values", "layer"):
             continue
         yield from [f".SH [{roff(name)}]",
                     f"A key is also a variable of the environment, \\fBTRAPEZE_{roff(name.upper())}_\\fIKEY\\fR."]
@@ -217,9 +217,10 @@ def settings_page(schema, parameters):
         if key == "style":
             setting = {"description": "a table of what is told under STYLES"}
         yield from setting_in_roff(key, setting)
-    yield from [".SH [values.\\fINAME\\fR]", sentences(tables["values"]["description"])]
-    for key, setting in tables["values"]["additionalProperties"]["properties"].items():
-        yield from setting_in_roff(key, setting)
+    for name in ("values", "fonts"):
+        yield from [f".SH [{name}.\\fINAME\\fR]", sentences(tables[name]["description"])]
+        for key, setting in tables[name]["additionalProperties"]["properties"].items():
+            yield from setting_in_roff(key, setting)
     yield from [".SH STYLES", "A layer's \\fBstyle\\fR, and a table \\fB[styles.\\fINAME\\fB]\\fR for",
                 "style=\\fINAME\\fR in requests, take these parameters;",
                 "in their names \\(aq_\\(aq may stand for \\(aq\\-\\(aq."]

@@ -1,7 +1,8 @@
 // What styles cost: a tile drawn in each, against the same tile in the layer's own; and the way
 // from a URL to the key under which its tile is cached, the style written out or named. And what a
 // table of 100,000 rows takes that is posted: reading it, joining it to as many features, parting
-// its numbers into classes.
+// its numbers into classes. And what labels take: placing 100,000 of them, and all that the first
+// tile of a labelled layer waits for.
 //
 //   TRAPEZE_DATA=folder style_bench
 //
@@ -13,12 +14,15 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/measure/trip.h"
+#include "core/labels/label_placement.h"
 #include "core/layer/layer_builder.h"
+#include "server/tiles/open_fonts.h"
 #include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_request.h"
 #include "server/values/class_breaks.h"
@@ -46,6 +50,8 @@ constexpr Style kStyles[] = {
     {"hatch", "pattern=hatch"},
     {"dots", "pattern=dots"},
     {"opacity", "opacity=0.5"},
+    {"labels", "label=type"},
+    {"labels_and_outline", "label=type&stroke=black"},
     // Without making colours fewer, which takes most of a tile of many edges.
     {"plain_exact", "quality=exact"},
     {"three_classes_exact",
@@ -125,10 +131,16 @@ TilePlan plan_of(const std::string& target) {
   return *plan_tile(std::get<TileRequest>(*parsed), dataset());
 }
 
+std::shared_ptr<LabelBook> label_book() {
+  static const auto book = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  return book;
+}
+
 void paint(benchmark::State& state, const std::string& query) {
   std::vector<TilePlan> plans;
   for (const TileId& tile : tiles()) plans.push_back(plan_of(target_of(tile, query)));
-  TilePainter painter(make_renderer({RendererKind::software, {}}).renderer);
+  TilePainter painter(make_renderer({RendererKind::software, {}}).renderer,
+                      TilePainter::new_class_cache(), open_fonts({}), label_book());
   // All of them, however slow the style is: they differ by more than styles do.
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(plans.size()))) {
     for (const TilePlan& plan : plans) {
@@ -187,6 +199,40 @@ void part_rows(benchmark::State& state, const std::string& rule) {
   }
 }
 
+/// As many as people would see on the parcels of a city.
+std::vector<LabelCandidate> many_labels() {
+  constexpr int kSide = 316;
+  std::mt19937 random(1);
+  std::vector<LabelCandidate> labels;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double size = 500 + static_cast<double>(random() % 4'000);  // cells: 10 to 80 m
+    labels.push_back({static_cast<double>(i % kSide) * 2'500,
+                      static_cast<double>(i) / kSide * 2'500,
+                      10.0F + static_cast<float>(random() % 30), 9, 16 / size});
+  }
+  return labels;
+}
+
+void place_labels(benchmark::State& state) {
+  const std::vector<LabelCandidate> labels = many_labels();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(LabelPlacement(labels, static_cast<double>(kGridSize)));
+  }
+}
+
+/// Anchors, texts and their widths, and the placement.
+void place_first(benchmark::State& state) {
+  const TilePlan plan = plan_of(target_of(tiles().front(), "label=type"));
+  const FontChoice fonts{open_fonts({})};
+  std::size_t features = 0;
+  for (const ServedLayer& layer : dataset()->layers()) features += layer.layer->features().size();
+  state.counters["features"] = static_cast<double>(features);
+  for (auto _ : state) {
+    LabelBook book(fonts);
+    benchmark::DoNotOptimize(book.find({*plan.dataset, plan.labels, plan.view, plan.scale}));
+  }
+}
+
 void register_all() {
   using benchmark::kMillisecond;
   benchmark::RegisterBenchmark("values/read_100000", read_rows)->Unit(kMillisecond);
@@ -196,6 +242,8 @@ void register_all() {
                                  rule)
         ->Unit(kMillisecond);
   }
+  benchmark::RegisterBenchmark("labels/place_100000", place_labels)->Unit(kMillisecond);
+  benchmark::RegisterBenchmark("labels/first_tile", place_first)->Unit(kMillisecond);
   for (const Style& style : kStyles) {
     const std::string name = style.name;
     benchmark::RegisterBenchmark(("paint/" + name).c_str(), paint, style.query)

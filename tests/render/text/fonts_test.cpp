@@ -326,6 +326,85 @@ TEST_F(FontsTest, TextIsLaidOverWhatIsThereInItsColour) {
   EXPECT_EQ(picture.at(kSize / 3, kBase - 5), (Rgba{128, 0, 127, 255}));
 }
 
+/// Lines of every script that is combined or reordered in its own way, as far as there are fonts.
+std::vector<std::string> lines_of_scripts() {
+  std::vector<std::string> lines = {"Stra\u00dfe", "\u0395\u03bb\u03bb\u03ac\u03b4\u03b1",
+                                    "\u0623\u0641\u063a\u0627\u0646\u0633\u062a\u0627\u0646",
+                                    "\u05d9\u05e9\u05e8\u05d0\u05dc 12"};
+  if (!font_file("Devanagari").empty()) lines.emplace_back("\u0939\u093f\u0928\u094d\u0926\u0940");
+  if (!font_file("Thai").empty()) lines.emplace_back("\u0e17\u0e35\u0e48\u0e19\u0e35\u0e48");
+  if (!font_file("CJK").empty()) lines.emplace_back("\u4e2d\u56fd");
+  return lines;
+}
+
+TEST_F(FontsTest, AMaskHasTheLettersOfTheLineInItsMiddle) {
+  Fonts fonts;
+  for (const std::string& file : usual_fonts()) fonts.add(file);
+  for (const std::string& line : lines_of_scripts()) {
+    const Drawing drawing = drawn_by(fonts, line);
+    const int side = drawing.width + 40 + drawing.width % 2;
+    const TextMask mask = fonts.mask_of(std::vector<std::string>{line}, kSize, kSize, 2, side, 80);
+    ASSERT_EQ(mask.width, side);
+    long letters = 0;
+    double moment = 0;
+    for (std::size_t i = 0; i < mask.letters.size(); ++i) {
+      EXPECT_GE(mask.halo[i], mask.letters[i]);
+      letters += mask.letters[i];
+      moment += mask.letters[i] * static_cast<double>(i % static_cast<std::size_t>(side));
+    }
+    // The same ink but for steps and for where columns begin.
+    EXPECT_NEAR(static_cast<double>(letters), static_cast<double>(drawing.ink()),
+                0.04 * static_cast<double>(drawing.ink()))
+        << line;
+    EXPECT_NEAR(moment / static_cast<double>(letters), side / 2.0, 0.12 * side) << line;
+  }
+}
+
+TEST_F(FontsTest, TheHaloReachesAsFarAsItIsWide) {
+  const TextMask thin = fonts_.mask_of(std::vector<std::string>{"H"}, kSize, kSize, 0, 60, 60);
+  const TextMask wide = fonts_.mask_of(std::vector<std::string>{"H"}, kSize, kSize, 4, 60, 60);
+  EXPECT_EQ(thin.letters, wide.letters);
+  EXPECT_EQ(thin.halo, thin.letters);
+  const auto near_letter = [&thin](int column, int row, int reach) {
+    for (int y = row - reach; y <= row + reach; ++y) {
+      for (int x = column - reach; x <= column + reach; ++x) {
+        if (x < 0 || y < 0 || x >= 60 || y >= 60) continue;
+        if (thin.letters[static_cast<std::size_t>(y * 60 + x)] > 0) return true;
+      }
+    }
+    return false;
+  };
+  for (int row = 0; row < 60; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      const auto value = wide.halo[static_cast<std::size_t>(row * 60 + column)];
+      if (!near_letter(column, row, 5)) {
+        EXPECT_EQ(value, 0);
+      }
+      if (near_letter(column, row, 2)) {
+        EXPECT_EQ(value, 255);
+      }
+    }
+  }
+}
+
+TEST_F(FontsTest, AnExtentIsTheWidthOfTheLine) {
+  Fonts fonts;
+  for (const std::string& file : usual_fonts()) fonts.add(file);
+  for (const std::string& line : lines_of_scripts()) {
+    const double pixels = fonts.extent_of(line).width * kSize;
+    EXPECT_NEAR(pixels, fonts.width_of(line, kSize), 0.05 * pixels + 1) << line;
+  }
+  EXPECT_GT(fonts.extent_of("\u0e17\u0e35\u0e48").height, fonts.extent_of("a").height);
+  EXPECT_EQ(fonts.extent_of("").width, 0);
+}
+
+TEST_F(FontsTest, AMaskCutsOffWhatReachesOutOfIt) {
+  const TextMask mask =
+      fonts_.mask_of(std::vector<std::string>{"WWWWWWWW", "W"}, kSize, kSize, 3, 20, 10);
+  EXPECT_EQ(mask.letters.size(), 200u);
+  EXPECT_TRUE(std::ranges::any_of(mask.letters, [](auto value) { return value > 0; }));
+}
+
 TEST_F(FontsTest, ThreadsDrawTheSameAtTheSameTime) {
   const std::string line = "Gr\u00f6\u00dfe \u0627\u0644\u0639\u0631\u0628\u064a\u0629";
   const Drawing expected = drawn(line);
