@@ -23,11 +23,14 @@ constexpr double kGap = 1;  // pixels
 // How much more room than it counts with a label may take, as letters reach beyond their lines.
 constexpr double kSlackPixels = 3;
 constexpr double kSlackEms = 0.35;
-constexpr double kLeastWidth = 1;  // ems, of lines
+constexpr double kMostPixels = 1024;  // of a label, from west to east and from north to south
+constexpr double kLeastWidth = 1;     // ems, of lines
 // How far a boundary that is simplified may be from where it is, by tolerance: the next larger one
 // of the ladder of tolerances may be taken, and the edge is a pixel wide.
 constexpr double kToleranceReach = 1.5;
 constexpr double kEdgePixels = 0.5;
+// What a feature costs to be placed, with its anchor and the width of its text.
+constexpr std::uint64_t kSidesPerFeature = 60;
 constexpr std::size_t kImageBudget = std::size_t{48} << 20;
 
 double slack_of(std::span<const LabelledLayer> layers) {
@@ -120,7 +123,8 @@ class LabelBook::Placing {
           layer.style->text.text_of(attributes, anchor.row, layer.style->format);
       if (text.empty()) continue;
       const Room& room = extent_of(layer, text);
-      if (room.width == 0) continue;  // there is no font
+      const bool has_font = room.width > 0;
+      if (!has_font || room.width > kMostPixels || room.height > kMostPixels) continue;
       ranked.push_back(
           {priority_of(layer, attributes, anchor), &anchor, candidate_of(layer, anchor, room)});
     }
@@ -249,7 +253,7 @@ std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& ser
   return entry->anchors;
 }
 
-std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& wanted) {
+std::string LabelBook::key_of(const LabelledView& wanted) {
   std::string key = fmt::format("placed {}", static_cast<int>(wanted.view.projection));
   for (const LabelledLayer& layer : wanted.layers) {
     const ServedLayer& served = wanted.dataset.layers_on_all_grids()[layer.layer];
@@ -257,6 +261,11 @@ std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& w
                        layer.style->placement_key(),
                        layer.classing.is_plain() ? "" : layer.classing.key());
   }
+  return key;
+}
+
+std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& wanted) {
+  const std::string key = key_of(wanted);
   const auto entry = this->entry(key);
   std::call_once(entry->once, [&] {
     entry->placed = Placing(*this, wanted).place();
@@ -265,6 +274,19 @@ std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& w
                  entry->placed->sources.capacity() * sizeof(Placed::Source));
   });
   return entry->placed;
+}
+
+std::uint64_t LabelBook::cost_of(const LabelledView& wanted) const {
+  if (wanted.layers.empty()) return 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (kept_.find(key_of(wanted)) != nullptr) return 0;
+  }
+  std::uint64_t features = 0;
+  for (const LabelledLayer& layer : wanted.layers) {
+    features += wanted.dataset.layers_on_all_grids()[layer.layer].layer->features().size();
+  }
+  return features * kSidesPerFeature;
 }
 
 const std::string& LabelBook::identity_of(const Fonts& fonts) {

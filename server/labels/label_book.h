@@ -68,6 +68,10 @@ class LabelBook {
   /// Whether any label may reach into the picture, or into one of the same place at a larger scale.
   bool is_any_from(const LabelledView& wanted);
 
+  /// What find() costs before it can look anything up, in the units of drawing_cost(): nothing if
+  /// the labels have been placed already.
+  std::uint64_t cost_of(const LabelledView& wanted) const;
+
   /// Bytes held, about.
   std::size_t memory() const;
 
@@ -78,6 +82,7 @@ class LabelBook {
   struct Entry;
   class Placing;
 
+  static std::string key_of(const LabelledView& wanted);
   std::shared_ptr<const Placed> placed(const LabelledView& wanted);
   std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served, LabelParts parts);
   std::shared_ptr<Entry> entry(const std::string& key);
@@ -90,7 +95,7 @@ class LabelBook {
 
   const FontChoice fonts_;
   mutable std::mutex mutex_;  // guards all below
-  LruMap<std::string, std::shared_ptr<Entry>> kept_;
+  mutable LruMap<std::string, std::shared_ptr<Entry>> kept_;
   LruMap<std::string, std::shared_ptr<const LabelImage>> images_;
   std::map<const Fonts*, std::string> identities_;
 };

@@ -793,7 +793,7 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
     order.may_be_known = false;
   }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
-  const std::uint64_t cost = drawing_cost(plan);
+  const std::uint64_t cost = drawing_cost(plan) + tiles_.cost_of_labels(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;

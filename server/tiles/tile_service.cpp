@@ -142,6 +142,10 @@ void TileService::place_usual_labels(const std::shared_ptr<const Dataset>& datas
   }
 }
 
+std::uint64_t TileService::cost_of_labels(const TilePlan& plan) const {
+  return options_.labels->cost_of({*plan.dataset, plan.labels, plan.view, plan.scale});
+}
+
 TileService::Figures TileService::figures() const {
   const std::lock_guard lock(mutex_);
   return {queue_.size() + dear_queue_.size(), drawing_};

@@ -129,6 +129,9 @@ class TileService {
   /// that no tile has to wait for that.
   void place_usual_labels(const std::shared_ptr<const Dataset>& dataset);
 
+  /// See LabelBook::cost_of().
+  std::uint64_t cost_of_labels(const TilePlan& plan) const;
+
   struct Figures {
     std::size_t waiting = 0;  // distinct tiles that wait for a worker
     std::size_t drawing = 0;  // distinct tiles that a worker has taken

@@ -77,6 +77,11 @@ const STYLE_CONTROLS = [
     await slide(land.getByLabel("Size"), 16);
     await slide(land.getByLabel("Angle"), 0);
   }, { pattern: "hatch", "pattern-color": "00ff00", "pattern-size": "16", "pattern-angle": "0" }],
+  ["the names", async (land) => {
+    await land.getByRole("combobox", { name: "Names" }).selectOption("name");
+    await slide(land.getByLabel("Letters"), 16);
+    await land.getByLabel("Colour of labels").fill("#102030");
+  }, { label: "name", "label-size": "16", "label-color": "102030" }],
   ["the filter", async (land) => {
     await land.getByLabel("Filter").fill("people > 100");
     await land.getByLabel("Filter").press("Enter");
@@ -428,7 +433,7 @@ test("everything in the panel can be reached and used by keyboard", async () => 
     }));
   }
   for (const name of ["Style of Lake", "Colour of Land", "Style of Land", "Fill opacity", "Colour by",
-    "Pattern", "Filter", "Reset", "Detail", "Simplify", "Tiny shapes", "Tiles",
+    "Pattern", "Names", "Filter", "Reset", "Detail", "Simplify", "Tiny shapes", "Tiles",
     "Copy"]) {
     assert.ok(reached.has(name), `${name} among ${[...reached].join(", ")}`);
   }
