@@ -230,7 +230,7 @@ TEST_F(ConfigTest, ErrorsSayWhereWhatAndWhatIsAllowed) {
       {"sevrer = 1", ":1:1: ", "did you mean server?"},
       {"sevrer = 1", ":1:1: ",
        "unknown key sevrer; allowed here are server, viewer, limits, text, log, admin, styles, "
-       "values, layer"},
+       "fonts, values, layer"},
       {"[values.a]\nkey = \"k\"", ":1:1: ", "values \"a\" need a file"},
       {"[values.a]\nfile = \"a\"\ncolumn = 1", ":3:1: ", "unknown key values.a.column"},
       {"[values]\na = 1", ":2:5: ", "[values.NAME]"},
