@@ -55,8 +55,7 @@ class Seeding {
     request.zooms = *zooms;
     request.bbox = summarize_layers(request.tile.layers, *dataset_)->bounds();
     plan_ = *SeedPlan::make(request, dataset_);
-    KnownTiles known(*plan_, TilePainter::new_class_cache(),
-                     std::make_shared<LabelBook>());
+    KnownTiles known(*plan_, TilePainter::new_class_cache(), std::make_shared<LabelBook>());
     jobs_ = divide_into_jobs(*plan_, known);
   }
 

@@ -310,8 +310,7 @@ Square probe(Boundary& boundary, double x, double y, double half,
 /// The deepest point, by squares that are divided where it may lie; its place is not whole yet.
 Square deepest(Boundary& boundary, const Box& box) {
   const double min_x = box.min_x / LabelAnchors::kSqueeze;
-  const double max_x = box.max_x / LabelAnchors::kSqueeze;
-  const double width = max_x - min_x;
+  const double width = box.max_x / LabelAnchors::kSqueeze - min_x;
   const double height = static_cast<double>(box.max_y) - box.min_y;
   // Long ones are divided into as many squares as fit.
   const double side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
@@ -331,9 +330,12 @@ Square deepest(Boundary& boundary, const Box& box) {
     open.push_back(std::move(square));
     std::ranges::push_heap(open, is_worse);
   };
-  for (double x = min_x; x < max_x; x += side) {
-    for (double y = box.min_y; y < box.max_y; y += side) {
-      take(probe(boundary, x + side / 2, y + side / 2, side / 2, all, distances));
+  const auto columns = static_cast<int>(std::ceil(width / side));
+  const auto rows = static_cast<int>(std::ceil(height / side));
+  for (int column = 0; column < columns; ++column) {
+    for (int row = 0; row < rows; ++row) {
+      take(probe(boundary, min_x + (column + 0.5) * side, box.min_y + (row + 0.5) * side, side / 2,
+                 all, distances));
     }
   }
   while (!open.empty() && probes < kMostProbes) {

@@ -62,9 +62,12 @@ std::vector<double> shifts_of(const View& view, const PlaneBox& box, double reac
   if (view.projection == Projection::plane) return {0};
   const auto world = static_cast<double>(kGridSize);
   std::vector<double> shifts;
-  const double first = std::floor((box.min_x - reach - kGridMin) / world);
-  const double last = std::floor((box.max_x + reach - kGridMin) / world);
-  for (double copy = first; copy <= last; ++copy) shifts.push_back(copy * world);
+  const auto copy_of = [world](double x) {
+    return static_cast<int>(std::floor((x - kGridMin) / world));
+  };
+  for (int copy = copy_of(box.min_x - reach); copy <= copy_of(box.max_x + reach); ++copy) {
+    shifts.push_back(copy * world);
+  }
   return shifts;
 }
 

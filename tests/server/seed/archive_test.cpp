@@ -49,8 +49,7 @@ ArchiveDescription description(ZoomRange zooms) {
 class Seeding {
  public:
   Seeding(const SeedPlan& plan, ZoomRange zooms) : plan_(plan), zooms_(zooms) {
-    KnownTiles known(plan, TilePainter::new_class_cache(),
-                     std::make_shared<LabelBook>());
+    KnownTiles known(plan, TilePainter::new_class_cache(), std::make_shared<LabelBook>());
     constexpr double kTilesOfJob = 24;  // so that there are many
     jobs_ = divide_into_jobs(plan, known, kTilesOfJob);
   }
