@@ -153,16 +153,16 @@ class LabelBook::Placing {
 
   static double priority_of(const LabelledLayer& layer, const Attributes& attributes,
                             const LabelAnchor& anchor) {
-    constexpr double kLast = -std::numeric_limits<double>::infinity();
+    const double last = -std::numeric_limits<double>::infinity();
     if (layer.style->priority < 0) return anchor.area;
     const Value value = attributes.value(anchor.row, layer.style->priority);
-    double number = kLast;
+    double number = last;
     if (const auto* integer = std::get_if<std::int64_t>(&value)) {
       number = static_cast<double>(*integer);
     } else if (const auto* real = std::get_if<double>(&value)) {
       number = *real;
     }
-    return std::isnan(number) ? kLast : number;
+    return std::isnan(number) ? last : number;
   }
 
   struct Room {
