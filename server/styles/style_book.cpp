@@ -57,7 +57,7 @@ Result<StyleLink> StyledQuery::link_for(std::span<const std::string> layers,
 }
 
 std::string StyleLink::query() const {
-  const std::string text = own.canonical_text();
+  std::string text = own.canonical_text();
   if (name.empty()) return text;
   return fmt::format("style={}{}{}", name, text.empty() ? "" : "&", text);
 }
