@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/grid/for_each_in_parallel.h"
+#include "core/grid/ring_box.h"
 
 namespace trapeze {
 namespace {
@@ -29,17 +30,6 @@ double area_of_ring(std::span<const Point> ring) {
   return std::abs(twice) / 2;
 }
 
-Box box_of(std::span<const Point> ring) {
-  Box box;
-  for (const Point p : ring) box.include(p);
-  return box;
-}
-
-bool holds(const Box& outer, const Box& inner) {
-  return outer.min_x <= inner.min_x && outer.min_y <= inner.min_y && outer.max_x >= inner.max_x &&
-         outer.max_y >= inner.max_y;
-}
-
 /// Sides of a ring to be found by height.
 class RingIndex {
  public:
@@ -53,8 +43,6 @@ class RingIndex {
       }
     }
   }
-
-  const Box& box() const { return box_; }
 
   /// Whether a ray from the point to the west crosses the ring an odd number of times.
   bool holds(double x, double y) const {

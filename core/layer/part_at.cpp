@@ -7,14 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "core/grid/ring_box.h"
+
 namespace trapeze {
 namespace {
-
-Box box_of(std::span<const Point> ring) {
-  Box box;
-  for (const Point p : ring) box.include(p);
-  return box;
-}
 
 /// As trapezoids hold points: those on the left side and on the top belong to the area.
 bool holds(std::span<const Point> ring, Point point) {

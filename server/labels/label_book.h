@@ -62,6 +62,8 @@ class LabelBook {
   explicit LabelBook(FontChoice fonts = {}, std::size_t budget = kDefaultBudget);
   ~LabelBook();
 
+  const std::shared_ptr<const Fonts>& usual_fonts() const { return fonts_.usual; }
+
   /// The labels that reach into the picture, in the order in which they are drawn.
   std::vector<DrawnLabel> find(const LabelledView& wanted);
 

@@ -45,8 +45,8 @@ Seeder::Seeder(const SeedPlan& plan, const SeedJobs& jobs,
     : plan_(plan), jobs_(jobs) {
   const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
-    // Marks are for looking at, and need no fonts here.
-    painters_.emplace_back(plan, TilePainter(std::move(renderer), classes, nullptr, labels),
+    painters_.emplace_back(plan,
+                           TilePainter(std::move(renderer), classes, labels->usual_fonts(), labels),
                            classes, labels, find_known);
   }
 }

@@ -12,6 +12,7 @@
 #include "core/grid/disjoint_sets.h"
 #include "core/grid/hilbert.h"
 #include "core/grid/item_count.h"
+#include "core/grid/ring_box.h"
 #include "core/grid/web_mercator.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_name.h"
@@ -30,17 +31,6 @@ struct Measures {
   std::vector<std::uint32_t> owners;  // by box: the feature
   std::uint64_t fingerprint = 0;
 };
-
-Box box_of(std::span<const Point> ring) {
-  Box box;
-  for (const Point p : ring) box.include(p);
-  return box;
-}
-
-bool holds(const Box& outer, const Box& inner) {
-  return outer.min_x <= inner.min_x && outer.min_y <= inner.min_y && outer.max_x >= inner.max_x &&
-         outer.max_y >= inner.max_y;
-}
 
 std::uint64_t word_of(std::int32_t x, std::int32_t y) {
   return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);

@@ -115,6 +115,17 @@ TEST_F(ArchiveTest, PmtilesHasEveryTileOnceInOrder) {
   EXPECT_EQ(reader.tile_entries(), reader.entries().size());
 }
 
+TEST_F(ArchiveTest, TilesWithMarksAreThoseOfTheServer) {
+  const SeedPlan plan = *SeedPlan::make(seed_request(*dataset_, {0, 2}, "debug=tile"), dataset_);
+  const std::string log = folder_.file("marked");
+  Seeding(plan, {0, 2}).run(log);
+  join_into_archive(SeedLogs({log}), folder_.file("marked.pmtiles"), {});
+  const PmtilesReader reader(folder_.file("marked.pmtiles"));
+  ASSERT_FALSE(reader.entries().empty());
+  EXPECT_EQ(reader.tile(reader.entries().front()),
+            testing::served_bytes(plan, tile_at_place(0, 0), painter_));
+}
+
 TEST_F(ArchiveTest, PmtilesStoresEachContentOnceInTheOrderOfItsFirstTile) {
   const PmtilesReader reader(archive("a.pmtiles"));
   std::map<std::string, std::uint64_t> places;
