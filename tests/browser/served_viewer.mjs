@@ -11,7 +11,7 @@ import { fileURLToPath } from "node:url";
 
 export const HERE = dirname(fileURLToPath(import.meta.url));
 export const WEB = join(HERE, "..", "..", "web");
-const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 const SKIPPED = 77;
 const START_TIMEOUT_MS = 60_000; // sanitizers on a busy machine
 

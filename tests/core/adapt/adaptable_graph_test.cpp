@@ -10,12 +10,13 @@
 #include "core/graph/check_graph.h"
 #include "core/sweep/graph_builder.h"
 #include "tests/core/shapes/shapes.h"
+#include "tests/sanitized.h"
 
 namespace trapeze {
 namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
-constexpr unsigned kShapes = 350;
+constexpr unsigned kShapes = testing::kIsSanitized ? 100 : 350;
 
 std::optional<TrapezoidalGraph> graph_of(Rings rings) {
   TrapezoidalGraph graph;

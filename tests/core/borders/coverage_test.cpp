@@ -15,12 +15,13 @@
 #include "core/graph/check_graph.h"
 #include "tests/core/borders/coverage_shapes.h"
 #include "tests/core/shapes/drawn_trapezoids.h"
+#include "tests/sanitized.h"
 
 namespace trapeze {
 namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
-constexpr unsigned kShapes = 160;
+constexpr unsigned kShapes = testing::kIsSanitized ? 60 : 160;
 
 using Texts = std::vector<std::string>;
 
@@ -163,7 +164,7 @@ TEST(Coverage, EveryRemovalLeavesTheMapOfTheFacesThatAreLeft) {
     }
     EXPECT_EQ(c.graph.inside_nodes().size(), 0u) << "something never goes";
   }
-  EXPECT_GT(regions, 200u);
+  EXPECT_GT(regions, kShapes);
 }
 
 TEST(Coverage, StateDependsOnTheToleranceOnly) {
@@ -291,7 +292,7 @@ TEST(CoverageInCommon, AFeatureWithinAnotherIsNotLost) {
 }
 
 TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
-  int shared = 0;
+  unsigned shared = 0;
   for (unsigned seed = 0; seed < kShapes; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const BuiltCoverage c(random_coverage(seed), kNone);
@@ -305,7 +306,7 @@ TEST(CoverageInCommon, FeaturesKeepTheirAreas) {
       EXPECT_DOUBLE_EQ(again.areas[i], c.outcome.areas[i]) << "feature " << i;
     }
   }
-  EXPECT_GT(shared, 20);
+  EXPECT_GT(shared, kShapes / 8);
 }
 
 /// Calls check(history, level, adapted graph, faces) for every level of the coverages of the first

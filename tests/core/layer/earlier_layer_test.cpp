@@ -16,6 +16,7 @@
 #include "tests/core/shapes/maps.h"
 #include "tests/core/shapes/same_layers.h"
 #include "tests/core/shapes/shapes.h"
+#include "tests/sanitized.h"
 
 namespace trapeze {
 namespace {
@@ -144,7 +145,7 @@ std::vector<LayerOptions> all_options() {
 
 TEST(EarlierLayerTest, WhatIsTakenOverIsAsIfItWereBuilt) {
   for (const LayerOptions& options : all_options()) {
-    for (unsigned seed = 0; seed < 12; ++seed) {
+    for (unsigned seed = 0; seed < (testing::kIsSanitized ? 3 : 12); ++seed) {
       SCOPED_TRACE("coverage " + std::string(kCoverageNames.name_of(options.coverage)) + ", seed " +
                    std::to_string(seed));
       std::mt19937 random(seed);

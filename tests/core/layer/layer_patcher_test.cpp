@@ -20,6 +20,7 @@
 #include "core/sweep/clean_rings.h"
 #include "tests/core/shapes/drawn_trapezoids.h"
 #include "tests/core/shapes/maps.h"
+#include "tests/sanitized.h"
 
 namespace trapeze {
 namespace {
@@ -283,7 +284,7 @@ class Edited {
 TEST(LayerPatcherTest, APatchedLayerIsTheOneBuiltAnew) {
   for (const CoverageMode coverage :
        {CoverageMode::off, CoverageMode::automatic, CoverageMode::on}) {
-    for (unsigned seed = 0; seed < 10; ++seed) {
+    for (unsigned seed = 0; seed < (testing::kIsSanitized ? 2 : 10); ++seed) {
       SCOPED_TRACE("coverage " + std::string(kCoverageNames.name_of(coverage)) + ", seed " +
                    std::to_string(seed));
       LayerOptions options;
