@@ -33,18 +33,17 @@ export function make_pane(map, name) {
   return pane;
 }
 
-/** Leaflet's own control takes markup; ours takes nodes, so that no text can become markup. */
-export function show_attribution(map, layers) {
+/**
+ * Leaflet's own control takes markup; ours takes nodes, so that no text can become markup. Returns a
+ * function that shows lines.
+ */
+export function make_attribution(map) {
   const control = L.control({ position: "bottomright" });
-  control.onAdd = () => {
-    const box = L.DomUtil.create("div", "leaflet-control-attribution");
-    box.append(link_to("https://leafletjs.com", "Leaflet"));
-    for (const line of new Set(layers.map((layer) => layer.attribution).filter(Boolean))) {
-      box.append(" | ", ...attribution_nodes(line));
-    }
-    return box;
-  };
+  const box = L.DomUtil.create("div", "leaflet-control-attribution");
+  control.onAdd = () => box;
   control.addTo(map);
+  return (lines) => box.replaceChildren(link_to("https://leafletjs.com", "Leaflet"),
+    ...lines.flatMap((line) => [" | ", ...attribution_nodes(line)]));
 }
 
 /** Where all of `boxes` can be seen, or the world if they span most of it from side to side and in height. */

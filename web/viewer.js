@@ -16,7 +16,7 @@ import { layer_row } from "./layer_panel.js";
 import { ask_legend, legend_section } from "./legend.js";
 import { all_looks } from "./looks.js";
 import {
-  MAX_ZOOM, make_map, make_pane, show_attribution, show_boxes, show_place_in_free_part,
+  MAX_ZOOM, make_attribution, make_map, make_pane, show_boxes, show_place_in_free_part,
 } from "./map_frame.js";
 import { load_style, load_style_names, over, usual_shared, usual_style } from "./named_styles.js";
 import { Notices } from "./notices.js";
@@ -74,6 +74,13 @@ function refusal_in_words({ status, detail }) {
 
 // ---- the page
 
+/** The first of the languages of the browser, if it is among those of the catalog, else undefined. */
+function language_among(languages) {
+  const [whole, first] = [navigator.language, navigator.language.split("-")[0]];
+  return Array.isArray(languages) ? languages.find((tag) => tag === whole) ??
+    languages.find((tag) => tag === first) : undefined;
+}
+
 /** The zoom beyond which a layer of the catalog has no more to show. */
 function zoom_of_detail(layer) {
   return Number.isInteger(layer?.detail_zoom) ? layer.detail_zoom : LEAST_ZOOM_TO;
@@ -120,6 +127,8 @@ class Viewer {
   constructor(catalog, connection) {
     this.connection_ = connection;
     this.layers_ = usable_layers(catalog);
+    this.tables_ = catalog.tables ?? {};
+    this.language_ = language_among(catalog.languages);
     this.start_ = typeof catalog.viewer?.start === "string" ? catalog.viewer.start : "";
     const is_first_sight = location.hash.length < 2;
     const view = this.view_of_(location.hash);
@@ -130,7 +139,7 @@ class Viewer {
     this.make_map_layers_();
     this.make_panels_();
     show_title(catalog.viewer?.title);
-    show_attribution(this.map_, this.layers_);
+    this.show_attribution_ = make_attribution(this.map_);
     show_about(catalog, this.layers_);
     if (is_first_sight && this.layers_.length) this.try_.open();
     if (is_first_sight && view.place) show_place_in_free_part(this.map_, view.place);
@@ -510,6 +519,7 @@ class Viewer {
     if (is_proved) {
       this.tiles_.show(this.tile_requests_(this.shared_));
       this.compared_tiles_.show(this.compare_ === null ? [] : this.tile_requests_(compared));
+      this.show_attribution_(this.attributions_of_(this.layers_.map((_, i) => i)));
     }
     this.show_outline_();
     this.tell_refused_();
@@ -529,10 +539,30 @@ class Viewer {
     return tile_requests(this.drawn_layers_(), this.request_settings_(shared));
   }
 
+  /** With the language of the browser, where there are labels that may be in it. */
+  in_language_(shared) {
+    const has_label = (i) => (this.style_shown_(i).get("label") ?? "none") !== "none";
+    return this.language_ && this.layers_on_().some(has_label)
+      ? new Map([...shared, ["label-language", this.language_]]) : shared;
+  }
+
+  style_shown_(i) {
+    const { drawn, style, usual } = this.states_[i];
+    return over(usual, drawn ?? style);
+  }
+
+  /** Markup of layers, and of the tables that those of them are joined to which are on. */
+  attributions_of_(layers) {
+    const of_tables = layers.filter((i) => this.states_[i].is_on)
+      .map((i) => this.tables_[this.style_shown_(i).get("values")]?.attribution);
+    const all = [...layers.map((i) => this.layers_[i].attribution), ...of_tables];
+    return [...new Set(all.filter((line) => typeof line === "string" && line !== ""))];
+  }
+
   request_settings_(shared) {
     return {
       layers: this.layers_,
-      shared,
+      shared: this.in_language_(shared),
       has_background: Boolean(this.named_.background),
       folder: new URL(TILES).pathname,
     };
@@ -580,7 +610,7 @@ class Viewer {
   tile_url_() {
     const layers = this.drawn_layers_();
     if (layers.length === 0) return "";
-    const { styled, shared } = divide_shared(layers, this.layers_, this.shared_);
+    const { styled, shared } = divide_shared(layers, this.layers_, this.in_language_(this.shared_));
     const query = query_part(parameters_of_layers(styled, shared));
     return `${TILES}${path_of_layers(layers)}/{z}/{x}/{y}.png${query}`;
   }
@@ -594,7 +624,7 @@ class Viewer {
     return {
       names: drawn.map(({ name }) => name),
       titles: layers.map(({ name }) => this.title_of_(name)),
-      attributions: layers.map(({ attribution }) => attribution).filter(Boolean),
+      attributions: this.attributions_of_(this.layers_on_().filter((i) => this.states_[i].drawn)),
       drawn,
       settings: { layers: this.layers_, shared: this.shared_, named: this.named_ },
       place: {

@@ -445,6 +445,13 @@ LabelAnchors::LabelAnchors(const Layer& layer, LabelParts parts, unsigned thread
   for (const auto& some : found) anchors_.insert(anchors_.end(), some.begin(), some.end());
 }
 
+LabelAnchors::LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts parts) {
+  for (const LabelAnchor& anchor : of_all_parts) {
+    const bool is_first = anchors_.empty() || anchors_.back().row != anchor.row;
+    if (is_first || parts == LabelParts::all) anchors_.push_back(anchor);
+  }
+}
+
 std::vector<LabelAnchor> anchors_of_feature(std::uint32_t row, const Rings& rings,
                                             std::span<const Rings> above, LabelParts parts) {
   Finder finder;

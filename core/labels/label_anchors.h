@@ -53,6 +53,8 @@ class LabelAnchors {
   /// Of all features that there are, on up to `threads` threads, on which nothing depends. A part
   /// without any inside that is seen has none; of a feature whose largest part has none, the next.
   LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads = 1);
+  /// Those of a layer of which all parts have been looked at before: equal to finding them.
+  LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts parts);
 
   /// In order of rows; those of one feature by area, the largest part first.
   std::span<const LabelAnchor> all() const { return anchors_; }

@@ -288,6 +288,17 @@ class Fonts::Faces {
     return {width, kLineHeight};
   }
 
+  bool can_write(std::string_view line) const {
+    const std::u32string text = characters_of_line(line, kMostCharacters);
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+      const std::size_t end = end_of_cluster(text, begin);
+      if (find_face_for(text, begin, end) == nullptr) return false;
+      begin = end;
+    }
+    return true;
+  }
+
  private:
   /// In 64ths of a pixel.
   void set_size(FT_F26Dot6 size) {
@@ -337,8 +348,8 @@ class Fonts::Faces {
     return end;
   }
 
-  /// The first face that has the whole cluster, or else its first character, or else the first.
-  FT_Face face_for(const std::u32string& text, std::size_t begin, std::size_t end) const {
+  /// The first face that has the whole cluster; null if none has.
+  FT_Face find_face_for(const std::u32string& text, std::size_t begin, std::size_t end) const {
     const auto has_all = [&](const Face& face) {
       const auto is_there = [&](char32_t c) {
         return following_of(c) == Following::joiner || has(face.get(), c);
@@ -346,9 +357,15 @@ class Fonts::Faces {
       return std::all_of(text.begin() + static_cast<std::ptrdiff_t>(begin),
                          text.begin() + static_cast<std::ptrdiff_t>(end), is_there);
     };
+    const auto found = std::ranges::find_if(faces_, has_all);
+    return found == faces_.end() ? nullptr : found->get();
+  }
+
+  /// The same, or else the first that has the first character, or else the first of all.
+  FT_Face face_for(const std::u32string& text, std::size_t begin, std::size_t end) const {
+    if (FT_Face found = find_face_for(text, begin, end)) return found;
     const auto has_first = [&](const Face& face) { return has(face.get(), text[begin]); };
-    auto found = std::ranges::find_if(faces_, has_all);
-    if (found == faces_.end()) found = std::ranges::find_if(faces_, has_first);
+    const auto found = std::ranges::find_if(faces_, has_first);
     return (found == faces_.end() ? faces_.front() : *found).get();
   }
 
@@ -406,6 +423,11 @@ void Fonts::draw(std::string_view line, int left, int base, const TextStyle& sty
 Fonts::Extent Fonts::extent_of(std::string_view line) const {
   const auto lock = faces_->lock();
   return faces_->extent_of(line);
+}
+
+bool Fonts::can_write(std::string_view line) const {
+  const auto lock = faces_->lock();
+  return faces_->can_write(line);
 }
 
 TextMask Fonts::mask_of(std::span<const std::string> lines, double size, double line_height,

@@ -81,6 +81,9 @@ class Fonts {
   /// which each stands for itself, their widths are added up.
   Extent extent_of(std::string_view line) const;
 
+  /// Whether the fonts have all characters of the line: otherwise boxes stand for some.
+  bool can_write(std::string_view line) const;
+
   /// The lines one below the other, each in the middle from west to east. The middle of the text,
   /// from which half of `line_height` per line reaches upwards and downwards, is the middle of the
   /// mask, where the corners of four pixels meet. What reaches out of the mask is cut off. `size`,

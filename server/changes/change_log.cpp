@@ -39,12 +39,17 @@ void add(const ChangedLayer& more, ChangedLayer& sum) {
   });
 }
 
-/// The id of the table that the layer's own style joins; empty if it joins none.
+/// The ids of the table that the layer's own style joins, in all languages; empty if it joins none.
 std::string table_of(const ServedLayer& layer) {
   const ParameterValue* values = layer.config.style.find({}, ParameterId::values);
   if (values == nullptr || layer.tables == nullptr) return {};
   const auto named = layer.tables->find(std::get<TableChoice>(*values).name);
-  return named == layer.tables->end() ? std::string() : named->second.table->id();
+  if (named == layer.tables->end()) return {};
+  std::string ids = named->second.table->id();
+  for (const auto& [language, table] : named->second.languages) {
+    ids += " " + language + " " + table->id();
+  }
+  return ids;
 }
 
 /// Whether the values have changed by which it is coloured: anywhere, as classes are of all of

@@ -63,6 +63,7 @@ struct ValueTableConfig {
   std::string value;        // the column of values; empty: the second
   std::string title;        // of the values, for people; empty: the name of the column
   std::string attribution;  // what maps must say about where they are from
+  std::vector<std::string> languages = {};  // tags; each has a column, VALUE:LANGUAGE
 };
 
 /// Fonts by a name.

@@ -11,6 +11,7 @@
 
 #include "core/borders/gap_closing.h"
 #include "core/graph/topological_consistency.h"
+#include "server/base/language_tag.h"
 #include "server/base/url.h"
 #include "server/base/zoom_range.h"
 #include "server/styles/style_parameters.h"
@@ -605,7 +606,19 @@ const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
           "what the values are, for people; empty: the name of their column"),
       text<ValueTableConfig>(
           "values.attribution", [](auto& table) -> auto& { return table.attribution; },
-          "what maps must say about where they are from; may hold links in HTML")};
+          "what maps must say about where they are from; may hold links in HTML"),
+      list<ValueTableConfig>(
+          "values.languages", [](auto& table) -> auto& { return table.languages; },
+          "a list of tags of languages such as [\"de\", \"zh-Hans\"]",
+          [](const std::string& tag) {
+            return is_language_tag(tag) ? std::optional(tag) : std::nullopt;
+          },
+          same,
+          "languages in which the table has the values, too, each in a column called as that of "
+          "the "
+          "values, a colon and the tag, such as name:de: labels show them where label-language "
+          "asks "
+          "for one")};
   return settings;
 }
 

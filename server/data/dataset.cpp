@@ -255,6 +255,7 @@ ServedLayer read_layer(const LayerConfig& layer, const ServedLayer* earlier,
   served.report = std::move(loaded.report);
   served.file = std::move(loaded.file);
   served.parts = std::move(loaded.parts);
+  served.label_anchors = loaded.label_anchors;
   // Its fields may be in another file.
   if (served.report.driver == "GML" && served.file == nullptr) served.source_state.clear();
   return served;

@@ -14,6 +14,7 @@
 #include "core/io/load/load_layer.h"
 #include "core/io/prepared/open_layer.h"
 #include "core/io/prepared/prepared_parts.h"
+#include "core/labels/label_anchors.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_changes.h"
 #include "server/base/problem.h"
@@ -34,6 +35,8 @@ struct ServedLayer {
   std::string source_state = {};                // state_of_sources() before it was read
   /// Of a layer in several parts: these. Null of all others.
   std::shared_ptr<const PreparedParts> parts = {};
+  /// See LoadedLayer; of a layer in which features are replaced, those of `whole`.
+  std::span<const LabelAnchor> label_anchors = {};
   /// Without the topological consistency test; null unless the configuration asks for it.
   std::shared_ptr<const Layer> untested = {};
 

@@ -30,12 +30,24 @@ std::string bytes_of_file(const std::string& path) {
   return bytes;
 }
 
-ValueTable read_table(const ValueTableConfig& config) {
-  const std::string bytes = bytes_of_file(config.file);
+std::shared_ptr<const ValueTable> table_in(const std::string& bytes, const ValueTableConfig& config,
+                                           const ValueNames& columns) {
   const auto format = table_format({}, bytes);
-  auto table = read_values(bytes, *format, {{config.key, config.value}, kMostRows});
+  auto table = read_values(bytes, *format, {columns, kMostRows});
   if (!table) throw std::runtime_error(fmt::format("{}: {}", config.file, table.problem().detail));
-  return *std::move(table);
+  return std::make_shared<const ValueTable>(*std::move(table));
+}
+
+NamedTable read_table(const ValueTableConfig& config) {
+  const std::string bytes = bytes_of_file(config.file);
+  NamedTable named{table_in(bytes, config, {config.key, config.value}), config.title,
+                   config.attribution};
+  const ValueNames& names = named.table->names();
+  for (const std::string& language : config.languages) {
+    const std::string column = fmt::format("{}:{}", names.value, language);
+    named.languages[language] = table_in(bytes, config, {names.key, column});
+  }
+  return named;
 }
 
 }  // namespace
@@ -45,10 +57,14 @@ std::shared_ptr<const NamedTables> read_named_tables(
   NamedTables read;
   for (const auto& [name, config] : tables) {
     try {
-      auto table = std::make_shared<const ValueTable>(read_table(config));
-      spdlog::info("{}: {} rows of {}, by {}", config.file, table->size(), table->names().value,
-                   table->names().key);
-      read.emplace(name, NamedTable{std::move(table), config.title, config.attribution});
+      NamedTable named = read_table(config);
+      const ValueTable& table = *named.table;
+      spdlog::info("{}: {} rows of {}, by {}{}", config.file, table.size(), table.names().value,
+                   table.names().key,
+                   named.languages.empty()
+                       ? ""
+                       : fmt::format(", in {} more languages", named.languages.size()));
+      read.emplace(name, std::move(named));
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("values \"{}\": {}", name, error.what()));
     }

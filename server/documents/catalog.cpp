@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <set>
+#include <string>
 
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
 #include "server/base/json_text.h"
+#include "server/base/language_tag.h"
 #include "server/data/layer_summary.h"
 #include "server/data/title_attribute.h"
 #include "server/documents/classification.h"
@@ -145,6 +149,25 @@ std::string legend_url(const TileJsonRequest& request, const std::string& base_u
                      scale_suffix(request.scale), after_path(request.style.query()));
 }
 
+/// Those in which labels can be: of tables of the configuration, and of attributes called as
+/// another one, a colon and a language.
+std::set<std::string> languages_of(const Dataset& dataset) {
+  std::set<std::string> languages;
+  for (const auto& [name, named] : dataset.tables()) {
+    for (const auto& [language, table] : named.languages) languages.insert(language);
+  }
+  for (const ServedLayer& layer : dataset.layers()) {
+    const FeatureTable& features = layer.layer->features();
+    for (const Field& field : features.fields()) {
+      const std::size_t colon = field.name.rfind(':');
+      if (colon == std::string::npos || !is_language_tag(field.name.substr(colon + 1))) continue;
+      if (features.field_index(field.name.substr(0, colon)) < 0) continue;
+      languages.insert(field.name.substr(colon + 1));
+    }
+  }
+  return languages;
+}
+
 }  // namespace
 
 std::string_view json_type_of(FieldType type) {
@@ -170,6 +193,11 @@ std::string catalog_json(const Dataset& dataset, const std::string& renderer,
   json["generation"] = dataset.generation();
   json["renderer"] = renderer;
   json["parameters"] = parameters_json();
+  json["languages"] = languages_of(dataset);
+  json["tables"] = Json::object();
+  for (const auto& [name, named] : dataset.tables()) {
+    json["tables"][name] = {{"title", named.title}, {"attribution", named.attribution}};
+  }
   json["viewer"] = {{"title", viewer.title}, {"start", viewer.start}};
   return to_text(json);
 }

@@ -50,6 +50,7 @@ Json schema_of(const StyleParameter& parameter) {
     case ParameterType::format:
     case ParameterType::table:
     case ParameterType::font:
+    case ParameterType::language:
       return {{"type", "string"}};
     case ParameterType::text:
     case ParameterType::label:

@@ -82,12 +82,19 @@ Result<Json> joins_json(std::string_view id, const std::shared_ptr<const ValueTa
   return joins;
 }
 
+Json languages_of(const NamedTable& named) {
+  Json tags = Json::array();
+  for (const auto& [tag, table] : named.languages) tags.push_back(tag);
+  return tags;
+}
+
 Document named_tables_document(const NamedTables& tables) {
   Json list = Json::array();
   for (const auto& [name, named] : tables) {
     Json json = summary_json(name, *named.table);
     json["title"] = named.title;
     json["attribution"] = named.attribution;
+    if (!named.languages.empty()) json["languages"] = languages_of(named);
     list.push_back(std::move(json));
   }
   return {"application/json", to_text({{"tables", std::move(list)}})};

@@ -110,6 +110,7 @@ class LabelBook::Placing {
     double priority = 0;
     const LabelAnchor* anchor = nullptr;
     LabelCandidate candidate;
+    std::string text;
   };
 
   void add_layer(std::uint32_t number, const LabelledLayer& layer) {
@@ -117,19 +118,19 @@ class LabelBook::Placing {
     const FeatureTable& features = served.layer->features();
     const FeatureClassifier classifier(layer.classing, features);
     const Attributes attributes(features, layer.style->joined);
+    const Fonts& fonts = book_.fonts_for(*layer.style);
     const auto anchors =
         book_.anchors_of(served, layer.style->all_parts ? LabelParts::all : LabelParts::largest);
     std::vector<Ranked> ranked;
     for (const LabelAnchor& anchor : anchors->all()) {
       if (classifier.class_of(anchor.row) == kNotDrawn) continue;
-      const std::string text =
-          layer.style->text.text_of(attributes, anchor.row, layer.style->format);
+      std::string text = layer.style->text_of(features, anchor.row, fonts);
       if (text.empty()) continue;
       const Room& room = extent_of(layer, text);
       const bool has_font = room.width > 0;
       if (!has_font || room.width > kMostPixels || room.height > kMostPixels) continue;
-      ranked.push_back(
-          {priority_of(layer, attributes, anchor), &anchor, candidate_of(layer, anchor, room)});
+      ranked.push_back({priority_of(layer, attributes, anchor), &anchor,
+                        candidate_of(layer, anchor, room), std::move(text)});
     }
     std::ranges::sort(ranked, [](const Ranked& a, const Ranked& b) {
       const auto key = [](const Ranked& r) {
@@ -139,12 +140,7 @@ class LabelBook::Placing {
     });
     std::unordered_set<std::string> shown;
     for (const Ranked& each : ranked) {
-      if (!layer.style->repeats &&
-          !shown
-               .insert(layer.style->text.text_of(attributes, each.anchor->row, layer.style->format))
-               .second) {
-        continue;
-      }
+      if (!layer.style->repeats && !shown.insert(each.text).second) continue;
       candidates_.push_back(each.candidate);
       sources_.push_back({number, each.anchor->row});
     }
@@ -250,7 +246,10 @@ std::shared_ptr<const LabelAnchors> LabelBook::anchors_of(const ServedLayer& ser
   const auto entry = this->entry(key);
   std::call_once(entry->once, [&] {
     const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
-    entry->anchors = std::make_shared<const LabelAnchors>(*served.layer, parts, threads);
+    const bool are_known = !served.label_anchors.empty() && served.whole == nullptr;
+    entry->anchors = are_known
+                         ? std::make_shared<const LabelAnchors>(served.label_anchors, parts)
+                         : std::make_shared<const LabelAnchors>(*served.layer, parts, threads);
     set_size(key, entry, entry->anchors->memory());
   });
   return entry->anchors;
@@ -303,8 +302,8 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
                                                       const FeatureTable& features,
                                                       std::uint32_t row, double scale) {
   const LabelStyle& style = *layer.style;
-  const std::string text =
-      style.text.text_of(Attributes(features, style.joined), row, style.format);
+  const Fonts& fonts = fonts_for(style);
+  const std::string text = style.text_of(features, row, fonts);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {}", style.font, style.size, style.max_width,
                   style.halo_width, scale, to_hex(style.colour), to_hex(style.halo_colour), text);
@@ -312,7 +311,6 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
     const std::lock_guard lock(mutex_);
     if (const auto* found = images_.find(key)) return *found;
   }
-  const Fonts& fonts = fonts_for(style);
   const double most = std::max(style.max_width / style.size, kLeastWidth);
   const BrokenLines broken = broken_lines(text, most, fonts);
   const double half_width = broken.width * style.size / 2 + style.halo_width + kSlackPixels / 2;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "render/picture/colour.h"
+#include "render/text/fonts.h"
 #include "server/styles/feature_classes.h"
 #include "server/styles/label_template.h"
 #include "server/values/joined_values.h"
@@ -20,8 +22,11 @@ struct LabelStyle {
   LabelTemplate text;   // of the attributes of the layer and the values joined to them
   std::optional<NumberFormat> format;
   std::shared_ptr<const JoinedValues> joined;  // null: none
-  std::string font;                            // of the configuration; empty: the usual ones
-  double size = 12;                            // side of the em square
+  std::string language;                        // empty: none is wanted
+  /// The joined values in that language; null: there are none.
+  std::shared_ptr<const JoinedValues> translated;
+  std::string font;  // of the configuration; empty: the usual ones
+  double size = 12;  // side of the em square
   Rgba colour{0x22, 0x22, 0x22, 255};
   Rgba halo_colour{255, 255, 255, 0xcc};
   double halo_width = 1.5;
@@ -32,6 +37,9 @@ struct LabelStyle {
   double overhang = 8;     // by how much a label may reach out of its polygon
   bool repeats = true;     // false: equal labels are shown once
   bool all_parts = false;  // false: one label a feature
+
+  /// What the label of the feature in that row says: in the language if the fonts can write that.
+  std::string text_of(const FeatureTable& features, std::uint32_t row, const Fonts& fonts) const;
 
   /// Equal for styles that show the same labels in the same places of one layer.
   std::string placement_key() const;

@@ -77,13 +77,18 @@ bool for_each_piece(std::string_view text, const Found& found) {
   return has_name;
 }
 
+bool says_something(std::string_view words) {
+  return words.find_first_not_of(' ') != std::string_view::npos;
+}
+
 }  // namespace
 
 bool LabelTemplate::is_valid(std::string_view text) {
   return for_each_piece(text, [](bool, std::string_view) {});
 }
 
-Result<LabelTemplate> LabelTemplate::bind(std::string_view text, const Attributes& attributes) {
+Result<LabelTemplate> LabelTemplate::bind(std::string_view text, const Attributes& attributes,
+                                          std::string_view language) {
   LabelTemplate made;
   std::optional<Problem> problem;
   for_each_piece(text, [&](bool is_name, std::string_view piece) {
@@ -95,14 +100,20 @@ Result<LabelTemplate> LabelTemplate::bind(std::string_view text, const Attribute
     if (number < 0 && !problem) {
       problem = unknown_property("label", std::string(piece), attributes);
     }
-    made.pieces_.push_back({{}, number});
+    int translation = -1;
+    for (const char* parting : {":", "_"}) {
+      if (language.empty() || translation >= 0) continue;
+      translation = attributes.field_index(fmt::format("{}{}{}", piece, parting, language));
+    }
+    made.pieces_.push_back({{}, number, translation});
   });
   if (problem) return *std::move(problem);
   return made;
 }
 
-std::string LabelTemplate::text_of(const Attributes& attributes, std::uint32_t row,
-                                   const std::optional<NumberFormat>& format) const {
+template <typename ValueOf>
+std::string LabelTemplate::text_of(const std::optional<NumberFormat>& format,
+                                   const ValueOf& value_of) const {
   std::string text;
   bool says_anything = false;
   for (const Piece& piece : pieces_) {
@@ -110,11 +121,31 @@ std::string LabelTemplate::text_of(const Attributes& attributes, std::uint32_t r
       text += piece.text;
       continue;
     }
-    const std::string words = words_of(attributes.value(row, piece.attribute), format);
-    says_anything |= words.find_first_not_of(' ') != std::string::npos;
+    const std::string words = words_of(value_of(piece), format);
+    says_anything |= says_something(words);
     text += words;
   }
   return says_anything ? tidied(text) : std::string();
+}
+
+std::string LabelTemplate::text_of(const Attributes& attributes, std::uint32_t row,
+                                   const std::optional<NumberFormat>& format) const {
+  return text_of(format,
+                 [&](const Piece& piece) { return attributes.value(row, piece.attribute); });
+}
+
+std::string LabelTemplate::translation_of(const Attributes& attributes,
+                                          const JoinedValues* translated, std::uint32_t row,
+                                          const std::optional<NumberFormat>& format) const {
+  return text_of(format, [&](const Piece& piece) {
+    Value value;
+    if (piece.attribute == attributes.joined_index() && translated != nullptr) {
+      value = translated->value(row);
+    } else if (piece.translation >= 0) {
+      value = attributes.value(row, piece.translation);
+    }
+    return says_something(words_of(value, format)) ? value : attributes.value(row, piece.attribute);
+  });
 }
 
 }  // namespace trapeze

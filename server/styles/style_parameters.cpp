@@ -12,6 +12,7 @@
 #include "render/mask/stroke.h"
 #include "render/picture/pattern.h"
 #include "render/picture/reduce_colours.h"
+#include "server/base/language_tag.h"
 #include "server/base/nearest_name.h"
 #include "server/styles/colour_ramps.h"
 #include "server/styles/debug_marks.h"
@@ -156,6 +157,13 @@ constexpr std::array kParameters = {
                    .default_text = "1.5",
                    .description = "how far around its letters a label is filled with the colour of "
                                   "the halo, in pixels"},
+    StyleParameter{.id = ParameterId::label_language,
+                   .name = "label-language",
+                   .type = Type::language,
+                   .default_text = "as the label says",
+                   .description = "language of labels, where the layer has the property also as "
+                                  "NAME:LANGUAGE or NAME_LANGUAGE, or the table of values has it, "
+                                  "and the fonts have its letters"},
     StyleParameter{.id = ParameterId::label_max_width,
                    .name = "label-max-width",
                    .type = Type::number,
@@ -700,6 +708,9 @@ std::optional<ParameterValue> parse_parameter(const StyleParameter& parameter,
     case Type::font:
       if (is_url_name(text)) return std::string(text);
       break;
+    case Type::language:
+      if (is_language_tag(text)) return std::string(text);
+      break;
   }
   return std::nullopt;
 }
@@ -760,6 +771,8 @@ std::string describe_values(const StyleParameter& parameter) {
           parameter.max_items);
     case Type::font:
       return "the name of fonts of the configuration";
+    case Type::language:
+      return "the tag of a language, such as de or zh-Hans";
   }
   return {};
 }

@@ -43,6 +43,7 @@ enum class ParameterId : std::uint8_t {
   label_format,
   label_halo_color,
   label_halo_width,
+  label_language,
   label_max_width,
   label_min_size,
   label_overhang,
@@ -75,21 +76,22 @@ enum class ParameterId : std::uint8_t {
 enum class ParameterType : std::uint8_t {
   colour,
   number,
-  numbers,  // separated by commas
-  breaks,   // numbers, each greater than the one before, or a BreakRule
-  word,     // one of StyleParameter::words
-  words,    // some of them, separated by commas, in any order
-  name,     // of a property
-  ramp,     // the name of a ramp of colours
-  ids,      // integers, separated by commas, in any order
-  classes,  // value:colour, separated by commas
-  filter,   // CQL2 text
-  style,    // the name of a style
-  format,   // a NumberFormat
-  text,     // a few words
-  table,    // the name or id of a ValueTable
-  label,    // a LabelTemplate
-  font,     // the name of a font
+  numbers,   // separated by commas
+  breaks,    // numbers, each greater than the one before, or a BreakRule
+  word,      // one of StyleParameter::words
+  words,     // some of them, separated by commas, in any order
+  name,      // of a property
+  ramp,      // the name of a ramp of colours
+  ids,       // integers, separated by commas, in any order
+  classes,   // value:colour, separated by commas
+  filter,    // CQL2 text
+  style,     // the name of a style
+  format,    // a NumberFormat
+  text,      // a few words
+  table,     // the name or id of a ValueTable
+  label,     // a LabelTemplate
+  font,      // the name of a font
+  language,  // see is_language_tag()
 };
 
 struct StyleParameter {

@@ -234,6 +234,18 @@ std::shared_ptr<const ValueTable> find_table(const TableChoice& choice, const Se
   return choice.table;
 }
 
+/// Of the table, what it says in the language of the labels; null if that is nothing else.
+std::shared_ptr<const ValueTable> find_translation(const LayerSettings& settings,
+                                                   const ServedLayer& served) {
+  const auto* choice = settings.find<TableChoice>(ParameterId::values);
+  const auto* language = settings.find<std::string>(ParameterId::label_language);
+  if (choice == nullptr || language == nullptr || served.tables == nullptr) return nullptr;
+  const auto named = served.tables->find(choice->name);
+  if (named == served.tables->end()) return nullptr;
+  const auto found = named->second.languages.find(*language);
+  return found == named->second.languages.end() ? nullptr : found->second;
+}
+
 /// The number of the attribute that is the key, or -1.
 int field_to_join(const LayerSettings& settings, const ValueTable& table,
                   const FeatureTable& features) {
@@ -454,12 +466,24 @@ Result<int> label_priority(const Making& making) {
   return number;
 }
 
+/// The values that are joined already, in the language of the labels; null if there are none.
+Result<std::shared_ptr<const JoinedValues>> translated_values(Making& making) {
+  const ServedLayer& served = making.served;
+  const auto table = find_translation(making.settings, served);
+  if (making.style.classing.joined == nullptr || table == nullptr) {
+    return std::shared_ptr<const JoinedValues>();
+  }
+  const int field = making.features.field_index(making.style.join_attribute);
+  return making.derived().join(served.revision, *served.layer, field, table);
+}
+
 std::optional<Problem> make_label(Making& making) {
   const LayerSettings& settings = making.settings;
   const auto* written = settings.find<std::string>(ParameterId::label);
   if (written == nullptr || *written == kNoLabel) return std::nullopt;
   if (making.served.parts != nullptr) return not_in_parts("label", "no labels", making.served);
-  auto text = LabelTemplate::bind(*written, making.attributes());
+  const std::string language = settings.value_or(ParameterId::label_language, std::string());
+  auto text = LabelTemplate::bind(*written, making.attributes(), language);
   if (!text) return std::move(text).problem();
   auto priority = label_priority(making);
   if (!priority) return std::move(priority).problem();
@@ -468,6 +492,12 @@ std::optional<Problem> make_label(Making& making) {
   style.text = *std::move(text);
   style.format = making.style.label_format;
   style.joined = making.style.classing.joined;
+  if (!language.empty()) {
+    auto translated = translated_values(making);
+    if (!translated) return std::move(translated).problem();
+    style.language = language;
+    style.translated = *std::move(translated);
+  }
   style.font = settings.value_or(ParameterId::label_font, std::string());
   style.size = settings.value_or(ParameterId::label_size, style.size);
   style.colour = settings.value_or(ParameterId::label_color, style.colour);
@@ -568,6 +598,10 @@ bool has_to_look(const StyleQuery& style, const ServedLayer& served) {
   const int key = table == nullptr ? -1 : field_to_join(settings, *table, features);
   const DerivedValues& derived = *served.derived;
   if (key >= 0 && !derived.has_join(served.revision, key, *table)) return true;
+  const auto translation = find_translation(settings, served);
+  if (key >= 0 && translation != nullptr && !derived.has_join(served.revision, key, *translation)) {
+    return true;
+  }
   const ParameterValue* breaks = settings.find_value(ParameterId::breaks);
   const auto* rule = breaks == nullptr ? nullptr : std::get_if<BreakRule>(breaks);
   const auto* property = settings.find<std::string>(ParameterId::color_by);

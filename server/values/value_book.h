@@ -20,6 +20,8 @@ struct NamedTable {
   std::shared_ptr<const ValueTable> table;
   std::string title;        // what its values are, for people
   std::string attribution;  // what maps must say about where they are from
+  /// The same values in other languages, by their tags: what labels say in them.
+  std::map<std::string, std::shared_ptr<const ValueTable>, std::less<>> languages = {};
 };
 using NamedTables = std::map<std::string, NamedTable, std::less<>>;
 

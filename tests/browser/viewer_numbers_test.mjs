@@ -1,4 +1,5 @@
-// Numbers of one's own: a table is pasted, joined to a layer by a key, and seen on the map.
+// Numbers of one's own: a table is pasted, joined to a layer by a key, and seen on the map. Names of a table, in
+// the language of the browser.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -7,7 +8,7 @@ import test, { after } from "node:test";
 
 import {
   DESKTOP, PHONE, assert_nothing_went_wrong, hash_of, new_page, save_screenshot,
-  start_browser_and_server, tiles_drawn,
+  shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "trapeze-numbers-"));
@@ -26,6 +27,9 @@ writeFileSync(join(folder, "columns.geojson"),
 writeFileSync(join(folder, "people.csv"),
   `code,people\n${columns.map((_, i) => `C${i},${1000 * (i + 1)}`).join("\n")}\n`);
 
+writeFileSync(join(folder, "names.csv"),
+  `code,name,name:de\n${columns.map((_, i) => `C${i},Column ${i},Spalte ${i}`).join("\n")}\n`);
+
 const { browser, server } = await start_browser_and_server([], `
 [values.people]
 file = "${join(folder, "people.csv")}"
@@ -36,6 +40,15 @@ color_by = "value"
 breaks = "equal:3"
 ramp = "Reds"
 label_format = ","
+
+[values.names]
+file = "${join(folder, "names.csv")}"
+attribution = "Named by hand"
+languages = ["de"]
+[styles.named.columns]
+values = "names"
+label = "value"
+label_overhang = 100
 
 [[layer]]
 name = "columns"
@@ -94,6 +107,23 @@ test("a pasted table colours the layer, says what does not match, and is in the 
   await page.waitForFunction(() => !location.hash.includes("columns."));
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
+});
+
+test("names are in the language of the browser, if there are any, and it is said where they are from", async () => {
+  for (const [locale, language] of [["de-AT", "de"], ["en-GB", null], ["fr", null]]) {
+    const { page, seen } = await open("#5/45/6&on=columns&style=named", { ...DESKTOP, locale });
+    for (const url of await shown_tiles(page)) {
+      assert.equal(new URL(url).searchParams.get("label-language"), language, `${locale}: ${url}`);
+    }
+    assert.equal(await page.locator(".leaflet-control-attribution").innerText(), "Leaflet | Drawn by hand | Named by hand");
+    assert.ok(!(await hash_of(page)).includes("language"), "whoever gets the link has a browser of their own");
+    await page.evaluate(() => (location.hash = "#5/45/6&on=columns"));
+    await page.waitForFunction(() => !document.querySelector(".leaflet-control-attribution").textContent.includes("Named"));
+    await tiles_drawn(page);
+    for (const url of await shown_tiles(page)) assert.ok(!url.includes("label"), url);
+    assert_nothing_went_wrong(server, seen);
+    await page.context().close();
+  }
 });
 
 test("what is wrong with a table is said beside it, and the map stays", async () => {

@@ -80,7 +80,7 @@ class Cutter {
 }  // namespace
 
 std::string name_of(SectionKind kind) {
-  static constexpr std::array<const char*, 29> kNames = {"description",
+  static constexpr std::array<const char*, 30> kNames = {"description",
                                                          "vertices",
                                                          "edges",
                                                          "trapezoids",
@@ -108,8 +108,9 @@ std::string name_of(SectionKind kind) {
                                                          "ends of texts",
                                                          "numbers of a column",
                                                          "nulls of a column",
-                                                         "texts of a column"};
-  static_assert(kNames.size() == static_cast<std::size_t>(SectionKind::texts));
+                                                         "texts of a column",
+                                                         "places of labels"};
+  static_assert(kNames.size() == static_cast<std::size_t>(SectionKind::label_anchors));
   const auto number = static_cast<std::uint32_t>(kind);
   return number >= 1 && number <= kNames.size() ? kNames[number - 1] : "unknown section";
 }

@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be incremented when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 7;
+constexpr std::uint32_t kPreparedVersion = 8;
 
 /// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
@@ -71,6 +71,7 @@ enum class SectionKind : std::uint32_t {
   numbers,
   nulls,
   texts,
+  label_anchors,
 };
 std::string name_of(SectionKind kind);
 
@@ -97,12 +98,18 @@ class OtherFormatError : public PreparedFileError {
 /// Whether `path` is a file that begins like a prepared file. Never throws.
 bool is_prepared_file(const std::string& path);
 
+/// Whether items of that type have no bytes that say nothing. Types with floats need a word of
+/// their own.
+template <typename T>
+inline constexpr bool kIsStorable =
+    std::has_unique_object_representations_v<T> || std::is_same_v<T, std::byte>;
+
 /// Collects sections and writes them as a file; until then it holds views of the caller's memory.
 class SectionWriter {
  public:
   template <typename T>
   void add(SectionKind kind, std::span<const T> items) {
-    static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, std::byte>);
+    static_assert(kIsStorable<T>);
     add_bytes({kind, sizeof(T), items.size(), 0}, std::as_bytes(items));
   }
 

@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/io/load/load_report.h"
 #include "core/io/source/source_selection.h"
+#include "core/labels/label_anchors.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
 #include "core/layer/layer_part.h"
@@ -49,6 +51,9 @@ struct LoadedLayer {
   /// Of a layer in several prepared parts: these. `layer` has their fields and bounds, and no
   /// polygon.
   std::shared_ptr<const PreparedParts> parts = {};
+  /// Of a whole prepared layer: where labels go, of all parts (see LabelAnchors), in memory that
+  /// the layer keeps. Empty of others, of which that has to be found.
+  std::span<const LabelAnchor> label_anchors = {};
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its

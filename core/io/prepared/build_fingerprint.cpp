@@ -9,6 +9,7 @@
 #include "core/borders/gap_closing.h"
 #include "core/grid/web_mercator.h"
 #include "core/io/file/checksum.h"
+#include "core/labels/label_anchors.h"
 #include "core/layer/layer_arrays.h"
 #include "core/layer/layer_builder.h"
 #include "core/sweep/clean_rings.h"
@@ -96,7 +97,8 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
   const std::unique_ptr<Layer> layer = build_probe(options);
   const LayerArrays a = arrays_of(*layer);
   const std::array<std::int64_t, 4> projected = probe_projection();
-  const std::array<std::uint64_t, 21> parts = {
+  const LabelAnchors anchors(*layer, LabelParts::all);
+  const std::array<std::uint64_t, 22> parts = {
       kReadingVersion,
       checksum_of(a.vertices),
       checksum_of(a.edges),
@@ -117,6 +119,7 @@ std::uint64_t build_fingerprint(const LayerOptions& options) {
       checksum_of(a.units.groups),
       checksum_of(a.units.members),
       checksum_of(a.units.overlaps),
+      checksum_of(anchors.all()),
       checksum_of(std::span<const std::int64_t>(projected))};
   return checksum_of(std::span<const std::uint64_t>(parts));
 }

@@ -1,11 +1,15 @@
 #include "core/io/prepared/prepared_layer.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,9 +19,18 @@
 #include "core/io/file/prepared_file.h"
 #include "core/io/prepared/build_fingerprint.h"
 #include "core/io/source/target_grid.h"
+#include "core/labels/label_anchors.h"
 #include "core/layer/layer_arrays.h"
 
 namespace trapeze {
+
+template <>
+inline constexpr bool kIsStorable<LabelAnchor> = sizeof(LabelAnchor) ==
+                                                 sizeof(LabelAnchor::row) +
+                                                     sizeof(LabelAnchor::place) +
+                                                     sizeof(LabelAnchor::depth) +
+                                                     sizeof(LabelAnchor::area);
+
 namespace {
 
 constexpr const char* kPrepareAgain = "; run `trapeze prepare` again";
@@ -255,6 +268,28 @@ void add_arrays(const LayerArrays& a, SectionWriter& out) {
   }
 }
 
+/// None of a part of a layer, as labels are of all of it.
+LabelAnchors label_anchors_of(const LoadedLayer& loaded) {
+  if (loaded.part) return {{}, LabelParts::all};
+  const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  return {*loaded.layer, LabelParts::all, threads};
+}
+
+std::span<const LabelAnchor> take_label_anchors(SectionReader& in, std::size_t features) {
+  const auto anchors = in.take<LabelAnchor>(SectionKind::label_anchors);
+  std::uint32_t row = 0;
+  for (const LabelAnchor& anchor : anchors) {
+    const bool is_sound = anchor.row >= row && anchor.row < features &&
+                          anchor.place.x >= kGridMin && anchor.place.x <= kGridMax &&
+                          anchor.place.y >= kGridMin && anchor.place.y <= kGridMax &&
+                          std::isfinite(anchor.depth) && anchor.depth > 0 &&
+                          std::isfinite(anchor.area) && anchor.area >= 0;
+    if (!is_sound) throw std::invalid_argument("a label has no place");
+    row = anchor.row;
+  }
+  return anchors;
+}
+
 void take_arrays(SectionReader& in, LayerArrays& a) {
   a.vertices = in.take<Point>(SectionKind::vertices);
   a.edges = in.take<MeshEdge>(SectionKind::edges);
@@ -287,7 +322,6 @@ void take_arrays(SectionReader& in, LayerArrays& a) {
     column.nulls = in.take<std::uint64_t>(SectionKind::nulls);
     column.texts = in.take<std::uint32_t>(SectionKind::texts);
   }
-  in.finish();
 }
 
 std::string text_of(double number) {
@@ -348,6 +382,8 @@ LoadedLayer layer_from_sections(SectionReader& sections, Description description
                                 std::shared_ptr<const void> memory) {
   take_arrays(sections, description.numbers);
   LoadedLayer loaded;
+  loaded.label_anchors = take_label_anchors(sections, description.numbers.cells.ids.size());
+  sections.finish();
   loaded.layer = layer_from(description.numbers, std::move(memory));
   loaded.report = std::move(description.report);
   loaded.report.prepared_from = std::move(description.source.path);
@@ -417,9 +453,11 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
   }
   const LayerArrays arrays = arrays_of(*loaded.layer);
   const ByteWriter description = written(arrays, revision, source, loaded);
+  const LabelAnchors anchors = label_anchors_of(loaded);
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
   add_arrays(arrays, sections);
+  sections.add(SectionKind::label_anchors, anchors.all());
   sections.write(path, fingerprint_on(grid, arrays.options));
 }
 

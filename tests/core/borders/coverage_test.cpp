@@ -160,7 +160,7 @@ TEST(Coverage, EveryRemovalLeavesTheMapOfTheFacesThatAreLeft) {
       regions += stack.last_removal() == Removal::region;
       ASSERT_EQ(check_graph(c.graph), "") << "after " << log.size() << " removals";
       expect_map_of_what_is_left(c.graph);
-      if (testing::Test::HasFailure()) FAIL() << "after " << log.size() << " removals";
+      if (::testing::Test::HasFailure()) FAIL() << "after " << log.size() << " removals";
     }
     EXPECT_EQ(c.graph.inside_nodes().size(), 0u) << "something never goes";
   }
@@ -271,7 +271,7 @@ TEST(CoverageInCommon, APlaceOfTwoFeaturesIsAFaceIfItIsWide) {
   // 2 x 10 cells: the mean width is 20 / 12.
   const BuiltCoverage wide(features_from_text(texts), 1.6);
   ASSERT_EQ(wide.outcome.faces.face_count(), 3u);
-  EXPECT_THAT(wide.outcome.faces.of(3), testing::ElementsAre(0, 1));
+  EXPECT_THAT(wide.outcome.faces.of(3), ::testing::ElementsAre(0, 1));
   EXPECT_EQ(wide.doubled_area(1), 200);
   EXPECT_EQ(wide.doubled_area(2), 160);
   EXPECT_EQ(wide.doubled_area(3), 40);
@@ -367,8 +367,9 @@ TEST(CoverageInCommon, LevelEdgesAreThereForThoseWhoseBoundaryTheyAre) {
     if (edge.lifespan.born > 0) continue;
     edges.emplace_back(history.vertices[history.edges[edge.edge].upper].y, edge.row);
   }
-  EXPECT_THAT(edges, testing::UnorderedElementsAre(testing::Pair(0, 0), testing::Pair(10, 0),
-                                                   testing::Pair(5, 1), testing::Pair(20, 1)));
+  EXPECT_THAT(edges,
+              ::testing::UnorderedElementsAre(::testing::Pair(0, 0), ::testing::Pair(10, 0),
+                                              ::testing::Pair(5, 1), ::testing::Pair(20, 1)));
 }
 
 /// A row of features, and the ends of a level edge of its boundary.

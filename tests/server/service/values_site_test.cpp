@@ -94,6 +94,48 @@ class ValuesSiteTest : public ::testing::Test {
   }
 };
 
+TEST_F(ValuesSiteTest, LabelsSayInALanguageWhatTheTableHasInIt) {
+  ValueTableConfig table;
+  table.file = folder_.write("names.csv",
+                             "code,name,name:de,name:cop\n"
+                             "C0,Vienna,Wien,\u2c83\nC1,Graz,,\nC2,Bregenz,Bregenz,\n");
+  table.languages = {"de", "cop"};
+  const auto layers = layers_of_files({folder_.write("columns.geojson", columns())});
+  sample_.data().set(Dataset::load(layers, sample_.data().get().get(), nullptr,
+                                   read_named_tables({{"names", table}})));
+  const std::string base = "/tiles/columns/0/0/0.png?values=names&label=value&label-size=8";
+  const auto tile = [&](const std::string& query) {
+    const auto response = sample_.get(base + query);
+    EXPECT_EQ(response.status, 200) << query << ": " << *response.body;
+    return decode_png(*response.body);
+  };
+  const Picture plain = tile("");
+  const Picture german = tile("&label-language=de");
+  const auto is_same = [&](const Picture& picture, int column) {
+    for (int y = 0; y < 256; ++y) {
+      for (int x = 256 / kColumns * column; x < 256 / kColumns * (column + 1); ++x) {
+        if (picture.at(x, y) != plain.at(x, y)) return false;
+      }
+    }
+    return true;
+  };
+  EXPECT_FALSE(is_same(german, 0)) << "Wien";
+  EXPECT_TRUE(is_same(german, 1)) << "Graz has no other name";
+  EXPECT_TRUE(is_same(german, 2));
+  EXPECT_TRUE(is_same(tile("&label-language=fr"), 0)) << "the table has no such language";
+  EXPECT_EQ(json("/catalog")["languages"], Json({"cop", "de"}));
+  EXPECT_EQ(json("/values")["tables"][0]["languages"], Json({"cop", "de"}));
+  EXPECT_THAT(words(base + "&label-language=german!", 400), HasSubstr("label-language"));
+
+  table.languages = {"nl"};
+  try {
+    read_named_tables({{"names", table}});
+    ADD_FAILURE() << "there is no column name:nl";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("name:nl"));
+  }
+}
+
 TEST_F(ValuesSiteTest, ColoursByPostedNumbers) {
   const std::string id = id_of("code,score\nC0,1\nC1,5\nC2,9\n");
   const std::string query =

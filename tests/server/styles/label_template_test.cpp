@@ -45,6 +45,25 @@ TEST_F(LabelTemplateTest, NullSaysNothing) {
   EXPECT_EQ(text("{name}!", 2), "") << "white space is nothing";
 }
 
+TEST_F(LabelTemplateTest, SaysInALanguageWhatIsKnownInIt) {
+  FeatureTable features({{"name", FieldType::text},
+                         {"name:de", FieldType::text},
+                         {"kind", FieldType::text},
+                         {"kind_de", FieldType::text},
+                         {"people", FieldType::integer}});
+  features.append(1, std::vector<Value>{"Vienna", "Wien", "city", "Stadt", std::int64_t{2}});
+  features.append(2, std::vector<Value>{"Graz", Value(), "city", " ", std::int64_t{1}});
+  const auto said = [&](const std::string& written, const char* language, std::uint32_t row) {
+    const auto bound = LabelTemplate::bind(written, features, language);
+    return bound->translation_of(features, nullptr, row, {});
+  };
+  EXPECT_EQ(said("name", "de", 0), "Wien");
+  EXPECT_EQ(said("{kind} {name}: {people}", "de", 0), "Stadt Wien: 2");
+  EXPECT_EQ(said("{kind} {name}", "de", 1), "city Graz") << "null and blanks say nothing";
+  EXPECT_EQ(said("{kind} {name}", "fr", 0), "city Vienna");
+  EXPECT_EQ(LabelTemplate::bind("name", features, "de")->text_of(features, 0, {}), "Vienna");
+}
+
 TEST_F(LabelTemplateTest, WhatIsLongEndsInAnEllipsis) {
   FeatureTable features({{"t", FieldType::text}});
   std::string umlauts;

@@ -201,6 +201,18 @@ TEST_F(PreparedLayerTest, OpensAsTheLayerThatWasSaved) {
   }
 }
 
+TEST_F(PreparedLayerTest, KnowsWhereLabelsGo) {
+  const LoadedLayer loaded = prepare(kMixed, prepared_, {});
+  EXPECT_TRUE(loaded.label_anchors.empty());
+  const LoadedLayer opened = open_prepared_layer(prepared_);
+  for (const LabelParts parts : {LabelParts::largest, LabelParts::all}) {
+    const LabelAnchors found(*loaded.layer, parts);
+    const LabelAnchors kept(opened.label_anchors, parts);
+    EXPECT_FALSE(found.all().empty());
+    EXPECT_TRUE(std::ranges::equal(found.all(), kept.all()));
+  }
+}
+
 TEST_F(PreparedLayerTest, KeepsTheReport) {
   const LoadReport loaded = prepare(kMixed, prepared_).report;
   const LoadReport opened = open_prepared_layer(prepared_).report;
