@@ -19,6 +19,7 @@
 
 #include "core/labels/label_anchors.h"
 #include "core/labels/label_placement.h"
+#include "server/config/load_config.h"
 #include "server/labels/label_book.h"
 #include "server/tiles/tile_plan.h"
 #include "server/tiles/tile_request.h"
@@ -251,7 +252,8 @@ Candidates candidates_of(const Layer& layer, const char* attribute) {
   const FeatureTable& features = layer.features();
   const int field = features.field_index(attribute);
   Candidates made;
-  for (const LabelAnchor& anchor : LabelAnchors(layer, LabelParts::largest).all()) {
+  const LabelAnchors anchors(layer, LabelParts::largest);
+  for (const LabelAnchor& anchor : anchors.all()) {
     const Value value = features.value(anchor.row, field);
     const auto* name = std::get_if<std::string_view>(&value);
     if (name != nullptr && !name->empty()) made.anchors.push_back(anchor);
