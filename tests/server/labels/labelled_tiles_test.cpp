@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "render/picture/png.h"
 #include "render/software/software_renderer.h"
 #include "server/labels/draw_labels.h"
 #include "server/tiles/tile_painter.h"
@@ -203,6 +204,51 @@ TEST_F(LabelledTilesTest, LabelsDoNotOverlap) {
         }
       }
     }
+  }
+}
+
+// The oracle of pictures holds for what lies around labels.
+TEST_F(LabelledTilesTest, AroundLabelsATileIsWhatItIsWithoutThem) {
+  TilePainter painter = testing::software_painter();
+  const auto paint = [&painter](const TilePlan& plan) {
+    const TilePainter::Job job{&plan};
+    return decode_png(*painter.paint({&job, 1}).front().value().bytes);
+  };
+  for (const std::string& style : kStyles) {
+    std::size_t around = 0;
+    std::size_t changed = 0;
+    for (const char* tile : {"4/8/7", "5/16/15", "6/33/31", "8/130/125"}) {
+      const std::string base = "land/" + std::string(tile) +
+                               "@2x.png?quality=exact&stroke=black&color-by=kind&" +
+                               "classes=a:red,*:beige";
+      const TilePlan labelled = plan_of(base + "&" + style);
+      const Picture plain = paint(plan_of(base));
+      const Picture picture = paint(labelled);
+      std::vector<bool> is_masked(picture.pixels.size());
+      for (const DrawnLabel& label : label_book()->find(
+               {*labelled.dataset, labelled.labels, labelled.view, labelled.scale})) {
+        const TextMask& mask = label.image->mask;
+        for (int row = 0; row < mask.height; ++row) {
+          for (int column = 0; column < mask.width; ++column) {
+            const int x = label.left + column;
+            const int y = label.top + row;
+            if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) continue;
+            const auto i = static_cast<std::size_t>(row * mask.width + column);
+            if (mask.halo[i] > 0) is_masked[static_cast<std::size_t>(y * picture.width + x)] = true;
+          }
+        }
+      }
+      for (std::size_t i = 0; i < is_masked.size(); ++i) {
+        const bool is_same = picture.pixels[i] == plain.pixels[i];
+        if (!is_masked[i]) {
+          EXPECT_TRUE(is_same) << style << " " << tile << " pixel " << i;
+        }
+        around += is_masked[i] ? 0U : 1U;
+        changed += is_same ? 0U : 1U;
+      }
+    }
+    EXPECT_GT(around, 100'000u);
+    EXPECT_GT(changed, 100u) << style;
   }
 }
 
