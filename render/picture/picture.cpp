@@ -56,7 +56,9 @@ RunPicture to_runs(const Picture& picture) {
 void recolour(std::span<const Run> runs, std::span<const std::uint32_t> row_end,
               std::span<const std::uint32_t> becomes, RunPicture& picture) {
   picture.runs.clear();
+  picture.runs.reserve(runs.size());
   picture.row_end.clear();
+  picture.row_end.reserve(row_end.size());
   std::size_t i = 0;
   for (const std::uint32_t end : row_end) {
     const std::size_t first = picture.runs.size();
@@ -75,9 +77,13 @@ void recolour(std::span<const Run> runs, std::span<const std::uint32_t> row_end,
 RunPicture joined(std::span<const RunPicture* const> pictures) {
   RunPicture all;
   all.width = pictures.front()->width;
+  std::size_t runs = 0;
+  for (const RunPicture* picture : pictures) runs += picture->runs.size();
+  all.runs.reserve(runs);
   ColourNumbers numbers;
+  std::vector<std::uint32_t> becomes;
   for (const RunPicture* picture : pictures) {
-    std::vector<std::uint32_t> becomes;
+    becomes.clear();
     for (std::size_t i = 0; i < picture->colours.size(); ++i) {
       becomes.push_back(numbers.number_of(picture->colours[i], picture->origins[i]));
     }

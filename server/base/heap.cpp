@@ -9,8 +9,9 @@ namespace {
 // would then lie among all else, and leave holes that stay. What is drawn is mostly smaller.
 constexpr int kLargeArray = 1 << 20;  // bytes
 // Once the above is set, this is no longer adapted either. It is room for what is drawn, which is
-// needed again at once.
-constexpr int kKeptAtTheEnd = 4 << 20;  // bytes
+// needed again at once: of a map that fills a screen, too, for which the kernel would otherwise
+// find and clear the same pages anew at every band.
+constexpr int kKeptAtTheEnd = 16 << 20;  // bytes
 
 }  // namespace
 

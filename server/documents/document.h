@@ -2,6 +2,7 @@
 // what comes out.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "render/text/fonts.h"
 #include "server/base/defaults.h"
+#include "server/base/limits.h"
 #include "server/base/url.h"
 #include "server/data/dataset.h"
 #include "server/styles/style_book.h"
@@ -27,6 +29,7 @@ struct DocumentRequest {
   std::vector<QueryPair> query;   // untrusted
   std::uint64_t map_pixels = defaults::kMapPixels;  // that a picture of a window may have
   const TileMatrixSets& sets = TileMatrixSets::built_in();
+  std::size_t max_layers = kMaxLayersPerTile;  // of one picture
 
   /// The value of the first pair of that name, or null.
   const std::string* find(std::string_view name) const {

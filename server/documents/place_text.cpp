@@ -22,6 +22,7 @@ Point cell_of(LonLat place) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text, double min, double max) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;

@@ -10,7 +10,8 @@
 
 namespace trapeze {
 
-/// The number that all of the text is, if it is one from `min` to `max`.
+/// The number that all of the text is, if it is one from `min` to `max`. A sign and an exponent may
+/// be written.
 std::optional<double> parse_number(std::string_view text, double min, double max);
 
 /// "longitude,latitude": the cell that holds the place; of those on the edge of the world the last.

@@ -11,7 +11,6 @@
 #include "core/grid/web_mercator.h"
 #include "render/mask/mask.h"
 #include "render/picture/webp.h"
-#include "server/base/limits.h"
 #include "server/base/nearest_name.h"
 #include "server/base/xml_text.h"
 #include "server/data/layer_summary.h"
@@ -81,7 +80,7 @@ class CapabilitiesWriter {
       xml_ += fmt::format(
           "    <LayerLimit>{0}</LayerLimit>\n    <MaxWidth>{1}</MaxWidth>\n"
           "    <MaxHeight>{1}</MaxHeight>\n",
-          kMaxLayersPerTile, std::min(side, kMaxPicturePixels));
+          request_.max_layers, std::min(side, kMaxPicturePixels));
     }
     xml_ += "  </Service>\n";
   }
@@ -121,7 +120,8 @@ class CapabilitiesWriter {
 
   void add_layers() {
     xml_ += "    <Layer>\n      <Title>Trapeze</Title>\n";
-    for (const MapSystemPtr& system : usual_map_systems()) {
+    for (const MapSystemPtr& system : map_systems_of(request_.dataset)) {
+      if (!is_for_all_layers(*system)) continue;
       add_system(system->name);
       if (system != web_mercator()) continue;
       for (const std::string& name : system->other_names) add_system(name);
@@ -134,6 +134,12 @@ class CapabilitiesWriter {
     for (const MapSystemPtr& system : usual_map_systems()) add_bounds_in(*system, all, "      ");
     for (const ServedLayer& served : request_.dataset.layers()) add_layer(served);
     xml_ += "    </Layer>\n";
+  }
+
+  bool is_for_all_layers(const MapSystem& system) const {
+    return std::ranges::all_of(request_.dataset.layers(), [&](const ServedLayer& served) {
+      return served_in(request_.dataset, served.config.name, system) != nullptr;
+    });
   }
 
   void add_system(std::string_view name) {
@@ -159,10 +165,17 @@ class CapabilitiesWriter {
                       indent, west, south, east, north);
   }
 
+  /// In degrees the same numbers as the geographic bounds.
+  static SystemBounds bounds_of(const Box& box, const MapSystem& system) {
+    if (!system.is_in_degrees) return system.bounds_of(box);
+    const auto [west, south, east, north] = bounds_in_degrees(box);
+    return {west, south, east, north};
+  }
+
   /// In the order of axes that GetMap of the version has.
   void add_bounds_in(const MapSystem& system, const Box& box, std::string_view indent) {
     const Box some = box.is_empty() ? Box{kGridMin, kGridMin, kGridMax, kGridMax} : box;
-    SystemBounds bounds = system.bounds_of(some);
+    SystemBounds bounds = bounds_of(some, system);
     if (is_new_ && system.is_north_first) {
       bounds = {bounds.south, bounds.west, bounds.north, bounds.east};
     }
@@ -183,7 +196,7 @@ class CapabilitiesWriter {
     // What all layers are drawn in stands above them.
     const auto systems = map_systems_of(request_.dataset, config.name);
     for (const MapSystemPtr& system : systems) {
-      if (!system->grid.empty()) add_system(system->name);
+      if (!is_for_all_layers(*system)) add_system(system->name);
     }
     add_bounds(served.layer->bounds(), "        ");
     for (const MapSystemPtr& system : systems) {

@@ -274,6 +274,11 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   }
   auto layers = layers_in(pairs, "LAYERS", request.dataset);
   if (!layers) return std::move(layers).problem();
+  // Each time that one is named counts, as for LayerLimit.
+  if (items_of(*pairs["LAYERS"]).size() > request.max_layers) {
+    return invalid("LAYERS", fmt::format("at most {} layers", request.max_layers),
+                   *pairs["LAYERS"]);
+  }
   const auto system = system_in(pairs, version_of(pairs), *layers, request.dataset);
   if (!system) return system.problem();
   const auto view = view_of(pairs, **system, version_of(pairs));

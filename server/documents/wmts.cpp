@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,6 +37,16 @@ constexpr std::string_view kIdentification =
   </ows:ServiceIdentification>
 )";
 
+constexpr std::string_view kGetCapabilities = "GetCapabilities";
+constexpr std::array<std::string_view, 3> kOperations = {kGetCapabilities, "GetTile",
+                                                         "GetFeatureInfo"};
+// Of GetCapabilities.
+constexpr std::string_view kFormats =
+    R"(      <ows:Parameter name="AcceptFormats">
+        <ows:AllowedValues><ows:Value>application/xml</ows:Value></ows:AllowedValues>
+      </ows:Parameter>
+)";
+
 std::string operation_xml(std::string_view name, const std::string& base_url) {
   return fmt::format(R"(    <ows:Operation name="{0}">
       <ows:DCP><ows:HTTP>
@@ -45,9 +56,9 @@ std::string operation_xml(std::string_view name, const std::string& base_url) {
           </ows:Constraint>
         </ows:Get>
       </ows:HTTP></ows:DCP>
-    </ows:Operation>
+{2}    </ows:Operation>
 )",
-                     name, xml_escape(base_url));
+                     name, xml_escape(base_url), name == kGetCapabilities ? kFormats : "");
 }
 
 std::string limits_xml(const ServedLayer& served, const TileMatrixSet& set) {
@@ -181,7 +192,7 @@ std::string capabilities_xml(const WmtsCapabilitiesRequest& sections,
   if (sections.identification) xml += kIdentification;
   if (sections.operations) {
     xml += "  <ows:OperationsMetadata>\n";
-    for (const char* operation : {"GetCapabilities", "GetTile", "GetFeatureInfo"}) {
+    for (const std::string_view operation : kOperations) {
       xml += operation_xml(operation, request.base_url);
     }
     xml += "  </ows:OperationsMetadata>\n";

@@ -28,19 +28,24 @@ constexpr std::array<std::string_view, 15> kKeys = {
     "Style",   "Format",  "TileMatrixSet", "TileMatrix",     "TileRow",  "TileCol",
     "I",       "J",       "InfoFormat",
 };
+constexpr std::string_view kOperations = "GetCapabilities, GetTile or GetFeatureInfo";
+constexpr std::string_view kSections =
+    "some of ServiceIdentification, ServiceProvider, OperationsMetadata, Contents, Themes, or All";
 
 Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
   if (const auto& versions = pairs["AcceptVersions"]; versions && !versions->empty()) {
     const auto accepted = split_list(*versions);
     if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
-      return ows_problem(400, ows::kVersionNegotiationFailed, "AcceptVersions",
+      // The standard wants no locator there.
+      return ows_problem(400, ows::kVersionNegotiationFailed, {},
                          fmt::format("This is WMTS {}, and no other version.", kWmtsVersion),
                          *versions);
     }
   }
   WmtsCapabilitiesRequest request;
   const auto& sections = pairs["Sections"];
-  if (!sections || sections->empty()) return WmtsRequest(request);
+  if (!sections) return WmtsRequest(request);
+  if (sections->empty()) return missing("Sections", kSections);
   request = {false, false, false};
   for (const std::string_view section : split_list(*sections)) {
     const bool is_all = is_equal(section, "All");
@@ -50,11 +55,7 @@ Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
     // Of these there is nothing to tell.
     const bool is_empty = is_equal(section, "ServiceProvider") || is_equal(section, "Themes");
     if (!is_all && !is_identification && !is_operations && !is_contents && !is_empty) {
-      return invalid(
-          "Sections",
-          "some of ServiceIdentification, ServiceProvider, OperationsMetadata, Contents, "
-          "Themes, or All",
-          *sections);
+      return invalid("Sections", kSections, *sections);
     }
     request.identification |= is_all || is_identification;
     request.operations |= is_all || is_operations;
@@ -280,7 +281,7 @@ Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
   if (auto problem = check(pairs, "Service", "WMTS")) return std::move(*problem);
   const auto& operation = pairs["Request"];
   if (!operation || operation->empty()) {
-    return missing("Request", "GetCapabilities, GetTile or GetFeatureInfo");
+    return missing("Request", kOperations);
   }
   if (is_equal(*operation, "GetCapabilities")) return capabilities_of(pairs);
   if (is_equal(*operation, "GetFeatureInfo")) return key_value_info(pairs, request);
@@ -289,8 +290,7 @@ Result<WmtsRequest> parse_key_values(const DocumentRequest& request) {
     if (!parts) return parts.problem();
     return as_request(tile_of(*parts, request));
   }
-  return ows_problem(501, ows::kOperationNotSupported, *operation,
-                     "Request takes GetCapabilities, GetTile or GetFeatureInfo.", *operation);
+  return invalid("Request", kOperations, *operation);
 }
 
 Problem nothing_here() {

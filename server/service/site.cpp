@@ -45,6 +45,8 @@ constexpr std::size_t kKnownFingerprintBytes = std::size_t{16} << 20;
 constexpr std::string_view kDocumentCaching = "no-cache";
 
 constexpr std::uint64_t kDocumentCost = 500'000;  // as drawing_cost() counts: 20 ms
+// The same of a picture after which a worker keeps no memory for the next one: about 100 MB.
+constexpr std::uint64_t kGiantTile = 4'000'000;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kMostToldPixels = 1 << 22;  // of a picture that tells what is wrong
 constexpr int kClientGone = 499;                    // as nginx logs it; there is nobody to read it
@@ -634,8 +636,9 @@ void Site::handle_document(const Documents& documents, const Target& target,
   std::string key =
       documents.may_be_kept ? fmt::format("{} {}", *base, request.target) : std::string();
   const DocumentRequest asked{
-      *dataset,         *styles_,          *options_.fonts,     *std::move(base),
-      std::move(*path), *std::move(query), options_.map_pixels, *options_.sets};
+      *dataset,           *styles_,          *options_.fonts,     *std::move(base),
+      std::move(*path),   *std::move(query), options_.map_pixels, *options_.sets,
+      options_.max_layers};
   if (auto picture = documents.find_picture ? documents.find_picture(asked) : std::nullopt) {
     Result<PictureRequest>& found = *picture;
     return found ? handle_picture(*std::move(found), request, respond)
@@ -797,6 +800,7 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
   if (cost > most) return respond(problem_response(too_dear(most)));
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
+  if (cost > kGiantTile) order.cost = TileService::Cost::giant;
   // The last answers come while the service ends, when this site may be gone.
   auto answer_with = [&cache = cache_, fingerprints = known_fingerprints_, key = order.key, respond,
                       head = TileHead{window.format, options_.cache_control},

@@ -92,6 +92,15 @@ Result<TilesRequest> parse_tile_json(std::string_view file, const StyledQuery& q
       TileJsonRequest{*std::move(layers), *std::move(style), stem->scale, *std::move(full)});
 }
 
+/// TileJSON cannot say of which set of matrices it is.
+Problem no_tile_json(const std::string& set) {
+  return {400, fmt::format(
+                   "TileJSON is about tiles of Web Mercator, at /tiles/{{layers}}.json. The tiles "
+                   "of {0} are at /tiles/{{layers}}/{0}/{{z}}/{{x}}/{{y}}.png; /wmts.xml and "
+                   "/ogc/collections/{{layer}}/map/tiles/{0} describe them.",
+                   set)};
+}
+
 bool has_style(std::span<const std::string> path) {
   if (path.size() < 3 || path[2] != "s") return false;
   return path.size() == 7 || path.size() == 8 || (path.size() == 4 && path[3].ends_with(kJson));
@@ -215,6 +224,11 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
   if (path->size() == 5 || path->size() == 6) return parse_tile(*path, *styled, sets);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
     return parse_tile_json(path->back(), *styled);
+  }
+  if (path->size() == 3 && path->back().ends_with(kJson)) {
+    std::string set = path->back();
+    set.resize(set.size() - kJson.size());
+    if (sets.find(set) != nullptr) return no_tile_json(set);
   }
   return Problem{404,
                  fmt::format("There is nothing here. Tiles are at {}, their description at {}.",

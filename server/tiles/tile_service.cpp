@@ -163,7 +163,7 @@ void TileService::work(TilePainter& painter) {
   while (take(most, work)) {
     if (work.bands != nullptr) {
       help(painter, work.bands);
-      if (work.bands->flight->order.cost == Cost::dear) painter.release_memory();
+      if (work.bands->flight->order.cost == Cost::giant) painter.release_memory();
     } else {
       draw(painter, work.flights);
     }
@@ -218,14 +218,14 @@ void TileService::draw(TilePainter& painter, const Flights& flights) {
     spdlog::error("tiles cannot be answered: {}", error.what());
     for (const auto& flight : flights) land(flight, {});
   }
-  const bool is_dear = flights.front()->order.cost == Cost::dear;
-  if (is_dear) {
+  const Cost cost = flights.front()->order.cost;
+  if (cost == Cost::giant) {
     painter.release_memory();
     return_free_memory();
   }
   const std::lock_guard lock(mutex_);
   drawing_ -= flights.size();
-  if (is_dear) {
+  if (cost != Cost::cheap) {
     --dear_drawing_;
     wake_.notify_one();
   }

@@ -82,7 +82,8 @@ class TileService {
   /// Whether who asks has the tile of that fingerprint already, and needs no bytes. Called from a
   /// worker with the service locked.
   using Holds = std::function<bool(const std::string& fingerprint)>;
-  enum class Cost { cheap, dear };
+  /// Those that are not cheap wait apart. The memory that a giant one took is given back at once.
+  enum class Cost { cheap, dear, giant };
 
   struct Order {
     TilePlan plan;
@@ -178,7 +179,7 @@ class TileService {
   /// Of up to so many flights; false when the service stops.
   bool take(std::size_t most, Work& work);
   bool may_take_dear() const;
-  Queue& queue_of(Cost cost) { return cost == Cost::dear ? dear_queue_ : queue_; }
+  Queue& queue_of(Cost cost) { return cost == Cost::cheap ? queue_ : dear_queue_; }
   /// How many of those that wait one worker should take, so that all workers have some.
   std::size_t share_of_queue() const;
   /// The three below are called with the mutex locked.

@@ -25,6 +25,7 @@ const TOLERANCE = 2; // of 255: WebGL multiplies by opacity and divides again
 const FOLDERS = {
   "/leaflet/": join(WEB, "node_modules", "leaflet", "dist"),
   "/ol/": join(HERE, "node_modules", "ol"),
+  "/proj4/": join(HERE, "node_modules", "proj4", "dist"),
   "/maplibre-gl/": join(HERE, "node_modules", "maplibre-gl", "dist"),
   "/pmtiles/": join(HERE, "node_modules", "pmtiles", "dist"),
   "/archives/": mkdtempSync(join(tmpdir(), "trapeze-archives-")),
@@ -34,9 +35,18 @@ const TYPES = {
   ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".mjs": "text/javascript",
 };
 
+const on_the_swiss_grid = (name, fill) => `
+[[layer]]
+name = "swiss_${name}"
+file = "${join(HERE, `${name}.geojson`)}"
+crs = ["EPSG:3857", "EPSG:2056"]
+style = { fill = "${fill}" }
+`;
+
 // WebGL without a GPU.
 const { browser, server } = await start_browser_and_server(
   ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  on_the_swiss_grid("land", "#d8c99b") + on_the_swiss_grid("lake", "#4f8fba"),
 );
 let pages;
 let nginx; // nothing where it is not installed
@@ -155,8 +165,11 @@ const WMTS = [
   /\/wmts\/lake\/default\/WebMercatorQuad\/5\/11\/16\.png$/,
 ];
 
+const WMS = [/\/wms\?(?=.*request=GetMap&)(?=.*layers=land%2Clake&)(?=.*crs=EPSG%3A3857)/i];
+
 const CLIENTS = [
   ["leaflet", "Leaflet, by the pattern of addresses", RED, XYZ],
+  ["leaflet_wms", "Leaflet, by WMS", RED, WMS],
   ["openlayers_xyz", "OpenLayers, by the pattern of addresses", RED, XYZ],
   ["openlayers_wmts", "OpenLayers, from WMTS capabilities", LAKE, WMTS],
   ["maplibre", "MapLibre GL JS, from TileJSON", RED, XYZ],
@@ -203,6 +216,40 @@ for (const [layer, place, colour] of [
       assert.match(url, /\/night\/|style=night/i);
       assert.equal(status, 200, url);
     }
+    await page.context().close();
+  });
+}
+
+for (const tiled of ["", "1"]) {
+  test(`OpenLayers with proj4 shows a map on the Swiss grid, ${tiled ? "in pieces" : "in one picture"}`, async () => {
+    const { page, seen } = await new_page(browser, { viewport: { width: SIZE, height: SIZE } });
+    const query = new URLSearchParams({ server: server.base, tiled });
+    await page.goto(`http://127.0.0.1:${pages.address().port}/openlayers_lv95.html?${query}`);
+    await page.waitForFunction(() => window.is_drawn, null, { timeout: 60_000 });
+    await save_screenshot(page, `client-openlayers-lv95${tiled ? "-in-pieces" : ""}`);
+    const shown = await pixels_of_screen(page);
+    for (const [lonlat, colour] of [
+      [[6.5, 46], RED], [[7.9, 46.9], RED], [[8.1, 46.9], LAND], [[7.9, 47.1], LAND],
+      [[10, 48.2], PAPER], [[9.5, 48.2], LAND], [[10.5, 48.2], LAND],
+    ]) {
+      const [x, y] = await page.evaluate((place) => window.pixel_of(place), lonlat);
+      const i = 4 * (y * SIZE + x);
+      assert.ok(is_colour(shown, i, colour), `${lonlat} at ${x}, ${y} is ${shown.slice(i, i + 3)}`);
+    }
+    const answer = await fetch(`${server.base}map/swiss_land,swiss_lake.png?crs=EPSG:2056` +
+      `&bbox=2404000,929000,2916000,1441000&width=${SIZE}&height=${SIZE}&swiss_lake.fill=ff0000`);
+    assert.equal(answer.status, 200);
+    const base64 = Buffer.from(await answer.arrayBuffer()).toString("base64");
+    const expected = await pixels_of_pictures(page, SIZE, [{ base64, x: 0, y: 0 }]);
+    let differing = 0;
+    for (let i = 0; i < expected.length; i += 4) {
+      if (!is_colour(shown, i, expected.slice(i, i + 3))) differing++;
+    }
+    // Pieces are cut at their borders, where colours of pixels may become one in each by itself.
+    assert.ok(differing <= 0.0005 * SIZE * SIZE, `${differing} pixels differ`);
+    assert.ok(seen.answers.some(({ url }) => /crs=EPSG%3A2056/i.test(url)));
+    assert.deepEqual(seen.answers.filter(({ status }) => status >= 400), []);
+    assert.deepEqual(seen.errors, []);
     await page.context().close();
   });
 }

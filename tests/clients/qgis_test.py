@@ -33,7 +33,7 @@ TOLERANCE = 2  # of 255: QGIS blends by other rounding
 MOST_DIFFERING = 0.0005  # of all pixels
 # Of WMTS, QGIS draws what lies within the bounds of the layer, whose edges it rounds to pixels: the map
 # is up to a pixel off, which is seen along borders.
-MOST_DIFFERING_OF_WMTS = 0.003
+MOST_DIFFERING_OF_WMTS = 0.008
 
 
 def tiles_of(pattern):

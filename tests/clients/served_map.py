@@ -60,12 +60,14 @@ def wait_until_ready(base, server):
 
 
 @contextmanager
-def served_map():
-    """The address of the server, and a folder that is removed with it."""
+def served_map(config_text=CONFIG, write_data=lambda folder: None):
+    """The address of the server, and a folder that is removed with it, whose name is {folder} in the text of the
+    configuration, and into which the data is written."""
     with tempfile.TemporaryDirectory(prefix="trapeze-clients-") as folder:
+        write_data(folder)
         config = os.path.join(folder, "trapeze.toml")
         with open(config, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(fixtures=FIXTURES))
+            file.write(config_text.format(fixtures=FIXTURES, folder=folder))
         port = free_port()
         with open(os.path.join(folder, "log"), "wb") as log:
             server = subprocess.Popen(

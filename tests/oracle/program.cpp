@@ -15,11 +15,24 @@ Program::Program(const std::vector<std::string>& files, CoverageMode coverage, M
   site_.data().set(Dataset::load(layers));
 }
 
+Program::Program(const std::vector<std::string>& files, const std::string& system) {
+  std::vector<LayerConfig> layers = layers_of_files(files);
+  for (LayerConfig& layer : layers) layer.crs = {"EPSG:3857", system};
+  site_.data().set(Dataset::load(layers));
+}
+
 Picture Program::tile(const std::vector<std::string>& layers, TileName name,
                       const std::string& query) {
   std::string list;
   for (const std::string& layer : layers) list += (list.empty() ? "" : ",") + layer;
-  const std::string target = "/tiles/" + list + "/" + path_of(name, map_) + ".png?" + query;
+  return picture("/tiles/" + list + "/" + path_of(name, map_) + ".png?" + query);
+}
+
+Picture Program::map(const std::string& target, const std::string& query) {
+  return picture("/map/" + target + "&" + query);
+}
+
+Picture Program::picture(const std::string& target) {
   const HttpResponse response = site_.get(target);
   EXPECT_EQ(response.status, 200) << target << (response.body ? *response.body : "");
   return response.status == 200 ? decode_png(*response.body) : Picture();

@@ -16,13 +16,19 @@ class Program {
  public:
   /// Serves the files as layers of their names, drawn in that map.
   Program(const std::vector<std::string>& files, CoverageMode coverage, Map map = Map::mercator);
+  /// Built for a reference system besides.
+  Program(const std::vector<std::string>& files, const std::string& system);
 
   /// Of layers, the lowest one first; empty, with a failure of the test, if there is none.
   Picture tile(const std::vector<std::string>& layers, TileName name, const std::string& query);
+  /// What stands between "/map/" and the style: "malta.png?crs=EPSG:4326&bbox=...".
+  Picture map(const std::string& target, const std::string& query);
 
  private:
+  Picture picture(const std::string& target);
+
   testing::SampleSite site_{false};
-  Map map_;
+  Map map_ = Map::mercator;
 };
 
 std::string text_of(TileName name);

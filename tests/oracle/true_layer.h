@@ -64,10 +64,27 @@ struct TrueLayer {
   std::vector<Place> vertices() const;
 };
 
+/// The plane of a reference system that PROJ knows, with the easting first, and what of it places
+/// are on: a square of it. Polygons that do not meet some degrees are left out; all others have to
+/// be on the plane.
+struct Plane {
+  std::string name;  // "EPSG:2056"
+  double west = 0;   // in units of the plane, as are the others
+  double north = 0;
+  double side = 1;
+  Bounds degrees = {};  // longitudes and latitudes
+  double within =
+      0;  // of a straight line on the plane, between points of an edge that is one in degrees
+};
+
 /// The first layer of a source in longitude and latitude; of its attributes those of that name.
 /// Throws std::runtime_error if it cannot be read.
 TrueLayer read_layer(const std::string& source, const std::string& attribute,
                      Map map = Map::mercator);
+
+/// The same on a plane. Throws std::runtime_error, too, if a place is not on it.
+TrueLayer read_layer_on(const Plane& plane, const std::string& source,
+                        const std::string& attribute);
 
 Place place_of_lonlat(double lon, double lat, Map map = Map::mercator);
 

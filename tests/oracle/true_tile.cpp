@@ -169,24 +169,23 @@ struct TrueTile::Scene {
   /// The features at a point, by layer.
   using Actives = std::vector<std::vector<std::uint32_t>>;
 
-  TileName name;
+  Window window;
   std::size_t layer_count;
   std::vector<Feature> features;          // those of one layer after those of the one below
   std::vector<std::uint32_t> feature_of;  // by part
   std::vector<Crossing> crossings;
 
-  double scale() const { return std::exp2(name.zoom) * kPixels * kPerPixel; }
+  double scale() const { return kPixels * kPerPixel / window.side; }
 
   Place to_points(Place p) const {
-    return {p.x * scale() - static_cast<double>(name.x) * kPixels * kPerPixel + kMargin,
-            p.y * scale() - static_cast<double>(name.y) * kPixels * kPerPixel + kMargin};
+    return {(p.x - window.corner.x) * scale() + kMargin,
+            (p.y - window.corner.y) * scale() + kMargin};
   }
 
   Bounds bounds() const {
-    const double side = std::exp2(-name.zoom);
-    const double margin = side * kMargin / (kPixels * kPerPixel);
-    return {name.x * side - margin, name.y * side - margin, (name.x + 1) * side + margin,
-            (name.y + 1) * side + margin};
+    const double margin = window.side * kMargin / (kPixels * kPerPixel);
+    return {window.corner.x - margin, window.corner.y - margin,
+            window.corner.x + window.side + margin, window.corner.y + window.side + margin};
   }
 
   template <typename Visit>
@@ -488,9 +487,17 @@ class TrueTile::Painting {
   std::vector<PixelSum> fills_at_;
 };
 
+Window window_of(TileName name) {
+  const double side = std::exp2(-name.zoom);
+  return {{name.x * side, name.y * side}, side};
+}
+
 TrueTile::TrueTile(std::span<const TrueLayer* const> layers, TileName name)
+    : TrueTile(layers, window_of(name)) {}
+
+TrueTile::TrueTile(std::span<const TrueLayer* const> layers, const Window& window)
     : scene_(std::make_unique<Scene>()) {
-  scene_->name = name;
+  scene_->window = window;
   scene_->layer_count = layers.size();
   const Bounds bounds = scene_->bounds();
   for (std::size_t layer = 0; layer < layers.size(); ++layer) {

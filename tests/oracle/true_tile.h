@@ -30,6 +30,13 @@ struct TileName {
   friend bool operator==(const TileName&, const TileName&) = default;
 };
 
+/// A square of the map, which a picture of kPixels x kPixels pixels shows.
+struct Window {
+  Place corner;  // the north-western one
+  double side = 1;
+};
+Window window_of(TileName name);
+
 /// From 0 to 1; not premultiplied.
 struct Colour {
   double r = 0;
@@ -77,10 +84,12 @@ struct Workspace {
   std::vector<std::vector<PixelSum>> sums;
 };
 
-/// The part of some layers, the lowest one first, that a tile shows. Refers to the layers.
+/// The part of some layers, the lowest one first, that a tile or another window shows. Refers to
+/// the layers.
 class TrueTile {
  public:
   TrueTile(std::span<const TrueLayer* const> layers, TileName name);
+  TrueTile(std::span<const TrueLayer* const> layers, const Window& window);
   ~TrueTile();
   TrueTile(TrueTile&&) noexcept;
 

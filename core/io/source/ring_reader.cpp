@@ -69,6 +69,22 @@ void unwrap_longitudes(PositionRing& ring) {
   ring.insert(ring.end(), {{around, first.y}, {around, pole}, {first.x, pole}});
 }
 
+constexpr double kNearSeam = 2e-5;      // degrees: two metres, to which sources round 180
+constexpr double kLeastSeamCut = 0.01;  // degrees: a kilometre; what is shorter may be a house
+
+// Sources cut at 180 degrees what goes on beyond, and have it rounded at times: 179.99999. Edges
+// that run along the cut are laid on it, so that both sides of it meet and it is known for a cut.
+void lay_cuts_on_seam(PositionRing& ring) {
+  const auto is_near = [](Position p) { return std::abs(std::abs(p.x) - 180) <= kNearSeam; };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Position& from = ring[i];
+    Position& to = ring[i + 1 == ring.size() ? 0 : i + 1];
+    const bool is_cut = is_near(from) && is_near(to) && (from.x > 0) == (to.x > 0) &&
+                        std::abs(to.y - from.y) >= kLeastSeamCut;
+    if (is_cut) from.x = to.x = std::copysign(180.0, from.x);
+  }
+}
+
 // Appends the ring rounded to cells, each coordinate to the nearest and halves to even, without
 // consecutive duplicates; nothing if the ring is empty. All positions lie in the world.
 void append_snapped(const PositionRing& ring, Rings& rings) {
@@ -282,6 +298,9 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& f
   ring_.clear();
   for (std::size_t i = begin; i < end; ++i) ring_.push_back({x_[i], y_[i]});
   if (crs_.kind == SourceCrs::Kind::projected) unwrap_longitudes(ring_);
+  const bool is_in_degrees =
+      crs_.kind != SourceCrs::Kind::projected && crs_.kind != SourceCrs::Kind::web_mercator;
+  if (is_in_degrees) lay_cuts_on_seam(ring_);
   if (grid_ != nullptr) return append_on_grid(feature);
   Rings& rings = feature.rings;
   project_ring();

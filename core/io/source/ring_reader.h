@@ -39,7 +39,8 @@ bool has_polygons(const OGRGeometry& geometry);
 /// Turns geometries of one CRS into rings: curves are linearised, collections taken apart, points
 /// and lines and the third dimension ignored; positions are projected, clipped to the Web Mercator
 /// square, and snapped to the nearest cell, without consecutive duplicates. What lies beyond the
-/// 180th meridian comes back in on the other side. Rings are neither sorted nor validated.
+/// 180th meridian comes back in on the other side, and edges of a kilometre and more that run
+/// within two metres of it are on it. Rings are neither sorted nor validated.
 ///
 /// On the grid of another system, rings are clipped to what that shows, and edges, which are
 /// straight in the source, are cut so finely that they stay where they are: see GridRings.

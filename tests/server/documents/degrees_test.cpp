@@ -114,8 +114,8 @@ TEST_F(DegreesTest, CapabilitiesOfWmsNameTheSystems) {
   for (
       const char* part :
       {"<CRS>EPSG:3857</CRS>", "<CRS>CRS:84</CRS>", "<CRS>EPSG:4326</CRS>",
-       R"(<BoundingBox CRS="EPSG:4326" minx="-66.51326044" miny="-90.00000000" maxx="66.51326044" maxy="90.00000000"/>)",
-       R"(<BoundingBox CRS="CRS:84" minx="-90.00000000" miny="-66.51326044" maxx="90.00000000" maxy="66.51326044"/>)"}) {
+       R"(<BoundingBox CRS="EPSG:4326" minx="-66.51326040" miny="-90.00000000" maxx="66.51326040" maxy="90.00000000"/>)",
+       R"(<BoundingBox CRS="CRS:84" minx="-90.00000000" miny="-66.51326040" maxx="90.00000000" maxy="66.51326040"/>)"}) {
     EXPECT_THAT(latest, HasSubstr(part));
   }
   const std::string old =
@@ -124,7 +124,7 @@ TEST_F(DegreesTest, CapabilitiesOfWmsNameTheSystems) {
   EXPECT_THAT(
       old,
       HasSubstr(
-          R"(<BoundingBox SRS="EPSG:4326" minx="-90.00000000" miny="-66.51326044" maxx="90.00000000")"));
+          R"(<BoundingBox SRS="EPSG:4326" minx="-90.00000000" miny="-66.51326040" maxx="90.00000000")"));
 }
 
 TEST_F(DegreesTest, OtherSystemsAreRefusedWithTheNamesOfThoseThatThereAre) {

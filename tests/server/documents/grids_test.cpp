@@ -162,7 +162,8 @@ TEST_F(GridsTest, FeaturesAreFoundWhereTheyAreDrawn) {
 }
 
 /// The pixels of a map around a place in degrees, with outlines.
-std::string map_around(const std::string& grid, double lon, double lat, double units) {
+std::string map_around(const std::string& grid, double lon, double lat, double units,
+                       const std::string& layer = "seam") {
   const auto target = find_target_grid(grid);
   GridTransform transform(*target);
   std::vector<double> x = {lon};
@@ -171,28 +172,118 @@ std::string map_around(const std::string& grid, double lon, double lat, double u
   const double east = target->middle_x + x[0] / target->cells_per_unit();
   const double north = target->middle_y - y[0] / target->cells_per_unit();
   return fmt::format(
-      "/map/seam.png?crs={}&bbox={},{},{},{}&width=200&height=200&stroke=000&"
+      "/map/{}.png?crs={}&bbox={},{},{},{}&width=200&height=200&stroke=000&"
       "stroke-width=3",
-      grid, east - units, north - units, east + units, north + units);
+      layer, grid, east - units, north - units, east + units, north + units);
+}
+
+/// Pixels that are not red.
+int others_in(const Picture& map) {
+  int others = 0;
+  for (const Rgba& pixel : map.pixels) others += pixel != Rgba{255, 0, 0, 255};
+  return others;
 }
 
 TEST_F(GridsTest, NoLineRunsAlongTheSeam) {
+  const std::string around = "&width=200&height=200&stroke=000&stroke-width=3";
   for (const std::string& target :
        {map_around("EPSG:32760", 180, -17, 20'000), map_around("EPSG:5042", 180, -89, 50'000),
-        map_around("EPSG:5042", 0, -90, 80'000)}) {
-    const Picture map = picture(target);
-    int others = 0;
-    for (int row = 0; row < 200; ++row) {
-      for (int column = 0; column < 200; ++column) {
-        others += map.at(column, row) != Rgba{255, 0, 0, 255};
-      }
-    }
-    EXPECT_EQ(others, 0) << target;
+        map_around("EPSG:5042", 0, -90, 80'000),
+        "/map/seam.png?crs=EPSG:4326&bbox=179.8,-17.2,180.2,-16.8" + around,
+        "/map/seam.png?crs=CRS:84&bbox=-180.2,-17.2,-179.8,-16.8" + around,
+        "/map/seam.png?crs=EPSG:3857&bbox=20017508,-1930000,20057508,-1890000" + around}) {
+    EXPECT_EQ(others_in(picture(target)), 0) << target;
   }
   const Picture shore = picture(map_around("EPSG:5042", 60, -88, 60'000));
   int lines = 0;
   for (int i = 0; i < 200; ++i) lines += shore.at(i, 100) == Rgba{0, 0, 0, 255};
   EXPECT_GT(lines, 0) << "there is no outline at all";
+}
+
+/// A cape in the east of Russia, in two pieces as sources have it.
+constexpr const char* kCape = R"({"type":"FeatureCollection","features":[
+{"type":"Feature","properties":{"name":"cape"},"geometry":{"type":"MultiPolygon","coordinates":
+[[[[170,62],[175,64],[180,65.2],[180,69],[171,70],[160,69],[170,62]]],
+[[[-180,65.2],[-176,65.5],[-170,66],[-175,68],[-180,69],[-180,65.2]]]]}}]})";
+
+TEST_F(GridsTest, WhatCrossesTheAntimeridianIsWholeInEqualAreas) {
+  layers_ = layers_of_files({file("cape.geojson", kCape)});
+  layers_[0].crs = {"EPSG:3857", "EPSG:3571"};
+  layers_[0].style = testing::style_of("fill=f00");
+  sample_.data().set(Dataset::load(layers_));
+  for (const double lat : {65.5, 66.5, 67.5, 68.7}) {
+    const std::string target = map_around("EPSG:3571", 180, lat, 10'000, "cape");
+    EXPECT_EQ(others_in(picture(target)), 0) << target;
+  }
+  // From one end of it to the other it is one piece, and there is sea around it.
+  for (double lon = 166; lon < 188; lon += 1) {
+    const Picture map = picture(map_around("EPSG:3571", lon, 67, 2'000, "cape"));
+    EXPECT_EQ(map.at(100, 100), (Rgba{255, 0, 0, 255})) << lon;
+  }
+  for (const double lat : {64.5, 69.7}) {
+    EXPECT_EQ(picture(map_around("EPSG:3571", 180, lat, 2'000, "cape")).at(100, 100).a, 0) << lat;
+  }
+}
+
+/// A tile of a set of config/tile_matrix_sets, in whose system a source has a square.
+struct Survey {
+  const char* file;
+  const char* set;
+  int code;
+  const char* matrix;
+  double west;  // of the matrix, as the set has it
+  double north;
+  double cell;
+  int column;
+  int row;
+};
+
+TEST_F(GridsTest, TilesOfTheSurveysOfOtherCountriesAreWhereTheyShouldBe) {
+  const std::vector<Survey> surveys = {
+      {"british_national_grid", "BritishNationalGrid", 27700, "7", -238375, 1376256, 7, 428, 667},
+      {"dutch_rd", "DutchRD", 28992, "9", -285401.92, 903401.92, 6.72, 256, 256},
+      {"german_utm32", "GermanUTM32", 25832, "9", -46133.17, 6301219.54, 9.55462853564703, 223,
+       286},
+  };
+  for (const Survey& survey : surveys) {
+    // From pixel 64 to 192 of the tile, in both directions.
+    const double west = survey.west + (survey.column * 256 + 64) * survey.cell;
+    const double north = survey.north - (survey.row * 256 + 64) * survey.cell;
+    const double east = west + 128 * survey.cell;
+    const double south = north - 128 * survey.cell;
+    const std::string source = folder_.file(std::string(survey.set) + ".geojson");
+    std::ofstream(source) << fmt::format(
+        R"({{"type":"FeatureCollection","crs":{{"type":"name","properties":)"
+        R"({{"name":"urn:ogc:def:crs:EPSG::{0}"}}}},"features":[{{"type":"Feature",)"
+        R"("properties":{{}},"geometry":{{"type":"Polygon","coordinates":[[[{1:.6f},{2:.6f}],)"
+        R"([{3:.6f},{2:.6f}],[{3:.6f},{4:.6f}],[{1:.6f},{4:.6f}],[{1:.6f},{2:.6f}]]]}}}}]}})",
+        survey.code, west, south, east, north);
+    layers_ = layers_of_files({source});
+    layers_[0].name = "square";
+    layers_[0].crs = {"EPSG:3857", fmt::format("EPSG:{}", survey.code)};
+    layers_[0].style = testing::style_of("fill=f00");
+    SiteOptions own = options();
+    own.sets = std::make_shared<const TileMatrixSets>(tile_matrix_sets_with(
+        {fmt::format("{}/tile_matrix_sets/{}.json", TRAPEZE_CONFIG_FOLDER, survey.file)}));
+    testing::SampleSite site(false, {}, own);
+    site.data().set(Dataset::load(layers_));
+    const std::string tile =
+        fmt::format("{}/{}/{}/{}", survey.set, survey.matrix, survey.column, survey.row);
+    const Picture map = testing::picture_of(site, "/tiles/square/" + tile + ".png?quality=exact");
+    ASSERT_EQ(map.width, 256) << tile;
+    for (int i = 0; i < 256; ++i) {
+      const bool is_within = i >= 64 && i < 192;
+      EXPECT_NEAR(map.at(i, 64).a, is_within ? 255 : 0, 1) << tile << " " << i;
+      EXPECT_NEAR(map.at(i, 191).a, is_within ? 255 : 0, 1) << tile << " " << i;
+      EXPECT_NEAR(map.at(64, i).a, is_within ? 255 : 0, 1) << tile << " " << i;
+      EXPECT_NEAR(map.at(191, i).a, is_within ? 255 : 0, 1) << tile << " " << i;
+      EXPECT_NEAR(map.at(i, 63).a, 0, 1) << tile << " " << i;
+      EXPECT_NEAR(map.at(i, 192).a, 0, 1) << tile << " " << i;
+    }
+    const std::string wmts = fmt::format("/wmts/square/default/{}/{}/{}/{}.png", survey.set,
+                                         survey.matrix, survey.row, survey.column);
+    EXPECT_EQ(*site.get(wmts).body, *site.get("/tiles/square/" + tile + ".png").body) << tile;
+  }
 }
 
 TEST_F(GridsTest, ReadingAgainKeepsWhatHasNotChanged) {

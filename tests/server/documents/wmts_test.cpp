@@ -78,7 +78,7 @@ TEST_F(WmtsTest, SectionsAreThoseThatAreAskedFor) {
   EXPECT_TRUE(has("OperationsMetadata,serviceidentification", "<ows:OperationsMetadata>"));
   EXPECT_TRUE(has("OperationsMetadata,serviceidentification", "<ows:ServiceIdentification>"));
   EXPECT_FALSE(has("OperationsMetadata,serviceidentification", "<Contents>"));
-  EXPECT_TRUE(has("", "<Contents>"));
+  EXPECT_TRUE(has("All", "<Contents>"));
   EXPECT_FALSE(has("Themes", "<Contents>"));
 }
 
@@ -182,10 +182,10 @@ TEST_F(WmtsTest, WhatIsWrongIsAnExceptionWithItsCodeAndItsParameter) {
       {"/wmts?service=WMTS", 400, "MissingParameterValue", "Request"},
       {"/wmts?request=GetCapabilities", 400, "MissingParameterValue", "Service"},
       {"/wmts?service=WMS&request=GetCapabilities", 400, "InvalidParameterValue", "Service"},
-      {"/wmts?service=WMTS&request=GetMap", 501, "OperationNotSupported", "GetMap"},
+      {"/wmts?service=WMTS&request=GetMap", 400, "InvalidParameterValue", "Request"},
       {capabilities + "&REQUEST=GetTile", 400, "InvalidParameterValue", "Request"},
-      {capabilities + "&AcceptVersions=0.9,2.0.0", 400, "VersionNegotiationFailed",
-       "AcceptVersions"},
+      {capabilities + "&AcceptVersions=0.9,2.0.0", 400, "VersionNegotiationFailed", ""},
+      {capabilities + "&Sections=", 400, "MissingParameterValue", "Sections"},
       {capabilities + "&Sections=Contents,Nothing", 400, "InvalidParameterValue", "Sections"},
       {without("&VERSION=1.0.0"), 400, "MissingParameterValue", "Version"},
       {without("&LAYER=rings"), 400, "MissingParameterValue", "Layer"},
@@ -267,10 +267,10 @@ TEST_F(WmtsTest, PixelsAndFormatsOfFeaturesAreChecked) {
 
 TEST_F(WmtsTest, WhatIsWrongIsEscapedAndCut) {
   const std::string body =
-      *sample_.get("/wmts?service=WMTS&request=%22%3E%3Cscript%3E" + std::string(500, 'x')).body;
+      *sample_.get(kTile + "&%22%3E%3Cscript%3E" + std::string(500, 'x') + ".fill=red").body;
   EXPECT_THAT(body, Not(HasSubstr("<script>")));
   EXPECT_THAT(body, HasSubstr("&lt;script&gt;"));
-  EXPECT_LT(body.size(), 900u);
+  EXPECT_LT(body.size(), 1800u) << "the locator is cut, so that the name stands there twice only";
 }
 
 TEST(WmtsLoadingTest, IsToldInItsOwnWords) {

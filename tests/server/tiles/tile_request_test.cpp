@@ -73,6 +73,16 @@ TEST(TileRequestTest, DescriptionsHaveTheirScaleAndKeepTheNameOfTheStyle) {
   }
 }
 
+TEST(TileRequestTest, TellsWhereTilesOfOtherSetsAreDescribed) {
+  const auto parsed =
+      parse_tiles_target(split_target("/tiles/a/WorldCRS84Quad.json").value(), StyleBook());
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.problem().status, 400);
+  EXPECT_THAT(parsed.problem().detail,
+              ::testing::HasSubstr("/ogc/collections/{layer}/map/tiles/WorldCRS84Quad"));
+  EXPECT_EQ(status_of("/tiles/a/NoSuchSet.json"), 404);
+}
+
 TEST(TileRequestTest, TakesTheCornersOfTheMatrixAndNothingBeyond) {
   EXPECT_EQ(status_of("/tiles/a/24/16777215/16777215.png"), 200);
   for (const char* tile : {"24/16777216/0", "24/0/16777216", "0/1/0", "0/0/1", "25/0/0", "3/8/0",

@@ -300,6 +300,20 @@ TEST(RingReaderTest, BringsWhatLiesBeyondTheAntimeridianInOnTheOtherSide) {
   EXPECT_EQ(read("POLYGON((-182 0,-179 0,-179 1,-182 1,-182 0))").rings.size(), 2u);
 }
 
+TEST(RingReaderTest, LaysCutsThatAreRoundedOnTheAntimeridian) {
+  const auto same = [](const char* text, const char* other) {
+    return std::ranges::equal(read(text).rings.points, read(other).rings.points);
+  };
+  const char* exact = "POLYGON((170 -80,180 -80,180 -70,170 -70,170 -80))";
+  EXPECT_TRUE(same("POLYGON((170 -80,179.99999 -80,180 -70,170 -70,170 -80))", exact));
+  EXPECT_TRUE(same("POLYGON((170 -80,179.99999 -80,179.999985 -70,170 -70,170 -80))", exact));
+  EXPECT_TRUE(same("POLYGON((170 -80,180.00001 -80,180 -70,170 -70,170 -80))", exact));
+  EXPECT_FALSE(same("POLYGON((170 -80,179.9999 -80,180 -70,170 -70,170 -80))", exact));
+  // A house beside the antimeridian stays where it is.
+  EXPECT_FALSE(same("POLYGON((179.9 0,179.99999 0,179.99999 0.005,179.9 0.005,179.9 0))",
+                    "POLYGON((179.9 0,180 0,180 0.005,179.9 0.005,179.9 0))"));
+}
+
 TEST(RingReaderTest, KeepsAProjectedRingAcrossTheAntimeridianTogether) {
   // In UTM zone 60 the antimeridian runs through x = 834 km at the equator.
   const FeatureRings feature =
