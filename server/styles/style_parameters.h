@@ -61,6 +61,7 @@ enum class ParameterId : std::uint8_t {
   ramp,
   simplify,
   small,
+  smooth,
   stroke,
   stroke_dasharray,
   stroke_linejoin,
