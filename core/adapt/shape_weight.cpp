@@ -74,13 +74,10 @@ double cost_of_vertex(Point p, Point v, Point q) {
   const double area = triangle_area(p, v, q);
   if (area == 0) return 0;
   const double squared_base = squared_length(p, q);
-  // The products below do not change when p and q change places, bit by bit.
-  const double to_p = squared_length(v, p);
-  const double to_q = squared_length(v, q);
   const double filter =
-      filter_of_flatness(area, squared_base) * filter_of_skewness(to_p, to_q, squared_base);
-  const double right = rightness(p, v, q, std::min(to_p, to_q), std::max(to_p, to_q));
-  return area * (filter + right * (kRight - filter));
+      filter_of_flatness(area, squared_base) *
+      filter_of_skewness(squared_length(v, p), squared_length(v, q), squared_base);
+  return area * (filter + rightness(p, v, q) * (kRight - filter));
 }
 
 // Where both angles are right, and the new edge neither follows the old ones nor is at right angles

@@ -180,6 +180,18 @@ TEST_F(CoveragePicturesTest, ClassesMixToOpaqueColours) {
   }
 }
 
+TEST_F(CoveragePicturesTest, RoundedCornersLeaveNoGap) {
+  for (const char* smooth : {"0.5", "3", "64"}) {
+    for (const char* simplify : {"0", "0.7", "2"}) {
+      const std::string query = std::string("&smooth=") + smooth + "&simplify=" + simplify;
+      EXPECT_EQ(alpha("plots", "fill=teal" + query), kOpaque) << query;
+      EXPECT_EQ(alpha("plots", kByKind + query), kOpaque) << query;
+    }
+  }
+  EXPECT_NE(tile("plots", "0/0/0", kByKind + "&smooth=3").pixels,
+            tile("plots", "0/0/0", kByKind).pixels);
+}
+
 TEST_F(CoveragePicturesTest, CrumbsKeepTheirColours) {
   // Twelve rows of twelve, of three kinds in turn: a third each, in every pixel more or less.
   const Picture picture = tile("plots", "0/0/0", kByKind + "&simplify=0.5");
@@ -272,9 +284,15 @@ TEST_F(CoveragePicturesTest, EveryFeatureHasItsTintInAllTiles) {
   }
 }
 
-TEST_F(CoveragePicturesTest, NeighbouringTilesAgree) {
+class NeighbouringTilesTest : public CoveragePicturesTest,
+                              public ::testing::WithParamInterface<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Looks, NeighbouringTilesTest,
+                         ::testing::Values("", "&smooth=10", "&smooth=10&stroke=black"));
+
+TEST_P(NeighbouringTilesTest, Agree) {
   // Of bounded quality, colours of small parts of a pixel may be others in each tile.
-  const std::string query = kByKind + "&simplify=1.3&quality=exact";
+  const std::string query = kByKind + "&simplify=1.3&quality=exact" + GetParam();
   const Picture whole = tile("plots", "0/0/0@2x", query);
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 2; ++x) {
