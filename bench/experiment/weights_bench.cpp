@@ -149,7 +149,7 @@ void print(const Figure& figure) {
 
 void print_head() {
   std::printf(
-      "area error %%, features gone, Hausdorff greatest px, mean px, right %% of corners, "
+      "Hausdorff greatest px, mean px, area error %%, features gone, right %% of corners, "
       "right %% of those before, tolerance px, vertices\n");
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/layer/layer_builder.h"
@@ -32,12 +34,51 @@ std::unique_ptr<Layer> layer_of_text(const std::string& text) {
   return layer_of({larger(rings_from_text(text))});
 }
 
-/// Parcels that share borders, as one coverage.
+/// Parcels that share borders, each of which bends four times, as one coverage.
 std::unique_ptr<Layer> parcels(unsigned seed) {
+  constexpr int kSide = 6;
+  constexpr int kSize = 400;
+  constexpr int kBends = 4;
   std::mt19937 random(seed);
+  const auto off = [&random](int most) {
+    return static_cast<int>(random() % (2 * most + 1)) - most;
+  };
+  std::map<std::pair<int, int>, Point> corner_at;
+  const auto corner = [&](int x, int y) {
+    const auto [found, is_new] = corner_at.try_emplace({x, y});
+    if (is_new) found->second = {x * kSize + off(50), y * kSize + off(50)};
+    return found->second;
+  };
+  // From west to east, or north to south, without its ends.
+  std::map<std::tuple<int, int, bool>, std::vector<Point>> border_at;
+  const auto border = [&](int x, int y, bool is_level) {
+    const auto [found, is_new] = border_at.try_emplace({x, y, is_level});
+    const Point from = corner(x, y);
+    const Point to = corner(x + (is_level ? 1 : 0), y + (is_level ? 0 : 1));
+    for (int i = 1; is_new && i <= kBends; ++i) {
+      found->second.push_back({from.x + (to.x - from.x) * i / (kBends + 1) + off(30),
+                               from.y + (to.y - from.y) * i / (kBends + 1) + off(30)});
+    }
+    return found->second;
+  };
   Map map;
-  add_block(random, {0, 0}, 6, map);
-  for (Rings& rings : map) rings = larger(rings);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      std::vector<Point> ring;
+      const auto add = [&ring](Point begin, std::vector<Point> bends, bool is_forward) {
+        if (!is_forward) std::ranges::reverse(bends);
+        ring.push_back(begin);
+        ring.insert(ring.end(), bends.begin(), bends.end());
+      };
+      add(corner(x, y), border(x, y, true), true);
+      add(corner(x + 1, y), border(x + 1, y, false), true);
+      add(corner(x + 1, y + 1), border(x, y + 1, true), false);
+      add(corner(x, y + 1), border(x, y, false), false);
+      Rings rings;
+      rings.add(ring);
+      map.push_back(larger(rings));
+    }
+  }
   LayerOptions options;
   options.coverage = CoverageMode::automatic;
   std::vector<LayerBuilder> builders;

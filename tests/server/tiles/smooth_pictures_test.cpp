@@ -8,8 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "render/make_renderer.h"
 #include "render/picture/png.h"
+#include "render/software/software_renderer.h"
 #include "server/service/site.h"
+#include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_request.h"
 #include "tests/core/shapes/layers.h"
 #include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
@@ -98,7 +102,8 @@ class SmoothPicturesTest : public ::testing::Test {
     // The second lies over the first, which keeps its corners.
     layers.push_back(
         layer("over", {rings_of(kStairs), rings_of({{{50, 50}, {70, 50}, {60, 70}}})}));
-    site_.data().set(std::make_shared<const Dataset>(std::move(layers)));
+    dataset_ = std::make_shared<const Dataset>(std::move(layers));
+    site_.data().set(dataset_);
   }
 
   static Rings rings_of(const std::vector<Ring>& shape) {
@@ -132,6 +137,7 @@ class SmoothPicturesTest : public ::testing::Test {
     return std::string(site_.get("/tiles/" + layer_and_tile + ".png?" + query).header("ETag"));
   }
 
+  std::shared_ptr<const Dataset> dataset_;
   testing::SampleSite site_{false};
 };
 
@@ -213,6 +219,27 @@ TEST_F(SmoothPicturesTest, ACornerBesideATileReachesIntoIt) {
   for (int row = 0; row < 256; ++row) {
     for (int column = 0; column < 256; ++column) {
       ASSERT_NEAR(smooth.at(column, row).a, whole.at(256 + column, row).a, 1);
+    }
+  }
+}
+
+TEST_F(SmoothPicturesTest, AreTheSameByGl) {
+  TilePainter software(std::make_unique<SoftwareRenderer>());
+  TilePainter gl(make_renderer({RendererKind::egl, {}}).renderer);
+  for (const char* target : {"stairs/0/0/0.png?quality=exact&smooth=9&simplify=0",
+                             "stairs/3/2/1.png?quality=exact&smooth=64&simplify=0"}) {
+    const auto parsed =
+        parse_tiles_target(split_target(std::string("/tiles/") + target).value(), StyleBook());
+    const TilePlan plan = *plan_tile(std::get<TileRequest>(*parsed), dataset_);
+    const auto paint = [&plan](TilePainter& painter) {
+      const TilePainter::Job job{&plan};
+      return decode_png(*painter.paint({&job, 1}).front()->bytes);
+    };
+    const Picture one = paint(software);
+    const Picture other = paint(gl);
+    ASSERT_EQ(one.pixels.size(), other.pixels.size());
+    for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+      ASSERT_NEAR(one.pixels[i].a, other.pixels[i].a, 2) << target;
     }
   }
 }
