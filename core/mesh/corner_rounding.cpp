@@ -8,8 +8,8 @@ namespace trapeze {
 namespace {
 
 // How far a chord may be from its curve, in pixels.
-constexpr double kMostOff = 0.1;
-constexpr int kMostHalves = 8;  // chords of each half of a curve, at most
+constexpr double kMostOff = 0.04;
+constexpr int kMostHalves = 12;  // chords of each half of a curve, at most
 
 // Triangles of a smaller area, in pixels, are not worth it: of their third, which changes its face,
 // no pixel shows more than a 255th.
@@ -162,9 +162,14 @@ void CornerRounding::find_places() {
 }
 
 void CornerRounding::find(const Size& size) {
-  cell_side_ =
-      std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(size.radius * size.pixel)));
   unite_sides();
+  // About as long as the sides of triangles are in the mean: so few vertices are looked at for
+  // each.
+  double sides = 0;
+  for (const Edge& edge : edges_) {
+    sides += std::min(distance(edge.upper, edge.lower) / 2, size.radius * size.pixel);
+  }
+  cell_side_ = 1 + static_cast<std::int64_t>(sides / static_cast<double>(edges_.size() + 1));
   find_places();
   for (std::size_t i = 0; i < ends_.size();) {
     std::size_t end = i + 1;
