@@ -50,6 +50,8 @@ constexpr Style kStyles[] = {
     {"hatch", "pattern=hatch"},
     {"dots", "pattern=dots"},
     {"opacity", "opacity=0.5"},
+    {"smooth", "smooth=8"},
+    {"smooth_outline", "smooth=8&stroke=black"},
     {"labels", "label=type"},
     {"labels_and_outline", "label=type&stroke=black"},
     // Without making colours fewer, which takes most of a tile of many edges.

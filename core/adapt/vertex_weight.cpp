@@ -28,6 +28,8 @@ std::span<const double> VertexWeights::weigh(std::span<const Point> ring, Weight
   weights_.assign(ring.size(), kInfinite);
   if (rule == WeightRule::effective_area) {
     weigh_by_area(ring, false);
+  } else if (rule == WeightRule::shape) {
+    shape_.weigh(ring, ShapeWeights::Line::ring, weights_);
   } else {
     weigh_by_distance(ring, rule == WeightRule::raised_parents);
   }
@@ -38,6 +40,8 @@ std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, Wei
   weights_.assign(arc.size(), kInfinite);
   if (rule == WeightRule::effective_area) {
     weigh_by_area(arc, true);
+  } else if (rule == WeightRule::shape) {
+    shape_.weigh(arc, ShapeWeights::Line::arc, weights_);
   } else {
     farthest_.assign(arc);
     pieces_.assign(1, {0, arc.size() - 1, kNone});

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/adapt/farthest_vertex.h"
+#include "core/adapt/shape_weight.h"
 #include "core/grid/grid.h"
 #include "core/grid/name_table.h"
 
@@ -30,12 +31,16 @@ enum class WeightRule : std::uint8_t {
   /// Visvalingam-Whyatt: the square root of the area of the triangle with the neighbours that are
   /// left, never less than that of a vertex removed before.
   effective_area,
+  /// Effective area weighed by shape: flat corners go first, right angles last, and both ends of an
+  /// edge go together where that changes less than one of them by itself. See shape_weight.h.
+  shape,
 };
 
-inline constexpr NameTable<WeightRule, 3> kWeightNames({
+inline constexpr NameTable<WeightRule, 4> kWeightNames({
     {"douglas-peucker", WeightRule::douglas_peucker},
     {"raised-parents", WeightRule::raised_parents},
     {"effective-area", WeightRule::effective_area},
+    {"shape", WeightRule::shape},
 });
 
 /// Reusable memory for weighing rings.
@@ -68,6 +73,7 @@ class VertexWeights {
     std::size_t parent;
   };
   FarthestVertex farthest_;
+  ShapeWeights shape_;
   std::vector<double> weights_;
   std::vector<Piece> pieces_;
   std::vector<std::pair<std::size_t, std::size_t>> splits_;  // vertex and its parent, parents first

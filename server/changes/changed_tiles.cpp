@@ -181,8 +181,7 @@ class Comparison {
         const bool is_reclassed = has_other_classes(name_of(*plan, paint), before, after);
         const LayerChanges* changes = is_reclassed ? &everywhere : changes_of(*plan, paint);
         if (changes == nullptr) continue;
-        const Stroke& stroke = paint.style.stroke;
-        const double reach = (stroke.width > 0 ? stroke.reach(plan->scale) : 0) + kReachOfDust;
+        const double reach = paint.style.reach(plan->scale) + kReachOfDust;
         const TileDrawing drawing{zoom, paint.level, plan->pixel_level(),
                                   reach * plan->view.cells_per_pixel};
         const std::pair each(changes, drawing);

@@ -146,9 +146,9 @@ LevelSpanSelection KnownTiles::selection_of(const Drawn& drawn, const TileId& ti
     const View& view = plan.view;
     const Layer::Selection of_zoom = trapeze::selection_of(plan, *paint, view);
     const Stroke& stroke = paint->style.stroke;
-    const double lines = stroke.width > 0 ? stroke.reach(plan.scale) * view.cells_per_pixel : 0;
-    reach = std::max(reach, lines);
-    reach_of_dust = std::max(reach_of_dust, lines + kReachOfDust * view.cells_per_pixel);
+    const double around = paint->style.reach(plan.scale) * view.cells_per_pixel;
+    reach = std::max(reach, around);
+    reach_of_dust = std::max(reach_of_dust, around + kReachOfDust * view.cells_per_pixel);
     const Level resolution = std::min(of_zoom.level, of_zoom.pixel_level);
     const GrainIndex::Births births = births_of_dust(*paint, of_zoom);
     selection.has_edges = stroke.width > 0;
@@ -285,7 +285,7 @@ KnownTiles::Seen KnownTiles::find_seen(const Drawn& drawn, const LevelSpan& span
   const bool has_lines = paint.style.stroke.width > 0;
   if (paint.style.pattern.kind != PatternKind::none) return Seen::something;
   if (!is_filled && !has_lines) return Seen::nothing;
-  const double reach = has_lines ? paint.style.stroke.reach(plan.scale) * view.cells_per_pixel : 0;
+  const double reach = paint.style.reach(plan.scale) * view.cells_per_pixel;
   if (!cover_box(layer.mesh(), ranges_, widened(tile, reach))) return Seen::something;
   return is_filled ? Seen::one_colour : Seen::nothing;
 }

@@ -285,6 +285,14 @@ constexpr std::array kParameters = {
                    .description =
                        "polygons too small for the tolerance: dust keeps their area as a tint, "
                        "keep draws each at least a pixel large, drop leaves them out"},
+    StyleParameter{.id = ParameterId::smooth,
+                   .name = "smooth",
+                   .type = Type::number,
+                   .max = 64,
+                   .default_text = "0",
+                   .description = "how far from its corners the drawn boundary is rounded, in "
+                                  "pixels, and at most to the middle of each edge; 0 leaves them "
+                                  "sharp"},
     StyleParameter{.id = ParameterId::stroke,
                    .name = "stroke",
                    .type = Type::colour,

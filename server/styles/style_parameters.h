@@ -62,6 +62,7 @@ enum class ParameterId : std::uint8_t {
   ramp,
   simplify,
   small,
+  smooth,
   stroke,
   stroke_dasharray,
   stroke_linejoin,

@@ -126,6 +126,7 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   std::uint64_t cost = trapezoids + shapes + masks * (pixels_of(view) / kPixelsPerSide);
   cost += cost_of_cuts(amounts, paint.style);
   if (view.projection == Projection::plate_carree) cost += shapes * kSidesPerProjectedTrapezoid;
+  if (paint.style.smooth > 0) cost += trapezoids * kSidesPerRoundedTrapezoid;
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + amounts.horizontal_edges;

@@ -17,6 +17,7 @@ namespace trapeze {
 constexpr std::uint64_t kPixelsPerSide = 16;
 constexpr std::uint64_t kSidesPerOutlineEdge = 4;
 constexpr std::uint64_t kSidesPerDashedEdge = 8;
+constexpr std::uint64_t kSidesPerRoundedTrapezoid = 40;  // of its corners, sides of new trapezoids
 constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // of debug=mesh and the like

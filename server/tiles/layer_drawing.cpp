@@ -151,6 +151,11 @@ void LayerDrawing::ClassDrawing::add_patch(const ClassPatch& patch) {
   }
 }
 
+void LayerDrawing::ClassDrawing::add_corner(const CornerRounding& corners,
+                                            const CornerRounding::Corner& corner, bool is_hole) {
+  corners.append_place(corner, is_hole, made_vertices, made_edges, made_trapezoids);
+}
+
 void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidPart& part) {
   const auto v = static_cast<std::uint32_t>(made_vertices.size());
   const auto e = static_cast<std::uint32_t>(made_edges.size());
@@ -191,8 +196,7 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
 }
 
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
-  const Stroke& stroke = paint.style.stroke;
-  const double reach = stroke.width > 0 ? stroke.reach(plan.scale) : 0;  // pixels
+  const double reach = paint.style.reach(plan.scale);  // pixels
   const Box box = view.projection == Projection::plate_carree
                       ? view.box_around(reach)
                       : with_margin(view.box(), reach * view.longer_side());
@@ -223,10 +227,13 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   if (has_lines() && is_projected()) {
     tools.plate_carree.begin(view.cells_per_row(), selection.box);
   }
+  if (has_round_corners()) round_corners(plan.scale, pieces, selection, tools);
   tools.dust.begin(tools.shapes);
+  piece_number_ = 0;
   for (const DrawnPiece& piece : pieces) {
     check();
     add_piece(piece, selection, ink ? &*ink : nullptr, tools);
+    ++piece_number_;
   }
   tools.dust.finish(view_.shorter_side(), tools.shapes);
   add_shapes(tools);
@@ -250,6 +257,65 @@ void LayerDrawing::add_piece(const DrawnPiece& piece, const Layer::Selection& se
   add_places(selection, classes, tools);
   if (ink != nullptr) collect_edges(selection, *ink, classes, tools);
   for (std::size_t i = 0; i < class_count_; ++i) classes_[i].end_piece(*layer_);
+}
+
+// All features count, also those that are not drawn: which are must not matter to the shape of
+// others. What lies over something else is drawn as far as it is seen, and stays as it is.
+void LayerDrawing::find_corners(double scale, std::span<const DrawnPiece> pieces,
+                                const Layer::Selection& selection, DrawingTools& tools) const {
+  Layer::Selection polygons = selection;
+  polygons.small = SmallPolygons::drop;
+  CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
+  tools.corners.begin();
+  for (const DrawnPiece& piece : pieces) {
+    const Layer& layer = *piece.layer;
+    const MeshView& mesh = layer.mesh();
+    tools.corners.begin_piece(mesh);
+    const auto is_sharp = [&](std::uint32_t row) { return !layer.overlaps().of(row).empty(); };
+    const auto is_cut = [&](std::uint32_t edge) {
+      return view_.projection != Projection::plane &&
+             is_on_frame(mesh.vertices[mesh.edges[edge].upper],
+                         mesh.vertices[mesh.edges[edge].lower]);
+    };
+    layer.select(polygons, tools.ranges);
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      check();
+      const MeshTrapezoid& trapezoid = mesh.trapezoids[i];
+      const std::uint32_t row = layer.feature_of(i);
+      tools.corners.add(trapezoid, row, is_sharp(row));
+      for (const std::uint32_t edge : {trapezoid.left, trapezoid.right}) {
+        if (is_cut(edge)) tools.corners.add_edge(edge, true);
+      }
+    });
+    layer.select_horizontal_edges(polygons.box, polygons.level, tools.ranges);
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      const std::uint32_t edge = mesh.trapezoids[i].left;
+      tools.corners.add_edge(edge, is_sharp(layer.feature_of(i)) || is_cut(edge));
+    });
+  }
+  tools.corners.find({style().smooth * scale, view_.shorter_side()});
+}
+
+// Where both sides of a border are drawn alike, it does not show in the areas.
+void LayerDrawing::round_corners(double scale, std::span<const DrawnPiece> pieces,
+                                 const Layer::Selection& selection, DrawingTools& tools) {
+  find_corners(scale, pieces, selection, tools);
+  const Box box = view_.box();
+  for (const CornerRounding::Corner& corner : tools.corners.corners()) {
+    Box around;
+    around.include(corner.tip);
+    for (const Point p : tools.corners.points_of(corner)) around.include(p);
+    if (!around.intersects(box)) continue;
+    const FeatureClasses* classes = pieces[corner.piece].classes.get();
+    const auto class_of = [classes](std::uint32_t row) {
+      return row == CornerRounding::kNoFace ? kNotDrawn : number_of(classes, row);
+    };
+    const std::uint8_t inside = class_of(corner.inside);
+    const std::uint8_t outside = class_of(corner.outside);
+    if (inside == outside) continue;
+    if (inside != kNotDrawn) class_drawing(inside).add_corner(tools.corners, corner, true);
+    if (outside != kNotDrawn) class_drawing(outside).add_corner(tools.corners, corner, false);
+  }
 }
 
 LayerDrawing::ClassDrawing& LayerDrawing::new_drawing(std::uint8_t number) {
@@ -536,6 +602,10 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
     if (!take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
       continue;
     }
+    if (has_round_corners()) {
+      trace_side(line, side, lines, tools);
+      continue;
+    }
     if (is_projected()) {
       project_side(line, lines, tools);
       continue;
@@ -589,6 +659,30 @@ void LayerDrawing::project_side(const OutlineEdge& line, Lines& lines, DrawingTo
   append_way(line, length_between(from, to), first, last, tools.way, lines.points, lines.edges);
 }
 
+// With the halves of the curves at both ends, where it meets the other edge that is rounded there.
+void LayerDrawing::trace_side(const OutlineEdge& line, std::uint32_t edge, Lines& lines,
+                              DrawingTools& tools) const {
+  using PointOnWay = PlateCarreeMesh::PointOnWay;
+  const MeshView& mesh = layer_->mesh();
+  const double length = length_between(mesh.vertices[line.from], mesh.vertices[line.to]);
+  const auto append = [&](std::span<const PointOnWay> way) {
+    if (way.size() < 2) return;
+    const auto first = static_cast<std::uint32_t>(lines.points.size());
+    lines.points.insert(lines.points.end(), {way.front().place, way.back().place});
+    append_way(line, length, first, first + 1, way, lines.points, lines.edges);
+  };
+  std::vector<PointOnWay>& way = tools.rounded_way;
+  tools.corners.trace(piece_number_, mesh, edge, way);
+  if (!is_projected()) return append(way);
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double from = way[i - 1].share;
+    const double all = way[i].share - from;
+    tools.plate_carree.cut(way[i - 1].place, way[i].place, tools.way);
+    for (PointOnWay& point : tools.way) point.share = from + point.share * all;
+    append(tools.way);
+  }
+}
+
 void LayerDrawing::project_seen(const OutlineEdge& line, const SeenEdge& seen, Lines& lines,
                                 DrawingTools& tools) const {
   tools.plate_carree.cut(seen.from, seen.to, tools.way);
@@ -628,7 +722,7 @@ void LayerDrawing::append_way(const OutlineEdge& line, double length, std::uint3
 }
 
 std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
-  const bool has_own = has_pieces_ || is_projected();
+  const bool has_own = has_pieces_ || is_projected() || has_round_corners();
   return has_own ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
 }
 

@@ -18,6 +18,7 @@
 #include "core/layer/class_dust.h"
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
+#include "core/mesh/corner_rounding.h"
 #include "core/mesh/plate_carree_mesh.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
@@ -56,6 +57,8 @@ struct DrawingTools {
   std::vector<Box> places;
   PlateCarreeMesh plate_carree;  // for outlines
   std::vector<PlateCarreeMesh::PointOnWay> way;
+  CornerRounding corners;  // of styles that round them
+  std::vector<PlateCarreeMesh::PointOnWay> rounded_way;
 };
 
 /// A layer, or a part of one, with the classes of its features: null if all are drawn alike.
@@ -152,6 +155,8 @@ class LayerDrawing {
     void end_piece(const Layer& layer);
     void add_place(const Box& place, bool is_hole);
     void add_patch(const ClassPatch& patch);
+    void add_corner(const CornerRounding& corners, const CornerRounding::Corner& corner,
+                    bool is_hole);
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
     void project(const View& view);
   };
@@ -161,8 +166,8 @@ class LayerDrawing {
     // Edges of the mesh of the piece at hand, before they are taken once each.
     std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
-    // Of several pieces, and in plate carree, the edges are between points of their own, some of
-    // which are vertices; by the numbers of those of the piece at hand.
+    // Of several pieces, in plate carree, and with rounded corners, the edges are between points of
+    // their own, some of which are vertices; by the numbers of those of the piece at hand.
     std::vector<Point> points;
     std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
     // Of features that others lie over: what is seen of them, between points of its own.
@@ -186,11 +191,16 @@ class LayerDrawing {
   const ClassDrawing* only_class() const;
   const LayerStyle& style() const { return paint_->style; }
   bool is_projected() const { return view_.projection == Projection::plate_carree; }
+  bool has_round_corners() const { return style().smooth > 0; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
   // `ink` is null if no outlines are drawn.
   void add_piece(const DrawnPiece& piece, const Layer::Selection& selection, const InkOfLoops* ink,
                  DrawingTools& tools);
+  void round_corners(double scale, std::span<const DrawnPiece> pieces,
+                     const Layer::Selection& selection, DrawingTools& tools);
+  void find_corners(double scale, std::span<const DrawnPiece> pieces,
+                    const Layer::Selection& selection, DrawingTools& tools) const;
   Box pixel_around(const Box& box) const;
   void add_shapes(DrawingTools& tools);
   std::span<const Point> points_of(const Lines& lines) const;
@@ -230,6 +240,8 @@ class LayerDrawing {
   void take_sides(const Box& box, const InkOfLoops& ink, Lines& lines, DrawingTools& tools) const;
   void take_points(OutlineEdge& line, Lines& lines) const;
   void project_side(const OutlineEdge& line, Lines& lines, DrawingTools& tools) const;
+  void trace_side(const OutlineEdge& line, std::uint32_t edge, Lines& lines,
+                  DrawingTools& tools) const;
   void project_seen(const OutlineEdge& line, const SeenEdge& seen, Lines& lines,
                     DrawingTools& tools) const;
   void append_way(const OutlineEdge& line, double length, std::uint32_t first, std::uint32_t last,
@@ -238,7 +250,8 @@ class LayerDrawing {
 
   const LayerPaint* paint_ = nullptr;
   const Layer* layer_ = nullptr;  // the piece at hand; afterwards the only one
-  bool has_pieces_ = false;       // several of them
+  std::uint32_t piece_number_ = 0;
+  bool has_pieces_ = false;  // several of them
   View view_;
   bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them

@@ -528,6 +528,10 @@ void make_paints(Making& making) {
 
 }  // namespace
 
+double LayerStyle::reach(double scale) const {
+  return (stroke.width > 0 ? stroke.reach(scale) : 0) + 2 * smooth * scale;
+}
+
 bool LayerStyle::is_visible() const {
   if (opacity == 0) return false;
   if (pattern.kind != PatternKind::none && pattern.colour.a > 0) return true;
@@ -551,6 +555,7 @@ std::string LayerStyle::key() const {
     text += fmt::format("pattern {} {} {} {} {} ", static_cast<int>(pattern.kind),
                         to_hex(pattern.colour), pattern.size, pattern.angle, pattern.width);
   }
+  if (smooth > 0) text += fmt::format("smooth {} ", smooth);
   text += fmt::format("{}", opacity);
   if (label != nullptr) text += " label " + label->key();
   return text;
@@ -572,6 +577,7 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
   if (auto problem = make_selection(making)) return std::move(*problem);
   making.style.stroke = stroke_of(making.settings);
   making.style.pattern = pattern_of(making.settings);
+  making.style.smooth = making.settings.value_or(ParameterId::smooth, 0.0);
   making.style.opacity = making.settings.value_or(ParameterId::opacity, 1.0);
   making.style.units = making.settings.value_or(ParameterId::units, std::string());
   const auto* format = making.settings.find<NumberFormat>(ParameterId::label_format);

@@ -128,7 +128,7 @@ void check(std::uint8_t flags, std::string_view text, std::uint32_t hash) {
   const MemoryFile file(text);
   fuzzing::Operations operations;
   operations.generalization.topology = (flags & 1) != 0 ? Topology::fast : Topology::strict;
-  operations.generalization.weights = static_cast<WeightRule>((flags >> 1) % 3);
+  operations.generalization.weights = static_cast<WeightRule>((flags >> 1) % 4);
   operations.seed = flags;
   operations.greatest_tolerance = static_cast<double>(1 << 30);
   operations.checks = fuzzing::checks_of(hash / 2);

@@ -35,7 +35,7 @@ void check(const std::uint8_t* data, std::size_t size) {
   const int scale = (data[0] & 1) != 0 ? 32768 : 1;
   fuzzing::Operations operations;
   operations.generalization.topology = (data[0] & 2) != 0 ? Topology::fast : Topology::strict;
-  operations.generalization.weights = static_cast<WeightRule>((data[0] >> 2) % 3);
+  operations.generalization.weights = static_cast<WeightRule>((data[0] >> 2) % 4);
   operations.seed = data[1];
   operations.greatest_tolerance *= scale;
   operations.checks = fuzzing::checks_of(fuzzing::hash_of(data, size));

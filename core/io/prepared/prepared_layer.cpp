@@ -155,7 +155,7 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
 
 LayerArrays read_numbers(ByteReader& in) {
   LayerArrays numbers;
-  numbers.options.weights = take_enum(in, WeightRule::effective_area);
+  numbers.options.weights = take_enum(in, WeightRule::shape);
   numbers.options.topology = take_enum(in, Topology::fast);
   numbers.options.coverage = take_enum(in, CoverageMode::on);
   numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr WeightRule kAllRules[] = {WeightRule::douglas_peucker, WeightRule::raised_parents,
-                                    WeightRule::effective_area};
+                                    WeightRule::effective_area, WeightRule::shape};
 
 using Ring = std::vector<Point>;
 

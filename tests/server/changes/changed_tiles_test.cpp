@@ -122,7 +122,8 @@ INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
                                            "stroke=black&stroke-width=2&stroke-dasharray=5,3",
                                            "fill-opacity=0.5&small=keep&simplify=2",
                                            "filter=kind='wood'&simplify=0",
-                                           "highlight=3,50,60&pattern=dots"));
+                                           "highlight=3,50,60&pattern=dots",
+                                           "smooth=40&stroke=black&simplify=2"));
 
 TEST(ChangedTiles, OfTheSameDataAreNone) {
   EditedLand land(3);

@@ -26,6 +26,8 @@ const std::vector<std::string> kStyles = {
     "fill-opacity=0.5&stroke=black&stroke-width=4&stroke-linejoin=miter",
     "pattern=hatch&pattern-color=black",
     "simplify=4",
+    "smooth=60",
+    "smooth=9&simplify=2&stroke=black&stroke-width=5",
     "simplify=0",
     "simplify=6&small=keep",
     "background=cfe8ff",

@@ -148,12 +148,17 @@ class CoveragePicturesTest : public ::testing::Test {
     return testing::picture_of(site_, target);
   }
 
-  /// The least and the greatest alpha of pixels of the tile of zoom 0 within the plots.
-  std::pair<int, int> alpha(const std::string& layer, const std::string& query) {
+  /// The least and the greatest alpha of pixels of the tile of zoom 0 within the plots, without so
+  /// many columns and rows at each of their outer corners.
+  std::pair<int, int> alpha(const std::string& layer, const std::string& query, int corners = 0) {
     const Picture picture = tile(layer, "0/0/0", query);
     std::pair<int, int> range{255, 0};
     for (int row = static_cast<int>(kFrom); row < static_cast<int>(kTo); ++row) {
       for (int column = static_cast<int>(kFrom); column < static_cast<int>(kTo); ++column) {
+        const auto is_at_corner = [corners](int at) {
+          return at < kFrom + corners || at >= kTo - corners;
+        };
+        if (is_at_corner(column) && is_at_corner(row)) continue;
         const int a = picture.at(column, row).a;
         range = {std::min(range.first, a), std::max(range.second, a)};
       }
@@ -178,6 +183,18 @@ TEST_F(CoveragePicturesTest, ClassesMixToOpaqueColours) {
   for (const char* simplify : {"0", "0.25", "0.7", "1.3", "2"}) {
     EXPECT_EQ(alpha("plots", kByKind + "&simplify=" + simplify), kOpaque) << simplify;
   }
+}
+
+TEST_F(CoveragePicturesTest, RoundedCornersLeaveNoGap) {
+  for (const char* smooth : {"0.5", "3", "64"}) {
+    for (const char* simplify : {"0", "0.7", "2"}) {
+      const std::string query = std::string("&smooth=") + smooth + "&simplify=" + simplify;
+      EXPECT_EQ(alpha("plots", "fill=teal" + query, 12), kOpaque) << query;
+      EXPECT_EQ(alpha("plots", kByKind + query, 12), kOpaque) << query;
+    }
+  }
+  EXPECT_NE(tile("plots", "0/0/0", kByKind + "&smooth=3").pixels,
+            tile("plots", "0/0/0", kByKind).pixels);
 }
 
 TEST_F(CoveragePicturesTest, CrumbsKeepTheirColours) {
@@ -272,10 +289,24 @@ TEST_F(CoveragePicturesTest, EveryFeatureHasItsTintInAllTiles) {
   }
 }
 
-TEST_F(CoveragePicturesTest, NeighbouringTilesAgree) {
+/// The same look in tiles of zoom 1, and in one of zoom 0 and scale 2.
+struct Look {
+  const char* of_parts;
+  const char* of_whole;
+};
+class NeighbouringTilesTest : public CoveragePicturesTest,
+                              public ::testing::WithParamInterface<Look> {};
+
+INSTANTIATE_TEST_SUITE_P(Looks, NeighbouringTilesTest,
+                         ::testing::Values(Look{"", ""}, Look{"&smooth=10", "&smooth=5"},
+                                           Look{"&smooth=10&stroke=black&stroke-width=2",
+                                                "&smooth=5&stroke=black&stroke-width=1"}));
+
+TEST_P(NeighbouringTilesTest, Agree) {
   // Of bounded quality, colours of small parts of a pixel may be others in each tile.
-  const std::string query = kByKind + "&simplify=1.3&quality=exact";
-  const Picture whole = tile("plots", "0/0/0@2x", query);
+  const std::string common = kByKind + "&simplify=1.3&quality=exact";
+  const std::string query = common + GetParam().of_parts;
+  const Picture whole = tile("plots", "0/0/0@2x", common + GetParam().of_whole);
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 2; ++x) {
       const Picture part = tile("plots", "1/" + std::to_string(x) + "/" + std::to_string(y), query);

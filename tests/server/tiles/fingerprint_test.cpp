@@ -61,6 +61,8 @@ const std::vector<std::string> kStyles = {
     ".png?stroke=red&stroke-width=2&stroke-dasharray=5,3",
     ".png?pattern=hatch&pattern-color=black",
     ".png?filter=kind='wood'&small=keep",
+    ".png?color-by=kind&classes=field:tan,wood:green&smooth=12",
+    ".png?stroke=black&smooth=30&simplify=2",
     ".png?highlight=3,50&simplify=3",
     "@2x.png?simplify=0",
 };
