@@ -1,0 +1,192 @@
+#include "core/borders/merging.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "core/grid/disjoint_sets.h"
+#include "core/grid/tolerance.h"
+
+namespace trapeze {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr FaceId kNoPiece = kOutside;
+
+/// The face on the side of a wall that is not void.
+FaceId face_behind(const VoidMesh& mesh, const TrapezoidalGraph& graph, VoidMesh::HalfEdge wall) {
+  // The triangle lies to the right as one goes along: left of an edge that leads down.
+  const bool goes_down = is_above(mesh.corner(wall), mesh.corner(VoidMesh::next(wall)));
+  return graph.edge(mesh.edge_of(wall)).face[goes_down ? kRight : kLeft];
+}
+
+/// The class of the polygons at each vertex.
+std::vector<std::uint32_t> classes_at_vertices(const VoidMesh& mesh, const TrapezoidalGraph& graph,
+                                               std::span<const std::uint32_t> class_of_face) {
+  constexpr std::uint32_t kUnset = kMixedClass - 1;
+  std::vector<std::uint32_t> classes(mesh.vertex_count(), kUnset);
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    const std::uint32_t own = class_of_face[face_behind(mesh, graph, wall)];
+    for (const VoidMesh::HalfEdge h : {wall, VoidMesh::next(wall)}) {
+      std::uint32_t& known = classes[mesh.vertex(h).value];
+      known = known == kUnset || known == own ? own : kMixedClass;
+    }
+  }
+  return classes;
+}
+
+/// What a triangle bridges by itself.
+double own_distance(const VoidMesh& mesh, std::uint32_t triangle) {
+  double narrowest = kNever;
+  std::array<double, 3> sides{};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const VoidMesh::HalfEdge h = 3 * triangle + i;
+    sides[i] = mesh.length(h);
+    if (mesh.is_wall(h)) narrowest = std::min(narrowest, mesh.distance_across(h));
+  }
+  if (narrowest < kNever) return narrowest;
+  std::sort(sides.begin(), sides.end());
+  return sides[1];
+}
+
+/// Numbers the pieces from first_void on.
+class Pieces {
+ public:
+  Pieces(const VoidMesh& mesh, const std::vector<double>& distances, double ratio,
+         FaceId first_void) {
+    const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+    std::vector<int> levels(count, kLastLevel + 1);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (distances[t] <= kWidestBridge) levels[t] = level_above(distances[t] / ratio);
+    }
+    DisjointSets ties(count);
+    for (VoidMesh::HalfEdge h = 0; h < 3 * count; ++h) {
+      if (mesh.is_wall(h)) continue;
+      const std::uint32_t t = VoidMesh::triangle_of(h);
+      const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
+      if (levels[t] == levels[beyond]) ties.tie(t, beyond);
+    }
+    faces_.assign(count, kNoPiece);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (levels[t] > kLastLevel) continue;
+      FaceId& face = faces_[ties.find(t)];
+      if (face == kNoPiece) {
+        face = first_void + static_cast<FaceId>(due_.size());
+        due_.push_back(0);
+        firsts_.push_back(t);
+      }
+      faces_[t] = face;
+      double& due = due_[face - first_void];
+      due = std::max(due, distances[t] / ratio);
+    }
+  }
+
+  FaceId face_of(std::uint32_t triangle) const { return faces_[triangle]; }
+  const std::vector<double>& due() const { return due_; }
+  /// Of each: one of its triangles.
+  const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+
+ private:
+  std::vector<FaceId> faces_;  // by triangle
+  std::vector<double> due_;
+  std::vector<std::uint32_t> firsts_;
+};
+
+void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, DividedVoid& divided) {
+  if (is_above(a, b)) {
+    divided.segments.emplace_back(a, b);
+    divided.sides.emplace_back(right_of_ab, left_of_ab);  // what is right of one that goes down
+  } else {                                                // is on the left of the map
+    divided.segments.emplace_back(b, a);
+    divided.sides.emplace_back(left_of_ab, right_of_ab);
+  }
+}
+
+}  // namespace
+
+bool MergePlan::are_of_one_class(FaceId a, FaceId b) const {
+  return classes[a - 1] == classes[b - 1] && classes[a - 1] != kMixedClass;
+}
+
+// The largest set is what is left when everything else is taken away, from the greatest distance
+// down: a triangle goes at its own distance, or where a neighbour has gone and the side between
+// them is longer, at the smaller of the two.
+std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGraph& graph,
+                                      std::span<const std::uint32_t> class_of_face) {
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+  std::vector<double> distances(count);
+  std::vector<bool> is_known(count, false);
+  std::priority_queue<std::pair<double, std::uint32_t>> waiting;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const auto class_at = [&](std::uint32_t i) { return classes[mesh.vertex(3 * t + i).value]; };
+    const bool is_between_equals = !mesh.is_beyond(t) && class_at(0) != kMixedClass &&
+                                   class_at(0) == class_at(1) && class_at(0) == class_at(2);
+    distances[t] = is_between_equals ? own_distance(mesh, t) : kNever;
+    waiting.emplace(distances[t], t);
+  }
+  while (!waiting.empty()) {
+    const auto [distance, t] = waiting.top();
+    waiting.pop();
+    if (is_known[t]) continue;
+    is_known[t] = true;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const VoidMesh::HalfEdge h = 3 * t + i;
+      if (mesh.is_wall(h)) continue;
+      const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
+      if (is_known[beyond]) continue;
+      const double at_least = std::min(distance, mesh.length(h));
+      if (at_least <= distances[beyond]) continue;
+      distances[beyond] = at_least;
+      waiting.emplace(at_least, beyond);
+    }
+  }
+  return distances;
+}
+
+std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double ratio,
+                                       FaceId first_void,
+                                       std::span<const std::uint32_t> class_of_face) {
+  VoidMesh mesh(graph);
+  if (!mesh.has_failed()) mesh.divide_walls(kWidestBridge);
+  if (mesh.has_failed()) return std::nullopt;
+  const Pieces pieces(mesh, distances_to_fill(mesh, graph, class_of_face), ratio, first_void);
+  if (pieces.due().empty()) return std::nullopt;
+
+  DividedVoid divided;
+  for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+    const Edge& edge = graph.edge(EdgeId(i));
+    if (graph.is_frame(EdgeId(i)) || edge.face[kLeft] == kOutside ||
+        edge.face[kRight] == kOutside) {
+      continue;
+    }
+    divided.segments.emplace_back(graph.point(edge.end[kUp]), graph.point(edge.end[kDown]));
+    divided.sides.emplace_back(edge.face[kLeft], edge.face[kRight]);
+  }
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    add_segment(mesh.corner(wall), mesh.corner(VoidMesh::next(wall)),
+                pieces.face_of(VoidMesh::triangle_of(wall)), face_behind(mesh, graph, wall),
+                divided);
+  }
+  for (VoidMesh::HalfEdge h = 0; h < 3 * mesh.triangle_count(); ++h) {
+    if (mesh.is_wall(h) || mesh.twin(h) < h) continue;
+    const FaceId here = pieces.face_of(VoidMesh::triangle_of(h));
+    const FaceId beyond = pieces.face_of(VoidMesh::triangle_of(mesh.twin(h)));
+    if (here == beyond) continue;
+    add_segment(mesh.corner(h), mesh.corner(VoidMesh::next(h)), here, beyond, divided);
+  }
+
+  MergePlan& plan = divided.plan;
+  plan.ratio = ratio;
+  plan.first_void = first_void;
+  plan.due = pieces.due();
+  plan.classes.assign(class_of_face.begin() + 1, class_of_face.end());
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  for (const std::uint32_t t : pieces.firsts())
+    plan.classes.push_back(classes[mesh.vertex(3 * t).value]);
+  return divided;
+}
+
+}  // namespace trapeze
