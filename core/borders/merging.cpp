@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <queue>
 
 #include "core/grid/disjoint_sets.h"
@@ -15,11 +16,11 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr FaceId kNoPiece = kOutside;
 
-/// The face on the side of a wall that is not void.
+/// The face on the side of a wall that is not void. A piece of an edge may lead up where the edge
+/// leads down, as its ends are rounded.
 FaceId face_behind(const VoidMesh& mesh, const TrapezoidalGraph& graph, VoidMesh::HalfEdge wall) {
-  // The triangle lies to the right as one goes along: left of an edge that leads down.
-  const bool goes_down = is_above(mesh.corner(wall), mesh.corner(VoidMesh::next(wall)));
-  return graph.edge(mesh.edge_of(wall)).face[goes_down ? kRight : kLeft];
+  const Edge& edge = graph.edge(mesh.edge_of(wall));
+  return edge.face[kLeft] == kOutside ? edge.face[kRight] : edge.face[kLeft];
 }
 
 /// The class of the polygons at each vertex.
@@ -49,6 +50,41 @@ double own_distance(const VoidMesh& mesh, std::uint32_t triangle) {
   if (narrowest < kNever) return narrowest;
   std::sort(sides.begin(), sides.end());
   return sides[1];
+}
+
+/// The shortest sides that tie all polygons of a class together that are near enough, as a
+/// minimum spanning tree.
+std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
+                                                 const TrapezoidalGraph& graph,
+                                                 std::span<const std::uint32_t> class_of_face) {
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+  // Of vertices, and of the faces of the polygons.
+  DisjointSets ties(vertices + class_of_face.size());
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    for (const VoidMesh::HalfEdge h : {wall, VoidMesh::next(wall)}) {
+      ties.tie(mesh.vertex(h).value, vertices + face_behind(mesh, graph, wall));
+    }
+  }
+  std::vector<std::pair<double, VoidMesh::HalfEdge>> sides;
+  for (VoidMesh::HalfEdge h = 0; h < 3 * mesh.triangle_count(); ++h) {
+    if (mesh.is_wall(h) || mesh.twin(h) < h) continue;
+    const std::uint32_t a = mesh.vertex(h).value;
+    const std::uint32_t b = mesh.vertex(VoidMesh::next(h)).value;
+    if (a == 0 || b == 0 || classes[a] != classes[b] || classes[a] == kMixedClass) continue;
+    if (ties.find(a) != ties.find(b)) sides.emplace_back(mesh.length(h), h);
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<VoidMesh::HalfEdge> bridges;
+  for (const auto& [length, h] : sides) {
+    if (length > kWidestBridge) break;
+    const std::uint32_t a = ties.find(mesh.vertex(h).value);
+    const std::uint32_t b = ties.find(mesh.vertex(VoidMesh::next(h)).value);
+    if (a == b) continue;
+    ties.tie(a, b);
+    bridges.push_back(h);
+  }
+  return bridges;
 }
 
 /// Numbers the pieces from first_void on.
@@ -106,6 +142,14 @@ void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, Divide
 
 }  // namespace
 
+Box widened_for_blocks(const Box& box) {
+  constexpr auto kHalf = static_cast<std::int32_t>(kWidestBridge / 2) + 1;
+  if (box.is_empty()) return box;
+  return {
+      std::max(box.min_x, kGridMin + kHalf) - kHalf, std::max(box.min_y, kGridMin + kHalf) - kHalf,
+      std::min(box.max_x, kGridMax - kHalf) + kHalf, std::min(box.max_y, kGridMax - kHalf) + kHalf};
+}
+
 bool MergePlan::are_of_one_class(FaceId a, FaceId b) const {
   return classes[a - 1] == classes[b - 1] && classes[a - 1] != kMixedClass;
 }
@@ -146,11 +190,27 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
   return distances;
 }
 
+void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
+                              std::span<const std::uint32_t> class_of_face) {
+  constexpr int kMostPasses = 2;
+  mesh.divide_walls(kWidestBridge);
+  for (int pass = 0; pass < kMostPasses && !mesh.has_failed(); ++pass) {
+    const std::vector<double> distances = distances_to_fill(mesh, graph, class_of_face);
+    std::vector<VoidMesh::HalfEdge> bridges = shortest_bridges(mesh, graph, class_of_face);
+    std::erase_if(bridges, [&](VoidMesh::HalfEdge h) {
+      const double distance = std::min(distances[VoidMesh::triangle_of(h)],
+                                       distances[VoidMesh::triangle_of(mesh.twin(h))]);
+      return distance <= std::numbers::sqrt2 * mesh.length(h);
+    });
+    if (bridges.empty() || !mesh.divide_walls_beside(bridges)) return;
+  }
+}
+
 std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double ratio,
                                        FaceId first_void,
                                        std::span<const std::uint32_t> class_of_face) {
   VoidMesh mesh(graph);
-  if (!mesh.has_failed()) mesh.divide_walls(kWidestBridge);
+  if (!mesh.has_failed()) divide_walls_for_bridges(mesh, graph, class_of_face);
   if (mesh.has_failed()) return std::nullopt;
   const Pieces pieces(mesh, distances_to_fill(mesh, graph, class_of_face), ratio, first_void);
   if (pieces.due().empty()) return std::nullopt;

@@ -27,6 +27,9 @@ namespace trapeze {
 /// Nothing is bridged that is wider, in cells: four pixels at zoom 9, 1.2 km at the equator.
 constexpr double kWidestBridge = 65536;
 
+/// Two boxes of polygons that may become one block meet if they are widened so.
+Box widened_for_blocks(const Box& box);
+
 /// What becomes a block.
 struct Merging {
   /// The distance that is bridged, as a multiple of the tolerance; 0: none is.
@@ -50,6 +53,12 @@ struct MergePlan {
 };
 
 constexpr std::uint32_t kMixedClass = 0xffffffff;
+
+/// Divides the edges of polygons beside the void so that it can be filled between any two of them
+/// that are near each other: where they are nearest, at no more than the root of two times their
+/// distance, as a rule.
+void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
+                              std::span<const std::uint32_t> class_of_face);
 
 /// The distance of every triangle, in cells; infinite beyond the hull and where it is not between
 /// polygons of one class. `class_of_face` is by face, 0 being outside.

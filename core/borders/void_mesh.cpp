@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace trapeze {
@@ -254,18 +255,14 @@ void VoidMesh::divide_walls(double reach) {
     bool has_divided = false;
     const std::size_t count = walls_.size();
     for (std::uint32_t wall = 0; wall < count; ++wall) {
-      has_divided = divide_wall(wall, reach) || has_divided;
+      has_divided = divide_at_foot(wall, reach) || has_divided;
     }
     if (!has_divided) return;
     make_delaunay();
   }
 }
 
-//          c                 c
-//         / \               /|\      f lies on ab or, rounded, above it: the polygon below gets the
-//        /   \      ->     / | \     triangle afb, in which there is no vertex
-//       a-----b           a--f--b
-bool VoidMesh::divide_wall(std::uint32_t wall, double reach) {
+bool VoidMesh::divide_at_foot(std::uint32_t wall, double reach) {
   const HalfEdge h = walls_[wall].half;
   if (is_beyond(triangle_of(h))) return false;
   // Only vertices that were there at first, so that it ends.
@@ -273,16 +270,81 @@ bool VoidMesh::divide_wall(std::uint32_t wall, double reach) {
   const Point a = corner(h);
   const Point b = corner(next(h));
   const Point c = corner(before(h));
-  const double distance = distance_across(h);
-  const double nearer_end = std::min(length_between(a, c), length_between(b, c));
-  if (distance > reach || nearer_end * nearer_end <= 2 * distance * distance) return false;
+  const double to_a = length_between(a, c);
+  const double to_b = length_between(b, c);
   const double x = static_cast<double>(b.x) - a.x;
   const double y = static_cast<double>(b.y) - a.y;
   const double share =
       ((static_cast<double>(c.x) - a.x) * x + (static_cast<double>(c.y) - a.y) * y) /
       (x * x + y * y);
-  const Point near{static_cast<std::int32_t>(std::floor(a.x + share * x)),
-                   static_cast<std::int32_t>(std::floor(a.y + share * y))};
+  const bool is_obtuse = to_a * to_a + to_b * to_b < x * x + y * y;
+  if (!is_obtuse || distance_across(h) > reach) return false;
+  return divide_wall(h, a.x + share * x, a.y + share * y);
+}
+
+bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
+  bool has_divided = false;
+  for (const HalfEdge side : sides) {
+    // It may have got another place meanwhile.
+    if (is_wall(side) || corners_[side] == kInfinity || corners_[next(side)] == kInfinity) continue;
+    const double reach = std::numbers::sqrt2 * length(side);
+    const Point p = corner(side);
+    const Point q = corner(next(side));
+    // To the right of the side as seen from p, then to the left.
+    has_divided = divide_near(wall_after(side), p, q, reach) ||
+                  divide_near(wall_before(twins_[side]), q, p, reach) || has_divided;
+    if (is_wall(side) || corner(side) != p || corner(next(side)) != q) continue;
+    has_divided = divide_near(wall_before(side), p, q, reach) ||
+                  divide_near(wall_after(twins_[side]), q, p, reach) || has_divided;
+  }
+  make_delaunay();
+  return has_divided;
+}
+
+/// The next wall around the vertex from which the half-edge leads, in the order in which it is in
+/// triangles before itself: it leads to that vertex. None if infinity comes before.
+VoidMesh::HalfEdge VoidMesh::wall_before(HalfEdge h) const {
+  for (HalfEdge at = h;; at = twins_[before(at)]) {
+    if (is_beyond(triangle_of(at))) return kUnknown;
+    if (is_wall(before(at))) return before(at);
+  }
+}
+
+/// The same in the other direction, a wall that leads from that vertex.
+VoidMesh::HalfEdge VoidMesh::wall_after(HalfEdge h) const {
+  for (HalfEdge at = h;;) {
+    at = next(twins_[at]);
+    if (is_beyond(triangle_of(at))) return kUnknown;
+    if (is_wall(at)) return at;
+  }
+}
+
+/// Divides a wall that leads from or to p, where it is `reach` away from q.
+bool VoidMesh::divide_near(HalfEdge wall, Point p, Point q, double reach) {
+  if (wall == kUnknown) return false;
+  const double wall_length = length(wall);
+  const Point r = corner(wall) == p ? corner(next(wall)) : corner(wall);
+  const double x = (static_cast<double>(r.x) - p.x) / wall_length;
+  const double y = (static_cast<double>(r.y) - p.y) / wall_length;
+  const double to_q_x = static_cast<double>(q.x) - p.x;
+  const double to_q_y = static_cast<double>(q.y) - p.y;
+  const double along = to_q_x * x + to_q_y * y;
+  const double across = to_q_x * y - to_q_y * x;
+  const double from_p = along + std::sqrt(std::max(0.0, reach * reach - across * across));
+  if (from_p >= wall_length) return false;
+  return divide_wall(wall, p.x + from_p * x, p.y + from_p * y);
+}
+
+//          c                 c
+//         / \               /|\      f lies on ab or, rounded, above it: the polygon below gets the
+//        /   \      ->     / | \     triangle afb, in which there is no vertex
+//       a-----b           a--f--b
+bool VoidMesh::divide_wall(HalfEdge h, double x, double y) {
+  const Point a = corner(h);
+  const Point b = corner(next(h));
+  const Point c = corner(before(h));
+  const Point near{static_cast<std::int32_t>(std::floor(x)),
+                   static_cast<std::int32_t>(std::floor(y))};
   Point foot = a;
   std::int64_t least = 0;
   for (const Point p : {near, Point{near.x + 1, near.y}, Point{near.x, near.y + 1},
@@ -297,7 +359,7 @@ bool VoidMesh::divide_wall(std::uint32_t wall, double reach) {
 
   const VertexId f(points_.size());
   points_.push_back(foot);
-  const EdgeId edge = walls_[wall].edge;
+  const EdgeId edge = edge_of(h);
   const VertexId to = corners_[next(h)];
   const VertexId apex = corners_[before(h)];
   const std::uint32_t beyond = twins_[next(h)];

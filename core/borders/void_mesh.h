@@ -35,11 +35,17 @@ class VoidMesh {
   /// Whether there were too many exchanges of edges: there is no mesh then.
   bool has_failed() const { return has_failed_; }
 
-  /// Divides edges of polygons where a vertex is near, but neither of their ends: at the foot of
-  /// the perpendicular, if its length is at most `reach` cells and the ends are more than the root
-  /// of two times as far from the vertex. The foot is rounded to a grid point within the triangle,
-  /// so that the polygon grows by less than a cell and nothing comes to cross.
+  /// Divides edges of polygons where a vertex is near: where the triangle at an edge has an obtuse
+  /// angle beyond it, and that corner is at most `reach` cells away, at the foot of the
+  /// perpendicular. So of a vertex and an edge that are near each other there is a side that is
+  /// hardly longer than they are apart. The foot is rounded to a grid point within the triangle, so
+  /// that the polygon grows by less than a cell and nothing comes to cross.
   void divide_walls(double reach);
+
+  /// Divides the walls that lead away from either end of a side between two polygons where that
+  /// makes a triangle of the side whose others are at most the root of two times as long. Returns
+  /// whether it has divided any; the sides may be others afterwards.
+  bool divide_walls_beside(const std::vector<HalfEdge>& sides);
 
   std::size_t triangle_count() const { return corners_.size() / 3; }
   /// Whether the triangle lies beyond the hull.
@@ -95,7 +101,11 @@ class VoidMesh {
   void make_delaunay();
   bool is_to_be_exchanged(HalfEdge h) const;
   void exchange(HalfEdge h);
-  bool divide_wall(std::uint32_t wall, double reach);
+  bool divide_at_foot(std::uint32_t wall, double reach);
+  HalfEdge wall_before(HalfEdge h) const;
+  HalfEdge wall_after(HalfEdge h) const;
+  bool divide_near(HalfEdge wall, Point p, Point q, double reach);
+  bool divide_wall(HalfEdge h, double x, double y);
 
   const TrapezoidalGraph& graph_;
   std::vector<Point> points_;
