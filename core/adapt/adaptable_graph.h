@@ -74,6 +74,8 @@ class PriorityStack {
   Removal last_removal() const { return last_removal_; }
   /// In a coverage: the areas that went to another face when a loop or a region was removed last.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
+  /// Of the block that a region became a part of when it was removed last (cells squared), if any.
+  std::optional<double> last_block_area() const { return borders_.block_area(); }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:

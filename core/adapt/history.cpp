@@ -193,6 +193,11 @@ void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& 
                              edge.face[kRight] == kept.record.face[kRight])) {
       continue;
     }
+    if (const std::optional<double> area = stack_.last_block_area()) {
+      // It is a part of a larger outline now.
+      loop_sizes_[kept.id] = std::max(loop_sizes_[kept.id], loop_size_of(*area));
+      edge_version_[kept.id] = kNoVersion;
+    }
     for (const Side s : {kLeft, kRight}) {
       for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
            n = graph.node(n).link[opposite(s)][kDown])

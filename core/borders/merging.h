@@ -24,8 +24,9 @@
 
 namespace trapeze {
 
-/// Nothing is bridged that is wider, in cells: four pixels at zoom 9, 1.2 km at the equator.
-constexpr double kWidestBridge = 65536;
+/// Nothing is bridged that is wider, in cells: four pixels at zoom 11, 306 m at the equator. Towns
+/// are areas by then, and each bridge takes memory.
+constexpr double kWidestBridge = 16384;
 
 /// Two boxes of polygons that may become one block meet if they are widened so.
 Box widened_for_blocks(const Box& box);

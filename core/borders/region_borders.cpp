@@ -77,6 +77,11 @@ void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan)
     if (corner.is_end()) ends_.emplace_back(corner.vertex, CornerId(i));
   }
   std::sort(ends_.begin(), ends_.end());
+  first_end_.assign(graph.vertices().size() + 1, 0);
+  for (const auto& [vertex, corner] : ends_) ++first_end_[VertexId(vertex.value + 1)];
+  for (std::size_t v = 1; v < first_end_.size(); ++v) {
+    first_end_[VertexId(v)] += first_end_[VertexId(v - 1)];
+  }
   // Each arc once, by the first of its edges that is met.
   stamp_ = 1;
   for (std::size_t i = 0; i < edges; ++i) {
@@ -180,7 +185,7 @@ double RegionBorders::weight(RegionId region) {
   const double weight = kWeightOfMeanWidth * moments_[region].area / diagonal;
   // A square goes when it is twice as wide as the tolerance.
   const bool has_mates = plan_ != nullptr && !mates_of(region, face).empty();
-  return has_mates ? std::min(weight, 2 * weight / plan_->ratio) : weight;
+  return has_mates ? std::min(weight, weight / (4 * plan_->ratio)) : weight;
 }
 
 void RegionBorders::collect_arcs(RegionId region) {
@@ -315,6 +320,7 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   taken_.clear();
   changed_.clear();
   dissolved_.clear();
+  block_area_.reset();
   log.begin();
   United united = {region};
   if (is_piece && bridges(mates.size())) {
@@ -329,7 +335,9 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   } else {
     note_taken(region, face, taker);
     dissolve(region, taker, log, united);
+    return united;
   }
+  block_area_ = moments_[united.front()].area;
   return united;
 }
 
@@ -408,12 +416,11 @@ void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
 }
 
 void RegionBorders::repair_junction(VertexId v, EditLog& log) {
-  const auto ends =
-      std::equal_range(ends_.begin(), ends_.end(), std::pair(v, CornerId()),
-                       [](const auto& a, const auto& b) { return a.first < b.first; });
   spokes_.clear();
-  for (auto end = ends.first; end != ends.second; ++end) {
-    const Corner& corner = graph_->corner(end->second);
+  const auto ends = std::span(ends_).subspan(
+      first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
+  for (const auto& [vertex, end] : ends) {
+    const Corner& corner = graph_->corner(end);
     if (!corner.is_end()) continue;
     const EdgeId e = corner.edge.is_none() ? graph_->corner(corner.prev).edge : corner.edge;
     spokes_.push_back(spoke_of(*graph_, v, e, find(beside_[e][kLeft]), find(beside_[e][kRight])));

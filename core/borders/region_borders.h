@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,6 +76,8 @@ class RegionBorders {
   // What the last removal did.
   /// Areas that went from one face to another.
   std::span<const Taken> taken() const { return taken_; }
+  /// Of the block that came about, in cells squared; none if it was none.
+  std::optional<double> block_area() const { return block_area_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }
   /// Junctions that have become corners in the middle of an arc.
@@ -145,6 +148,7 @@ class RegionBorders {
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order
+  Table<VertexId, std::uint32_t> first_end_;         // by vertex, in ends_
 
   // Of the current region.
   Table<EdgeId, std::uint32_t> seen_;
@@ -155,6 +159,7 @@ class RegionBorders {
   bool has_junction_ = false;
   std::vector<Spoke> spokes_;
   std::vector<Taken> taken_;
+  std::optional<double> block_area_;
   std::vector<VertexId> changed_;
   std::vector<CornerId> dissolved_;
 };
