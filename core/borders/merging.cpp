@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <queue>
@@ -163,28 +164,36 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
   const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
   std::vector<double> distances(count);
   std::vector<bool> is_known(count, false);
-  std::priority_queue<std::pair<double, std::uint32_t>> waiting;
+  // What is not raised stays in order; what is waits apart, as it is little.
+  std::vector<std::pair<double, std::uint32_t>> order(count);
+  std::priority_queue<std::pair<double, std::uint32_t>> raised;
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto class_at = [&](std::uint32_t i) { return classes[mesh.vertex(3 * t + i).value]; };
     const bool is_between_equals = !mesh.is_beyond(t) && class_at(0) != kMixedClass &&
                                    class_at(0) == class_at(1) && class_at(0) == class_at(2);
     distances[t] = is_between_equals ? own_distance(mesh, t) : kNever;
-    waiting.emplace(distances[t], t);
+    order[t] = {distances[t], t};
   }
-  while (!waiting.empty()) {
-    const auto [distance, t] = waiting.top();
-    waiting.pop();
+  std::sort(order.begin(), order.end(), std::greater<>());
+  for (std::size_t i = 0; i < order.size() || !raised.empty();) {
+    const bool is_raised = !raised.empty() && (i == order.size() || order[i] < raised.top());
+    const auto [distance, t] = is_raised ? raised.top() : order[i];
+    if (is_raised) {
+      raised.pop();
+    } else {
+      ++i;
+    }
     if (is_known[t]) continue;
     is_known[t] = true;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const VoidMesh::HalfEdge h = 3 * t + i;
+    for (std::uint32_t side = 0; side < 3; ++side) {
+      const VoidMesh::HalfEdge h = 3 * t + side;
       if (mesh.is_wall(h)) continue;
       const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
       if (is_known[beyond]) continue;
       const double at_least = std::min(distance, mesh.length(h));
       if (at_least <= distances[beyond]) continue;
       distances[beyond] = at_least;
-      waiting.emplace(at_least, beyond);
+      raised.emplace(at_least, beyond);
     }
   }
   return distances;

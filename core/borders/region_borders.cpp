@@ -417,8 +417,8 @@ void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
 
 void RegionBorders::repair_junction(VertexId v, EditLog& log) {
   spokes_.clear();
-  const auto ends = std::span(ends_).subspan(
-      first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
+  const auto ends =
+      std::span(ends_).subspan(first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
   for (const auto& [vertex, end] : ends) {
     const Corner& corner = graph_->corner(end);
     if (!corner.is_end()) continue;

@@ -21,6 +21,7 @@
 #include "core/graph/check_graph.h"
 #include "core/grid/disjoint_sets.h"
 #include "core/sweep/clean_rings.h"
+#include "tests/core/borders/coverage_shapes.h"
 #include "tests/core/shapes/drawn_trapezoids.h"
 #include "tests/core/shapes/ring_text.h"
 
@@ -156,8 +157,8 @@ TEST(VoidMesh, CoversTheVoidByTrianglesWithEmptyCircles) {
           const auto b = at(VoidMesh::next(h));
           const auto c = at(VoidMesh::before(h));
           const auto d = at(VoidMesh::before(mesh.twin(h)));
-          const double angles = std::abs(std::arg((a - c) / (b - c))) +
-                                std::abs(std::arg((a - d) / (b - d)));
+          const double angles =
+              std::abs(std::arg((a - c) / (b - c))) + std::abs(std::arg((a - d) / (b - d)));
           EXPECT_LE(angles, std::numbers::pi + 1e-6);
         }
       }
@@ -224,8 +225,7 @@ TEST(Merging, WhatIsFilledIsTheLargestSetThatBridgesNoMore) {
 double distance_between(Point p, Point a, Point b) {
   const double x = b.x - a.x;
   const double y = b.y - a.y;
-  const double along =
-      std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y), 0.0, 1.0);
+  const double along = std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y), 0.0, 1.0);
   return std::hypot(a.x + along * x - p.x, a.y + along * y - p.y);
 }
 
@@ -322,26 +322,91 @@ TEST(Merging, BlocksAreTheSameWhenTheTownIsTurned) {
   EXPECT_NEAR(filled_turned / filled, 1, 0.01);
 }
 
-TEST(Merging, EveryStepLeavesASoundGraph) {
-  for (unsigned seed = 0; seed < 24; ++seed) {
+/// Towns, and polygons that share borders, lie over each other and have gaps.
+std::vector<Rings> features_for(unsigned seed) {
+  return seed % 2 == 0 ? town(seed, 3 + static_cast<int>(seed)) : WiggledGrid(seed).features();
+}
+
+TEST(Merging, EveryStepLeavesASoundGraphAndCanBeUndone) {
+  std::size_t blocks = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
-    const BuiltTown built(town(seed, 3 + static_cast<int>(seed) * 2),
-                          {.ratio = 4 + seed % 3 * 6.0});
-    ASSERT_TRUE(built.outcome.plan);
+    const BuiltTown built(features_for(seed), {.ratio = 4 + seed % 3 * 6.0});
+    if (!built.outcome.plan) continue;
     TrapezoidalGraph graph = built.graph;
     EditLog log(graph);
     PriorityStack stack;
     stack.assign(graph, {}, 1, &*built.outcome.plan);
-    int step = 0;
     while (stack.remove_next(graph, log)) {
-      const std::string wrong = check_graph(graph);
-      ASSERT_EQ(wrong, "") << "step " << step;
-      ++step;
+      ASSERT_EQ(check_graph(graph), "") << "after " << log.size() << " removals";
+      blocks += stack.last_removal() == Removal::region && stack.last_block_area().has_value();
     }
-    EXPECT_GE(step, 10);
+    for (const NodeId n : graph.inside_nodes()) {
+      ASSERT_TRUE(built.outcome.plan->is_void(graph.face(graph.node(n)))) << "never goes";
+    }
     while (log.applied() > 0) log.revert();
-    EXPECT_TRUE(graph == built.graph);
+    EXPECT_EQ(graph, built.graph);
   }
+  EXPECT_GT(blocks, 300u);
+}
+
+TEST(Merging, LifespansGiveTheTrapezoidsOfAdaptingAtEveryLevel) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    BuiltTown built(features_for(seed), {.ratio = 16});
+    const MergePlan* plan = built.outcome.plan ? &*built.outcome.plan : nullptr;
+    AdaptableGraph adaptable(built.graph, {}, plan);
+    History history;
+    HistoryRecorder().record(built.graph, built.outcome.faces, {}, history, nullptr, 1, plan);
+    for (int level = 0; level <= kLastLevel; ++level) {
+      adaptable.adapt_to(epsilon_of_level(static_cast<Level>(level)));
+      ASSERT_EQ(alive_at(history, static_cast<Level>(level)),
+                inside_of(adaptable.graph(), built.outcome.faces))
+          << "level " << level;
+    }
+  }
+}
+
+/// Two houses of 1000 x 1000 cells, so far apart.
+std::vector<Rings> two_houses(std::int32_t gap) {
+  std::vector<Rings> houses(2);
+  houses[0].add(std::vector<Point>{{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}});
+  houses[1].add(
+      std::vector<Point>{{1000 + gap, 0}, {2000 + gap, 0}, {2000 + gap, 1000}, {1000 + gap, 1000}});
+  return houses;
+}
+
+TEST(Merging, TwoHousesBecomeOneRectangleWhenTheDistanceIsReached) {
+  const BuiltTown built(two_houses(160), {.ratio = 16});
+  ASSERT_TRUE(built.outcome.plan);
+  AdaptableGraph adaptable(built.graph, {}, &*built.outcome.plan);
+  adaptable.adapt_to(9.9);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 2'000'000);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[2] == 2'000'000);
+  adaptable.adapt_to(10.1);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 2 * 2160 * 1000);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[2] == 0);
+  EXPECT_EQ(rings_of_features(adaptable.graph(), built.outcome.faces)[0].points.size(), 4u)
+      << "corners only";
+}
+
+TEST(Merging, OfTwoClassesNothingIsBridged) {
+  const BuiltTown built(two_houses(160), {.ratio = 16, .classes = {7, 8}});
+  EXPECT_FALSE(built.outcome.plan);
+}
+
+TEST(Merging, ACourtyardIsFilledWhenItIsNarrowerThanTheDistance) {
+  std::vector<Rings> features = two_houses(100'000);
+  features[0].clear();
+  features[0].add(std::vector<Point>{{0, 0}, {3000, 0}, {3000, 3000}, {0, 3000}});
+  features[0].add(std::vector<Point>{{1000, 1000}, {2000, 1000}, {2000, 1320}, {1000, 1320}});
+  const BuiltTown built(features, {.ratio = 16});
+  ASSERT_TRUE(built.outcome.plan);
+  AdaptableGraph adaptable(built.graph, {}, &*built.outcome.plan);
+  adaptable.adapt_to(19.9);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 2 * (9'000'000 - 320'000));
+  adaptable.adapt_to(20.1);
+  EXPECT_TRUE(adaptable.graph().doubled_areas()[1] == 2 * 9'000'000);
 }
 
 }  // namespace
