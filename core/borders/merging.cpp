@@ -201,7 +201,7 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
 
 void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
                               std::span<const std::uint32_t> class_of_face) {
-  constexpr int kMostPasses = 2;
+  constexpr int kMostPasses = 1;
   mesh.divide_walls(kWidestBridge);
   for (int pass = 0; pass < kMostPasses && !mesh.has_failed(); ++pass) {
     const std::vector<double> distances = distances_to_fill(mesh, graph, class_of_face);

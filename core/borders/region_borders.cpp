@@ -176,9 +176,9 @@ double RegionBorders::weight(RegionId region) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const bool may_go = plan_ != nullptr || may_have_junction_[region] != 0;
   if (find(region) != region || region == unbounded_ || !may_go) return kNever;
-  collect_arcs(region);
-  const FaceId face = plan_ != nullptr ? face_of_current(region) : kOutside;
+  const FaceId face = plan_ != nullptr ? face_of(region) : kOutside;
   if (plan_ != nullptr && plan_->is_piece(face)) return plan_->due[face - plan_->first_void];
+  collect_arcs(region);
   if (!has_junction_) return kNever;
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
                                      static_cast<double>(box_.max_y) - box_.min_y);
@@ -271,10 +271,12 @@ double RegionBorders::length_of_arc(const Arc& arc) const {
   return length;
 }
 
-FaceId RegionBorders::face_of_current(RegionId region) {
-  if (edges_.empty()) return kOutside;
-  const EdgeId any = edges_.front();
-  return graph_->edge(any).face[side_of(any, region)];
+FaceId RegionBorders::face_of(RegionId region) {
+  for (std::uint32_t i = lists_[region].first; i != kNobody; i = seeds_[i].next) {
+    const EdgeId e = find(seeds_[i].edge);
+    if (graph_->edge(e).is_alive()) return graph_->edge(e).face[side_of(e, region)];
+  }
+  return kOutside;
 }
 
 /// Of the current region, in order of the arcs.
@@ -311,7 +313,7 @@ bool RegionBorders::is_smaller(RegionId a, RegionId b) const {
 
 RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   collect_arcs(region);
-  const FaceId face = face_of_current(region);
+  const FaceId face = face_of(region);
   std::vector<Mate> mates;
   if (plan_ != nullptr) mates = mates_of(region, face);
   const bool is_piece = plan_ != nullptr && plan_->is_piece(face);

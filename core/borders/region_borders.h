@@ -121,7 +121,7 @@ class RegionBorders {
 
   FaceId choose_taker(FaceId face) const;
   double length_of_arc(const Arc& arc) const;
-  FaceId face_of_current(RegionId region);
+  FaceId face_of(RegionId region);
   std::vector<Mate> mates_of(RegionId region, FaceId face);
   bool bridges(std::size_t mates) const;
   bool is_smaller(RegionId a, RegionId b) const;
