@@ -25,7 +25,7 @@ constexpr std::size_t kNeighboursAhead = 4;
 }  // namespace
 
 void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options,
-                           unsigned threads) {
+                           unsigned threads, const MergePlan* plan) {
   graph_ = &graph;
   options_ = options;
   const std::size_t count = graph.corners().size();
@@ -35,7 +35,7 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
     std::vector<Candidate> regions;
     for_each_in_parallel(2, threads, [&](std::size_t i) {
       if (i == 0) weigh_corners();
-      if (i == 1) weigh_regions(regions);
+      if (i == 1) weigh_regions(plan, regions);
     });
     const auto corners = static_cast<std::ptrdiff_t>(order_.size());
     order_.insert(order_.end(), regions.begin(), regions.end());
@@ -96,8 +96,8 @@ void PriorityStack::add_candidates(std::span<const double> weights) {
   }
 }
 
-void PriorityStack::weigh_regions(std::vector<Candidate>& candidates) {
-  borders_.assign(*graph_);
+void PriorityStack::weigh_regions(const MergePlan* plan, std::vector<Candidate>& candidates) {
+  borders_.assign(*graph_, plan);
   region_weights_.clear();
   for (std::size_t i = 0; i < borders_.count(); ++i) {
     const double weight = borders_.weight(RegionId(i));
@@ -272,10 +272,12 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
     requeue_region(region, weight);
     return false;
   }
-  const std::vector<RegionId> takers = borders_.remove(region, log);
+  const RegionBorders::United united = borders_.remove(region, log);
+  if (united.empty()) return false;
   last_removal_ = Removal::region;
   for (const VertexId v : borders_.changed()) retry_waiting(v);
   for (const CornerId c : borders_.dissolved()) {
+    if (!graph_->corner(c).is_alive()) continue;  // went with a region that was united later
     is_in_place_[c.value] = true;
     is_to_wait(c);
     if (state_[c] != State::queued) {
@@ -283,12 +285,27 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
       enqueue({weights_[c], graph_->corner(c).vertex, c});
     }
   }
-  // The region that it has become a part of is not measured again before it is popped.
-  double known = 0;
-  for (const RegionId taker : takers) known = std::max(known, region_weights_[taker]);
-  if (!std::isfinite(known)) known = borders_.weight(region);
-  if (std::isfinite(known)) requeue_region(region, known);
+  requeue_united(united);
   return true;
+}
+
+/// What has grown is not measured again before it is popped; of a block, what is known of any part
+/// of it will do.
+void PriorityStack::requeue_united(const RegionBorders::United& united) {
+  double known = 0;
+  std::size_t unknown = 0;
+  const auto parts = std::span(united).subspan(1);
+  for (const RegionId part : parts) {
+    const double weight = region_weights_[part];
+    if (std::isfinite(weight)) {
+      known = std::max(known, weight);
+    } else {
+      ++unknown;
+    }
+  }
+  const bool is_known = borders_.has_plan() ? unknown < parts.size() : unknown == 0;
+  if (!is_known) known = borders_.weight(united.front());
+  if (std::isfinite(known)) requeue_region(united.front(), known);
 }
 
 void PriorityStack::requeue_region(RegionId region, double weight) {
@@ -313,9 +330,10 @@ void PriorityStack::retry_if_blocked(CornerId corner) {
   enqueue({weights_[corner], graph_->corner(corner).vertex, corner});
 }
 
-AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options)
+AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options,
+                               const MergePlan* plan)
     : graph_(std::move(graph)), log_(graph_) {
-  stack_.assign(graph_, options);
+  stack_.assign(graph_, options, 1, plan);
 }
 
 void AdaptableGraph::adapt_to(double epsilon) {

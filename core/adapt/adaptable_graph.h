@@ -47,10 +47,11 @@ struct GeneralizationOptions {
 /// The corners of a graph in the order in which they are to be removed, and those that are blocked.
 class PriorityStack {
  public:
-  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use. On up to
+  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use, and so
+  /// must the plan by which regions of a coverage become blocks, if it is not null. On up to
   /// `threads` threads.
   void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options,
-              unsigned threads = 1);
+              unsigned threads = 1, const MergePlan* plan = nullptr);
 
   /// Carries out the next removal of the sequence, through `log`, and returns its tolerance
   /// (cells): the graph at a tolerance has had all removals of smaller ones. None if no vertex of
@@ -73,6 +74,8 @@ class PriorityStack {
   Removal last_removal() const { return last_removal_; }
   /// In a coverage: the areas that went to another face when a loop or a region was removed last.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
+  /// Of the block that a region became a part of when it was removed last (cells squared), if any.
+  std::optional<double> last_block_area() const { return borders_.block_area(); }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:
@@ -86,7 +89,7 @@ class PriorityStack {
   };
 
   void weigh_corners();
-  void weigh_regions(std::vector<Candidate>& candidates);
+  void weigh_regions(const MergePlan* plan, std::vector<Candidate>& candidates);
   void weigh_loop(CornerId first);
   void weigh_arc(CornerId first);
   void add_candidates(std::span<const double> weights);
@@ -101,6 +104,7 @@ class PriorityStack {
   void note_joined(const Corner& gone, CornerId corner, EdgeId edge_before);
   bool is_to_wait(CornerId corner);
   bool remove_corner(CornerId corner, EditLog& log);
+  void requeue_united(const RegionBorders::United& united);
   void requeue_region(RegionId region, double weight);
   double weight_in_place(CornerId c) const;
   bool enqueue_anchors();
@@ -143,7 +147,9 @@ class PriorityStack {
 
 class AdaptableGraph {
  public:
-  explicit AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options = {});
+  /// `plan`, if it is not null, must outlive the graph.
+  explicit AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options = {},
+                          const MergePlan* plan = nullptr);
   AdaptableGraph(const AdaptableGraph&) = delete;
   AdaptableGraph& operator=(const AdaptableGraph&) = delete;
 

@@ -71,11 +71,11 @@ std::uint64_t HistoryRecorder::most_work(std::size_t vertices) {
 
 std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph, const FaceFeatures& rows,
                                               const GeneralizationOptions& options,
-                                              History& history, WorkShare* share,
-                                              unsigned threads) {
+                                              History& history, WorkShare* share, unsigned threads,
+                                              const MergePlan* plan) {
   rows_ = &rows;
   for_each_in_parallel(2, threads, [&](std::size_t i) {
-    if (i == 0) stack_.assign(graph, options, threads);
+    if (i == 0) stack_.assign(graph, options, threads, plan);
     if (i == 1) begin(graph, history);
   });
   milestones_.begin(graph, stack_);
@@ -134,7 +134,8 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
   node_is_touched_.assign(graph.nodes().size(), 0);
   measure_loop_sizes(graph, *rows_, loop_sizes_);
   for (std::size_t e = 0; e < graph.edges().size(); ++e) {
-    if (!graph.is_frame(EdgeId(e))) open_edge(graph, EdgeId(e));
+    const EdgeId edge(e);
+    if (!graph.is_frame(edge) && has_features_beside(graph.edge(edge))) open_edge(graph, edge);
   }
   for (std::size_t n = 0; n < graph.nodes().size(); ++n) renew_node(graph, NodeId(n), 0);
   if (!graph.is_coverage()) measure_loops(graph);
@@ -192,6 +193,11 @@ void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& 
                              edge.face[kRight] == kept.record.face[kRight])) {
       continue;
     }
+    if (const std::optional<double> area = stack_.last_block_area()) {
+      // It is a part of a larger outline now.
+      loop_sizes_[kept.id] = std::max(loop_sizes_[kept.id], loop_size_of(*area));
+      edge_version_[kept.id] = kNoVersion;
+    }
     for (const Side s : {kLeft, kRight}) {
       for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
            n = graph.node(n).link[opposite(s)][kDown])
@@ -215,7 +221,7 @@ void HistoryRecorder::note_taken(const Taken& taken, Level level) {
 
 void HistoryRecorder::add_grains(const Axis& axis, double area, Level level, FaceId face,
                                  FaceId other) {
-  bool is_covered = other != kOutside;
+  bool is_covered = !rows_->of(other).empty();
   for_each_apart(rows_->of(face), rows_->of(other), [&](std::uint32_t row) {
     history_->grains.push_back({axis, area, level, row, is_covered});
     is_covered = true;  // by the first one
@@ -243,6 +249,11 @@ void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
   touched_nodes_.clear();
 }
 
+/// Others lie between pieces of the void and are not seen.
+bool HistoryRecorder::has_features_beside(const Edge& edge) const {
+  return !rows_->of(edge.face[kLeft]).empty() || !rows_->of(edge.face[kRight]).empty();
+}
+
 /// An edge whose ends have changed begins a new version, and so do the inside nodes along it.
 void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
   if (graph.is_frame(e)) return;
@@ -251,14 +262,17 @@ void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
     edge_version_[e] = kNoVersion;
     return;
   }
-  const MeshEdge& open = history_->edges[edge_version_[e]];
-  if (open.upper == vertex_base_ + edge.end[kUp].value - 1 &&
-      open.lower == vertex_base_ + edge.end[kDown].value - 1) {
-    return;
+  if (!has_features_beside(edge)) return;
+  if (edge_version_[e] != kNoVersion) {
+    const MeshEdge& open = history_->edges[edge_version_[e]];
+    if (open.upper == vertex_base_ + edge.end[kUp].value - 1 &&
+        open.lower == vertex_base_ + edge.end[kDown].value - 1) {
+      return;
+    }
   }
   open_edge(graph, e);
   for (const Side s : {kLeft, kRight}) {
-    if (edge.face[s] == kOutside) continue;
+    if (rows_->of(edge.face[s]).empty()) continue;
     for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown])
       touch(n);
   }
@@ -276,7 +290,7 @@ void HistoryRecorder::open_edge(const TrapezoidalGraph& graph, EdgeId e) {
 void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level level) {
   const Node& node = graph.node(n);
   std::uint32_t& version = node_version_[n];
-  const bool is_inside = node.is_alive() && graph.face(node) != kOutside;
+  const bool is_inside = node.is_alive() && !rows_->of(graph.face(node)).empty();
   const MeshTrapezoid now = is_inside ? trapezoid_of(node) : MeshTrapezoid{};
   const auto rows = is_inside ? rows_of(graph, node, now) : std::span<const std::uint32_t>();
   if (version != kNoVersion) {

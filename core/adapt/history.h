@@ -73,9 +73,11 @@ class HistoryRecorder {
   /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end
   /// after most_work() of it: levels from then on have the vertices that were left. Returns the
   /// tolerance at which that was (cells), and none as a rule.
+  /// Faces become blocks by `plan`, if it is not null.
   std::optional<double> record(TrapezoidalGraph& graph, const FaceFeatures& rows,
                                const GeneralizationOptions& options, History& history,
-                               WorkShare* share = nullptr, unsigned threads = 1);
+                               WorkShare* share = nullptr, unsigned threads = 1,
+                               const MergePlan* plan = nullptr);
   /// The same of a single polygon, which is the feature of row 0.
   std::optional<double> record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
                                History& history);
@@ -97,6 +99,7 @@ class HistoryRecorder {
   void note_taken(const Taken& taken, Level level);
   void add_grains(const Axis& axis, double area, Level level, FaceId face, FaceId other);
   void end_level(const TrapezoidalGraph& graph, Level level);
+  bool has_features_beside(const Edge& edge) const;
   void renew_edge(const TrapezoidalGraph& graph, EdgeId e);
   void renew_node(const TrapezoidalGraph& graph, NodeId n, Level level);
   MeshTrapezoid trapezoid_of(const Node& node) const;

@@ -1,6 +1,7 @@
 #include "core/borders/coverage_builder.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -477,6 +478,21 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
   return "up to " + std::to_string(most) + " borders meet at one vertex";
 }
 
+/// By face, 0 being outside.
+std::vector<std::uint32_t> classes_of_faces(const FaceFeatures& faces, const Merging& merging) {
+  std::vector<std::uint32_t> classes(faces.face_count() + 1, 0);
+  classes[kOutside] = kMixedClass;
+  if (merging.classes.empty()) return classes;
+  for (FaceId face = 1; face < classes.size(); ++face) {
+    const auto features = faces.of(face);
+    const std::uint32_t first = merging.classes[features.front()];
+    const bool are_equal = std::ranges::all_of(
+        features, [&](std::uint32_t feature) { return merging.classes[feature] == first; });
+    classes[face] = are_equal ? first : kMixedClass;
+  }
+  return classes;
+}
+
 }  // namespace
 
 Overlay overlay(std::span<const Rings* const> features) {
@@ -503,7 +519,7 @@ bool CoverageBuilder::keep_what_divides(Sides& sides, TrapezoidalGraph& graph, u
 
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
                                        const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
-                                       WorkShare* share, unsigned threads) {
+                                       WorkShare* share, unsigned threads, const Merging& merging) {
   const auto tell = [share](double part) {
     if (share != nullptr) share->tell(part);
   };
@@ -534,7 +550,24 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   outcome.built = true;
   outcome.junctions = count_distinct(ends);
   count_borders(graph, regions, outcome);
+  if (merging.ratio > 0) plan_blocks(merging, graph, threads, outcome);
   return outcome;
+}
+
+/// Of a coverage that is built otherwise.
+void CoverageBuilder::plan_blocks(const Merging& merging, TrapezoidalGraph& graph, unsigned threads,
+                                  CoverageOutcome& outcome) {
+  const auto first_void = static_cast<FaceId>(outcome.faces.face_count() + 1);
+  std::optional<DividedVoid> divided =
+      divide_void(graph, merging.ratio, first_void, classes_of_faces(outcome.faces, merging));
+  if (!divided) return;
+  boundary_.assign(divided->segments);
+  const FaceBeyond given = [&](EdgeId e, FaceId) { return divided->sides[e.value].second; };
+  [[maybe_unused]] const bool is_swept = trapezoidation_.build(boundary_, given, graph, threads);
+  assert(is_swept);  // new edges lie within the void and meet at their ends only
+  outcome.faces.add_void(divided->plan.due.size());
+  arcs_.trace(boundary_, static_cast<FaceId>(outcome.faces.face_count()), Regions(graph), graph);
+  outcome.plan = std::move(divided->plan);
 }
 
 namespace {
@@ -646,7 +679,7 @@ std::vector<Rings> rings_of_faces(const TrapezoidalGraph& graph) {
 }
 
 std::vector<Rings> rings_of_features(const TrapezoidalGraph& graph, const FaceFeatures& faces) {
-  return FeatureRings(graph, faces, faces.face_count() - faces.shared().size()).take();
+  return FeatureRings(graph, faces, faces.single_count()).take();
 }
 
 }  // namespace trapeze

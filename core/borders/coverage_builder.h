@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 
 #include "core/borders/border_arcs.h"
 #include "core/borders/face_features.h"
+#include "core/borders/merging.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"
@@ -43,6 +45,7 @@ struct CoverageOutcome {
   std::vector<Overlap> overlaps;  // in order of their features
   std::vector<double> areas;      // of each feature by itself, cells squared
   FaceFeatures faces;             // by position
+  std::optional<MergePlan> plan;  // of what becomes a block, if anything does
   std::vector<std::uint32_t> apart;  // the features that were left out, in ascending order
   bool is_crowded = false;           // too many lay over each other, see CoverageTolerance
   std::string failure;               // why it could not be built, empty otherwise
@@ -84,13 +87,16 @@ class CoverageBuilder {
   /// meaningful only if the outcome says built. Tells `share`, if there is one, how far it is. On
   /// up to `threads` threads; the graph does not depend on their number.
   CoverageOutcome build(std::span<const Rings* const> features, const CoverageTolerance& tolerance,
-                        TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1);
+                        TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1,
+                        const Merging& merging = {});
 
   /// The faces to the left and right of each edge.
   using Sides = std::vector<std::pair<FaceId, FaceId>>;
 
  private:
   bool keep_what_divides(Sides& sides, TrapezoidalGraph& graph, unsigned threads);
+  void plan_blocks(const Merging& merging, TrapezoidalGraph& graph, unsigned threads,
+                   CoverageOutcome& outcome);
 
   Boundary boundary_;
   Trapezoidation trapezoidation_;

@@ -183,11 +183,12 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
 
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share,
-                  unsigned threads) {
+                  unsigned threads, const Merging& merging) {
   Assembly assembly;
+  if (merging.ratio > 0) coverage = CoverageMode::on;
   const CoverageTolerance tolerance{most_overlap(coverage), kMostOverlap, widest_gap,
                                     kNarrowestOverlap};
-  assembly.outcome = builder.build(features, tolerance, graph, share, threads);
+  assembly.outcome = builder.build(features, tolerance, graph, share, threads, merging);
   const std::vector<std::uint32_t>& apart = assembly.outcome.apart;
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     const bool is_apart =

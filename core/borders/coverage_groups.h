@@ -57,9 +57,11 @@ struct Assembly {
 /// features that overlap by too much stay apart, and so do all if fewer than two remain or if they
 /// cannot be noded. With `on`, only features of a crowd overlap by too much. Gaps of up to
 /// `widest_gap` metres are filled. Tells `share`, if there is one, how far it is. On up to
-/// `threads` threads; the result does not depend on their number.
+/// `threads` threads; the result does not depend on their number. What is near each other is to
+/// become a block as `merging` has it, see CoverageBuilder; features may overlap then, as with
+/// `on`.
 Assembly assemble(std::span<const Rings* const> features, CoverageMode coverage, double widest_gap,
                   CoverageBuilder& builder, TrapezoidalGraph& graph, WorkShare* share = nullptr,
-                  unsigned threads = 1);
+                  unsigned threads = 1, const Merging& merging = {});
 
 }  // namespace trapeze

@@ -12,7 +12,8 @@
 
 namespace trapeze {
 
-/// The features by face: most faces are of one, and others are places that several cover.
+/// The features by face: most faces are of one, and others are places that several cover, or
+/// that none does and that are told apart all the same (see merging.h).
 /// Immutable but for add().
 class FaceFeatures {
  public:
@@ -33,13 +34,20 @@ class FaceFeatures {
     return static_cast<FaceId>(face_count());
   }
 
-  std::size_t face_count() const { return singles_.size() + shared_.size(); }
+  /// The last faces are so many that no feature covers; no others are added afterwards.
+  void add_void(std::size_t faces) { void_ += faces; }
+
+  std::size_t face_count() const { return singles_.size() + shared_.size() + void_; }
+  /// Of the faces that are of one feature each, and the first ones.
+  std::size_t single_count() const { return singles_.size(); }
   std::span<const std::vector<std::uint32_t>> shared() const { return shared_; }
   /// Of a face, which may be kOutside.
   std::span<const std::uint32_t> of(FaceId face) const {
     if (face == kOutside) return {};
     if (face <= singles_.size()) return {&singles_[face - 1], 1};
-    return shared_[face - 1 - singles_.size()];
+    const std::size_t i = face - 1 - singles_.size();
+    return i < shared_.size() ? std::span<const std::uint32_t>(shared_[i])
+                              : std::span<const std::uint32_t>();
   }
   /// The same with other numbers for features: those of `names`, by feature.
   FaceFeatures named(std::span<const std::uint32_t> names) const {
@@ -54,6 +62,7 @@ class FaceFeatures {
  private:
   std::vector<std::uint32_t> singles_;
   std::vector<std::vector<std::uint32_t>> shared_;
+  std::size_t void_ = 0;
 };
 
 /// Calls visit(feature) for those of `some` that are not among `others`; both are in ascending

@@ -51,8 +51,9 @@ std::optional<Piece> piece_of(const TrapezoidalGraph& graph, const Node& node) {
 
 }  // namespace
 
-void RegionBorders::assign(const TrapezoidalGraph& graph) {
+void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan) {
   graph_ = &graph;
+  plan_ = plan;
   Regions regions(graph);
   measure_regions(regions);
   beside_ = std::move(regions.beside);
@@ -76,6 +77,11 @@ void RegionBorders::assign(const TrapezoidalGraph& graph) {
     if (corner.is_end()) ends_.emplace_back(corner.vertex, CornerId(i));
   }
   std::sort(ends_.begin(), ends_.end());
+  first_end_.assign(graph.vertices().size() + 1, 0);
+  for (const auto& [vertex, corner] : ends_) ++first_end_[VertexId(vertex.value + 1)];
+  for (std::size_t v = 1; v < first_end_.size(); ++v) {
+    first_end_[VertexId(v)] += first_end_[VertexId(v - 1)];
+  }
   // Each arc once, by the first of its edges that is met.
   stamp_ = 1;
   for (std::size_t i = 0; i < edges; ++i) {
@@ -168,14 +174,18 @@ void RegionBorders::note_lost_loop(EdgeId edge, Side side) {
 
 double RegionBorders::weight(RegionId region) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  if (find(region) != region || region == unbounded_ || may_have_junction_[region] == 0) {
-    return kNever;
-  }
+  const bool may_go = plan_ != nullptr || may_have_junction_[region] != 0;
+  if (find(region) != region || region == unbounded_ || !may_go) return kNever;
+  const FaceId face = plan_ != nullptr ? face_of(region) : kOutside;
+  if (plan_ != nullptr && plan_->is_piece(face)) return plan_->due[face - plan_->first_void];
   collect_arcs(region);
   if (!has_junction_) return kNever;
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
                                      static_cast<double>(box_.max_y) - box_.min_y);
-  return kWeightOfMeanWidth * moments_[region].area / diagonal;
+  const double weight = kWeightOfMeanWidth * moments_[region].area / diagonal;
+  // A square goes when it is twice as wide as the tolerance.
+  const bool has_mates = plan_ != nullptr && !mates_of(region, face).empty();
+  return has_mates ? std::min(weight, weight / (4 * plan_->ratio)) : weight;
 }
 
 void RegionBorders::collect_arcs(RegionId region) {
@@ -232,31 +242,121 @@ Side RegionBorders::side_of(EdgeId edge, RegionId region) {
   return find(beside_[edge][kLeft]) == region ? kLeft : kRight;
 }
 
-/// The face with the longest border; the outside only if there is no other, so that a coverage does
-/// not fray out along its coasts.
-FaceId RegionBorders::choose_taker() const {
-  BorderLengths lengths;
+/// The face with the longest border; the void only if there is no other, so that a coverage does
+/// not fray out along its coasts. What is void already becomes a part of a piece if it can.
+FaceId RegionBorders::choose_taker(FaceId face) const {
+  BorderLengths covered;
+  BorderLengths pieces;
+  bool is_open = false;
   for (const Arc& arc : arcs_) {
-    if (arc.beyond == kOutside) continue;
-    double length = 0;
-    for (std::size_t i = arc.begin; i < arc.end; ++i) {
-      length += length_of(*graph_, graph_->edge(edges_[i]));
+    if (arc.beyond == kOutside) {
+      is_open = true;
+    } else if (plan_ != nullptr && plan_->is_void(arc.beyond)) {
+      pieces.add(arc.beyond, length_of_arc(arc));
+    } else {
+      covered.add(arc.beyond, length_of_arc(arc));
     }
-    lengths.add(arc.beyond, length);
   }
-  return lengths.longest();
+  const bool has_void = is_open || pieces.faces() > 0;
+  const bool stays_void = has_void && plan_ != nullptr && plan_->is_void(face);
+  if (covered.faces() > 0 && !stays_void) return covered.longest();
+  return is_open ? kOutside : pieces.longest();
 }
 
-std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
+double RegionBorders::length_of_arc(const Arc& arc) const {
+  double length = 0;
+  for (std::size_t i = arc.begin; i < arc.end; ++i) {
+    length += length_of(*graph_, graph_->edge(edges_[i]));
+  }
+  return length;
+}
+
+FaceId RegionBorders::face_of(RegionId region) {
+  for (std::uint32_t i = lists_[region].first; i != kNobody; i = seeds_[i].next) {
+    const EdgeId e = find(seeds_[i].edge);
+    if (graph_->edge(e).is_alive()) return graph_->edge(e).face[side_of(e, region)];
+  }
+  return kOutside;
+}
+
+/// Of the current region, in order of the arcs.
+std::vector<RegionBorders::Mate> RegionBorders::mates_of(RegionId region, FaceId face) {
+  std::vector<Mate> mates;
+  for (const Arc& arc : arcs_) {
+    const bool is_void = plan_->is_void(arc.beyond) || face == kOutside;
+    if (is_void || !plan_->are_of_one_class(face, arc.beyond)) continue;
+    const EdgeId any = edges_[arc.begin];
+    const RegionId beyond = find(beside_[any][opposite(side_of(any, region))]);
+    auto known = std::ranges::find(mates, beyond, &Mate::region);
+    if (known == mates.end()) known = mates.insert(known, Mate{beyond, arc.beyond});
+    known->border += length_of_arc(arc);
+  }
+  return mates;
+}
+
+/// Whether a piece of the void, which is the current region, still has something on two sides. What
+/// is on one side only is a notch, unless it is a spike that has led to something else.
+bool RegionBorders::bridges(std::size_t mates) const {
+  if (mates != 1) return mates > 1;
+  double covered = 0;
+  double open = 0;
+  for (const Arc& arc : arcs_) {
+    (plan_->is_void(arc.beyond) ? open : covered) += length_of_arc(arc);
+  }
+  return covered >= open;
+}
+
+bool RegionBorders::is_smaller(RegionId a, RegionId b) const {
+  if (moments_[a].area != moments_[b].area) return moments_[a].area < moments_[b].area;
+  return a > b;
+}
+
+RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   collect_arcs(region);
-  const FaceId taker = choose_taker();
-  const EdgeId any = edges_.front();
-  const FaceId face = graph_->edge(any).face[side_of(any, region)];
-  note_taken(region, face, taker);
+  const FaceId face = face_of(region);
+  std::vector<Mate> mates;
+  if (plan_ != nullptr) mates = mates_of(region, face);
+  const bool is_piece = plan_ != nullptr && plan_->is_piece(face);
+  const FaceId taker = choose_taker(face);
+  if (is_piece && mates.empty() && !plan_->is_void(taker)) return {};
+  taken_.clear();
   changed_.clear();
   dissolved_.clear();
-  std::vector<VertexId> junctions;
+  block_area_.reset();
   log.begin();
+  United united = {region};
+  if (is_piece && bridges(mates.size())) {
+    const auto largest = std::ranges::max_element(
+        mates, [this](const Mate& a, const Mate& b) { return is_smaller(a.region, b.region); });
+    const FaceId block = largest->face;
+    dissolve(region, block, log, united);
+    for (const Mate& mate : mates) join(united.front(), block, mate, log, united);
+  } else if (!is_piece && !mates.empty()) {
+    const auto nearest = std::ranges::max_element(mates, {}, &Mate::border);
+    join(region, face, *nearest, log, united);
+  } else {
+    note_taken(region, face, taker);
+    dissolve(region, taker, log, united);
+    return united;
+  }
+  block_area_ = moments_[united.front()].area;
+  return united;
+}
+
+/// Makes one of two regions beside each other, with the face of the larger one.
+void RegionBorders::join(RegionId region, FaceId face, const Mate& mate, EditLog& log,
+                         United& united) {
+  const RegionId other = find(mate.region);
+  if (other == region) return;
+  const bool other_goes = is_smaller(other, region);
+  const RegionId gone = other_goes ? other : region;
+  collect_arcs(gone);
+  dissolve(gone, other_goes ? face : mate.face, log, united);
+}
+
+/// Makes the current region a part of those beside it that have the face of the taker.
+void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United& united) {
+  std::vector<VertexId> junctions;
   Generalization generalization(*graph_, log);
   std::vector<RegionId> takers;
   for (const Arc& arc : arcs_) {
@@ -286,11 +386,12 @@ std::vector<RegionId> RegionBorders::remove(RegionId region, EditLog& log) {
   std::sort(junctions.begin(), junctions.end());
   junctions.erase(std::unique(junctions.begin(), junctions.end()), junctions.end());
   for (const VertexId v : junctions) repair_junction(v, log);
-  return takers;
+  united.insert(united.end(), takers.begin(), takers.end());
+  std::erase(united, region);
+  united.insert(united.begin(), region);
 }
 
 void RegionBorders::note_taken(RegionId region, FaceId face, FaceId taker) {
-  taken_.clear();
   const AreaMoments& lost = moments_[region];
   if (lost.is_compact()) {
     taken_.push_back({lost.axis(), lost.area, face, taker});
@@ -317,12 +418,11 @@ void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
 }
 
 void RegionBorders::repair_junction(VertexId v, EditLog& log) {
-  const auto ends =
-      std::equal_range(ends_.begin(), ends_.end(), std::pair(v, CornerId()),
-                       [](const auto& a, const auto& b) { return a.first < b.first; });
   spokes_.clear();
-  for (auto end = ends.first; end != ends.second; ++end) {
-    const Corner& corner = graph_->corner(end->second);
+  const auto ends =
+      std::span(ends_).subspan(first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
+  for (const auto& [vertex, end] : ends) {
+    const Corner& corner = graph_->corner(end);
     if (!corner.is_end()) continue;
     const EdgeId e = corner.edge.is_none() ? graph_->corner(corner.prev).edge : corner.edge;
     spokes_.push_back(spoke_of(*graph_, v, e, find(beside_[e][kLeft]), find(beside_[e][kRight])));

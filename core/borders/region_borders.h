@@ -7,14 +7,26 @@
 // by edge, which cannot make boundaries cross; the rest of the region's border becomes the
 // neighbour's. Junctions where only two arcs are left become corners of one arc.
 //
+// With a plan of blocks (see merging.h), pieces of the void are regions as well. One that is due
+// becomes a part of the polygons that it lies between, and these become one region:
+//
+//     +-----+.....+-----+           +-----------------+
+//     |  A  : void:  B  |           |        A        |    the larger of the two gives its face
+//     +-----+.....+-----+           +-----------------+
+//
+// If what it bridged has become too small to see, it is void like all around. Polygons that touch
+// become one region when the narrower one is narrower than the distance that is bridged.
+//
 // Must be told of every removal from the graph, and follows them forward only. Thread-safety: none.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/borders/border_arcs.h"
+#include "core/borders/merging.h"
 #include "core/borders/regions.h"
 #include "core/graph/edit_log.h"
 #include "core/graph/trapezoidal_graph.h"
@@ -34,8 +46,8 @@ struct Taken {
 
 class RegionBorders {
  public:
-  /// `graph`, a coverage, must outlive the use of this object.
-  void assign(const TrapezoidalGraph& graph);
+  /// `graph`, a coverage, must outlive the use of this object; so must `plan`, if it is not null.
+  void assign(const TrapezoidalGraph& graph, const MergePlan* plan = nullptr);
 
   /// Regions are numbered 0 .. count() - 1; one that has become a part of another no longer exists.
   std::size_t count() const { return parent_.size(); }
@@ -46,9 +58,13 @@ class RegionBorders {
   /// its loops are removed vertex by vertex.
   double weight(RegionId region);
 
-  /// Makes a region of finite weight a part of a neighbour, as one new edit, and returns the
-  /// regions that are united from then on, under its number.
-  std::vector<RegionId> remove(RegionId region, EditLog& log);
+  /// The regions that are one from then on, under the number of the first of them.
+  using United = std::vector<RegionId>;
+  /// Makes a region of finite weight a part of a neighbour, as one new edit. None, and no edit, if
+  /// it has no neighbour of which it could become a part.
+  United remove(RegionId region, EditLog& log);
+  /// Whether there is a plan by which regions become blocks.
+  bool has_plan() const { return plan_ != nullptr; }
 
   /// To be called after a corner has been removed other than with its loop: of its two edges,
   /// `gone` no longer exists, and `kept` leaves `corner`.
@@ -60,6 +76,8 @@ class RegionBorders {
   // What the last removal did.
   /// Areas that went from one face to another.
   std::span<const Taken> taken() const { return taken_; }
+  /// Of the block that came about, in cells squared; none if it was none.
+  std::optional<double> block_area() const { return block_area_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }
   /// Junctions that have become corners in the middle of an arc.
@@ -94,7 +112,21 @@ class RegionBorders {
 
   void collect_arcs(RegionId region);
   Arc walk_arc(EdgeId edge);
-  FaceId choose_taker() const;
+  /// A region of the same class beyond an arc of the current one.
+  struct Mate {
+    RegionId region;
+    FaceId face = kOutside;
+    double border = 0;  // its length
+  };
+
+  FaceId choose_taker(FaceId face) const;
+  double length_of_arc(const Arc& arc) const;
+  FaceId face_of(RegionId region);
+  std::vector<Mate> mates_of(RegionId region, FaceId face);
+  bool bridges(std::size_t mates) const;
+  bool is_smaller(RegionId a, RegionId b) const;
+  void join(RegionId region, FaceId face, const Mate& mate, EditLog& log, United& united);
+  void dissolve(RegionId region, FaceId taker, EditLog& log, United& united);
   Side side_of(EdgeId edge, RegionId region);
   void measure_regions(const Regions& regions);
   void note_taken(RegionId region, FaceId face, FaceId taker);
@@ -105,6 +137,7 @@ class RegionBorders {
   CornerId end_at(VertexId v, EdgeId edge) const;
 
   const TrapezoidalGraph* graph_ = nullptr;
+  const MergePlan* plan_ = nullptr;
   Table<EdgeId, std::array<RegionId, 2>> beside_;
   Table<EdgeId, EdgeId> replaced_by_;
   Table<EdgeId, CornerId> corner_of_;  // that the edge leaves
@@ -115,6 +148,7 @@ class RegionBorders {
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order
+  Table<VertexId, std::uint32_t> first_end_;         // by vertex, in ends_
 
   // Of the current region.
   Table<EdgeId, std::uint32_t> seen_;
@@ -125,6 +159,7 @@ class RegionBorders {
   bool has_junction_ = false;
   std::vector<Spoke> spokes_;
   std::vector<Taken> taken_;
+  std::optional<double> block_area_;
   std::vector<VertexId> changed_;
   std::vector<CornerId> dissolved_;
 };

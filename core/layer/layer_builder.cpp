@@ -163,7 +163,8 @@ struct LayerBuilder::State {
     const std::vector<Rings> outlines = rings_of_features(graph, assembly.outcome.faces);
     for (const std::uint32_t i : assembly.together) add_outline(rows[i], outlines[i]);
     if (share != nullptr) share->enter(kAssemblyShare, 1);
-    most_tolerance = recorder.record(graph, faces, options, stock.history, share, threads);
+    most_tolerance = recorder.record(graph, faces, options, stock.history, share, threads,
+                                     assembly.outcome.plan ? &*assembly.outcome.plan : nullptr);
   }
 };
 
@@ -216,8 +217,9 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
     }
   }
   if (state.share != nullptr) state.share->enter(0, kAssemblyShare);
-  Assembly assembly = assemble(features, state.options.coverage, state.options.close_gaps,
-                               state.coverage_builder, state.graph, state.share, threads);
+  Assembly assembly =
+      assemble(features, state.options.coverage, state.options.close_gaps, state.coverage_builder,
+               state.graph, state.share, threads, state.options.merging());
   state.most_tolerance.reset();
   if (!assembly.together.empty()) state.build_group(rows, assembly, threads);
   if (assembly.outcome.failure.empty()) {

@@ -248,6 +248,12 @@ void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage,
              [&coverage](const std::string& option, const std::string& text) {
                coverage.close_gaps = trapeze::number_or_throw(option, text, 0, trapeze::kWidestGap);
              });
+  add_number(command, "--merge", "PIXELS",
+             "Make one block of polygons that are nearer to each other than so many pixels, at the "
+             "usual simplify of 0.25; not with --coverage off",
+             [&coverage](const std::string& option, const std::string& text) {
+               coverage.merge = trapeze::number_or_throw(option, text, 0, trapeze::kWidestMerge);
+             });
 }
 
 std::string usual_coverage() {

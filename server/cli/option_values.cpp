@@ -90,18 +90,23 @@ std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments
   if (arguments.close_gaps.value_or(0) > 0 && coverage == CoverageMode::off) {
     throw UsageError("--close-gaps needs --coverage auto or on");
   }
+  if (arguments.merge.value_or(0) > 0 && coverage == CoverageMode::off) {
+    throw UsageError("--merge needs --coverage auto or on");
+  }
   return coverage;
 }
 
 void apply(const CoverageArguments& arguments, LayerOptions& options) {
   options.coverage = coverage_or_throw(arguments).value_or(kUsualCoverage);
   options.close_gaps = arguments.close_gaps.value_or(0);
+  options.merge = arguments.merge.value_or(0);
 }
 
 void apply(const CoverageArguments& arguments, LayerConfig& layer) {
   const std::optional<CoverageMode> coverage = coverage_or_throw(arguments);
   if (coverage) layer.coverage = coverage;
   if (arguments.close_gaps) layer.close_gaps = arguments.close_gaps;
+  if (arguments.merge) layer.merge = arguments.merge;
 }
 
 StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,

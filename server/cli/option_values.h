@@ -55,6 +55,7 @@ struct CoverageArguments {
   /// A name of kCoverageNames; empty: as the file was prepared, or the default.
   std::string mode;
   std::optional<double> close_gaps;  // metres; unset: as the file was prepared, or 0
+  std::optional<double> merge;       // pixels; unset: as the file was prepared, or 0
 };
 /// None if the name is empty, which leaves it to the file. Gaps are not closed without a coverage.
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
+#include "core/layer/layer_options.h"
 #include "core/graph/topological_consistency.h"
 #include "server/base/language_tag.h"
 #include "server/base/url.h"
@@ -287,6 +288,27 @@ Setting<LayerConfig> close_gaps_setting() {
   };
   setting.set = [](LayerConfig& layer, const SettingValue& value) {
     layer.close_gaps = std::get<double>(value);
+    return true;
+  };
+  return setting;
+}
+
+/// Not set is no number.
+Setting<LayerConfig> merge_setting() {
+  auto setting = begin<LayerConfig>(
+      "merge", SettingType::number, fmt::format("a number from 0 to {}", kWidestMerge),
+      "pixels, at the usual simplify of 0.25 and more or fewer in proportion to it: polygons that "
+      "are nearer to each other become one block, gaps and courtyards that are narrower are "
+      "filled; "
+      "where coverage is \"auto\" or \"on\"; not set: as a file was prepared, else 0, none");
+  setting.min = 0;
+  setting.max = kWidestMerge;
+  setting.get = [](const LayerConfig& layer) -> SettingValue {
+    if (!layer.merge) return std::string();
+    return *layer.merge;
+  };
+  setting.set = [](LayerConfig& layer, const SettingValue& value) {
+    layer.merge = std::get<double>(value);
     return true;
   };
   return setting;
@@ -699,6 +721,7 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
       weights_setting(),
       coverage_setting(),
       close_gaps_setting(),
+      merge_setting(),
       boolean<LayerConfig>(
           "fast_topology", [](auto& layer) -> auto& { return layer.fast_topology; },
           "whether requests may ask for topology=fast, polygons apart and without the test of "

@@ -292,6 +292,9 @@ class ConfigReader {
         cannot(error.what());
       }
     }
+    if (layer.merge.value_or(0) > 0 && !layer.live_query.empty()) {
+      cannot("a layer with a live_query is not merged to blocks");
+    }
     if (layer.crs.size() == 1) return;
     if (!layer.live_query.empty()) cannot("a layer with a live_query is built for one system only");
     if (layer.close_gaps.value_or(0) > 0) cannot("gaps are closed for one system only");

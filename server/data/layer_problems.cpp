@@ -20,6 +20,8 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
       return "attributes";
     case OpenPart::close_gaps:
       return "close_gaps";
+    case OpenPart::merge:
+      return "merge";
     case OpenPart::file:
       break;
   }

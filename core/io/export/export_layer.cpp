@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -65,7 +66,7 @@ class Exporter : public FeatureWorker {
     for (const WaitingFeature* feature : features) rings.push_back(&feature->rings);
     const Assembly assembly =
         assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
-                 coverage_builder_, graph_, nullptr, threads);
+                 coverage_builder_, graph_, nullptr, threads, options_.generalization.merging());
     if (!assembly.together.empty()) adapt_together(features, assembly);
     for (const std::uint32_t i : assembly.apart)
       build_apart(features[i]->key, features[i]->rings_apart());
@@ -90,7 +91,9 @@ class Exporter : public FeatureWorker {
   void adapt_together(std::span<WaitingFeature* const> features, const Assembly& assembly) {
     const FaceFeatures& faces = assembly.outcome.faces;
     const std::vector<Rings> outlines = rings_of_features(graph_, faces);
-    AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
+    const std::optional<MergePlan>& plan = assembly.outcome.plan;
+    AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization,
+                             plan ? &*plan : nullptr);
     adaptable.adapt_to(options_.epsilon);
     const std::vector<Polygons> polygons = polygons_of_features(adaptable.graph(), faces);
     std::size_t held = count_held(adaptable);

@@ -42,14 +42,20 @@ double work_of(std::span<WaitingFeature* const> task) {
 
 /// The groups of features, and all others each by itself.
 std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& waiting,
-                                                   CoverageMode coverage, unsigned threads,
+                                                   const LayerOptions& options, unsigned threads,
                                                    std::span<const std::uint32_t> known) {
   std::vector<const Rings*> rings;
   rings.reserve(waiting.size());
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
   std::vector<std::vector<WaitingFeature*>> tasks;
+  if (options.merge > 0 && !waiting.empty()) {
+    // Any may become a part of a block with any other.
+    auto& all = tasks.emplace_back();
+    for (WaitingFeature& feature : waiting) all.push_back(&feature);
+    return tasks;
+  }
   std::vector<bool> is_grouped(waiting.size(), false);
-  for (const auto& group : group_features(rings, coverage, threads, known)) {
+  for (const auto& group : group_features(rings, options.coverage, threads, known)) {
     auto& task = tasks.emplace_back();
     for (const std::uint32_t i : group) {
       task.push_back(&waiting[i]);
@@ -307,7 +313,7 @@ void FeaturePipeline::build_waiting() {
     show_progress();
   }
   const auto threads = static_cast<unsigned>(lanes_.size());
-  std::vector<Task> tasks = tasks_of(waiting, options_.coverage, threads, known_groups(waiting));
+  std::vector<Task> tasks = tasks_of(waiting, options_, threads, known_groups(waiting));
   work_read_ = 0;
   for (const Task& task : tasks) work_read_ += work_of(task);
   is_grouped_ = true;

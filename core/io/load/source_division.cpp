@@ -91,15 +91,18 @@ class Measuring {
     if (options_.coverage == CoverageMode::on) return add(all, owner);
     const std::size_t first = measures_.boxes.size();
     for (std::size_t r = 0; r < feature.rings.size(); ++r) {
-      const Box box = widened_for_gaps(box_of(feature.rings[r]), options_.close_gaps);
+      const Box box = widened(box_of(feature.rings[r]));
       // A hole mostly follows its shell.
       const bool is_within = measures_.boxes.size() > first && holds(measures_.boxes.back(), box);
       if (!is_within) add_as_is(box, owner);
     }
   }
 
-  void add(const Box& box, std::uint32_t owner) {
-    add_as_is(widened_for_gaps(box, options_.close_gaps), owner);
+  void add(const Box& box, std::uint32_t owner) { add_as_is(widened(box), owner); }
+  /// So that it meets those of others that may change it.
+  Box widened(const Box& box) const {
+    return options_.merge > 0 ? widened_for_blocks(box)
+                              : widened_for_gaps(box, options_.close_gaps);
   }
   void add_as_is(const Box& box, std::uint32_t owner) {
     require_countable(measures_.boxes.size() + 1, "rings that can be divided");

@@ -31,8 +31,8 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              ": is prepared already; select from its source with the options of "
                              "`trapeze prepare`");
   }
-  const PreparedDemands demands = {options.weights, options.prepared_from, options.coverage,
-                                   options.close_gaps, options.grid};
+  const PreparedDemands demands = {options.weights,    options.prepared_from, options.coverage,
+                                   options.close_gaps, options.grid,          options.merge};
   if (!is_pattern_of_files(path)) return open_single(path, demands);
   LoadedLayer loaded =
       open_prepared_parts(files_of_pattern(path), demands, options.earlier_parts.get());
@@ -49,6 +49,7 @@ LayerOptions layer_options(const OpenOptions& options) {
   layer.weights = options.weights.value_or(WeightRule::douglas_peucker);
   layer.coverage = options.coverage.value_or(kUsualCoverage);
   layer.close_gaps = options.close_gaps.value_or(0);
+  layer.merge = options.merge.value_or(0);
   return layer;
 }
 
@@ -56,6 +57,12 @@ LayerOptions layer_options(const OpenOptions& options) {
 std::string find_idle_gaps(const std::string& path, const LayerOptions& layer) {
   if (layer.close_gaps == 0 || layer.coverage != CoverageMode::off) return {};
   return name_of_source(path) + ": gaps can be closed only where coverage is auto or on";
+}
+
+/// The same of blocks.
+std::string find_idle_merge(const std::string& path, const LayerOptions& layer) {
+  if (layer.merge == 0 || layer.coverage != CoverageMode::off) return {};
+  return name_of_source(path) + ": polygons become blocks only where coverage is auto or on";
 }
 
 OpenPart part_of(SelectionPart part) {
@@ -98,6 +105,8 @@ std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOption
     }
     const std::string idle_gaps = find_idle_gaps(path, layer_options(options));
     if (!idle_gaps.empty()) findings.push_back({OpenPart::close_gaps, 0, idle_gaps});
+    const std::string idle_merge = find_idle_merge(path, layer_options(options));
+    if (!idle_merge.empty()) findings.push_back({OpenPart::merge, 0, idle_merge});
     examine_source(path, options.selection, findings);
   } catch (const SelectionError& error) {
     for (const SelectionProblem& problem : error.problems()) {
@@ -120,6 +129,8 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   load.generalization = layer_options(options);
   const std::string idle_gaps = find_idle_gaps(path, load.generalization);
   if (!idle_gaps.empty()) throw std::runtime_error(idle_gaps);
+  const std::string idle_merge = find_idle_merge(path, load.generalization);
+  if (!idle_merge.empty()) throw std::runtime_error(idle_merge);
   load.selection = options.selection;
   load.progress = options.progress;
   load.earlier = options.earlier;

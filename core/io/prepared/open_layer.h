@@ -21,13 +21,14 @@ struct OpenOptions {
   std::optional<CoverageMode> coverage =
       {};                                 // unset: that of a prepared layer, else kUsualCoverage
   std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
+  std::optional<double> merge = {};       // pixels; unset: that of a prepared layer, else 0
   std::string grid = {};                  // see LoadOptions
   std::shared_ptr<const Layer> earlier = {};  // see LoadOptions; of no use to a prepared layer
   std::shared_ptr<const PreparedParts> earlier_parts = {};  // see open_prepared_parts()
 };
 
 /// What of the options a finding is about, or the file itself.
-enum class OpenPart { file, layer, where, attributes, close_gaps };
+enum class OpenPart { file, layer, where, attributes, close_gaps, merge };
 
 /// What is found out about a layer before it is read.
 struct OpenFinding {

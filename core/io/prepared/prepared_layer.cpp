@@ -118,14 +118,21 @@ void write_fields(const std::vector<Field>& fields, ByteWriter& out) {
   }
 }
 
+// In the byte of the coverage: that there are blocks, and their distance follows.
+constexpr std::uint8_t kBlocksBit = 0x80;
+
 /// A value of an enumeration whose last is `last`.
 template <typename Enum>
-Enum take_enum(ByteReader& in, Enum last) {
-  const auto number = in.take<std::uint8_t>();
+Enum enum_of(std::uint8_t number, Enum last) {
   if (number > static_cast<std::uint8_t>(last)) {
     throw std::invalid_argument("the description holds an unknown word");
   }
   return static_cast<Enum>(number);
+}
+
+template <typename Enum>
+Enum take_enum(ByteReader& in, Enum last) {
+  return enum_of(in.take<std::uint8_t>(), last);
 }
 
 std::vector<Field> read_fields(ByteReader& in) {
@@ -140,8 +147,11 @@ std::vector<Field> read_fields(ByteReader& in) {
 void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.weights));
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
-  out.add(static_cast<std::uint8_t>(numbers.options.coverage));
+  const bool has_blocks = numbers.options.merge > 0;
+  out.add(static_cast<std::uint8_t>(static_cast<std::uint8_t>(numbers.options.coverage) |
+                                    (has_blocks ? kBlocksBit : 0)));
   out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
+  if (has_blocks) out.add(std::bit_cast<std::uint64_t>(numbers.options.merge));
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
   const LayerSize& size = numbers.size;
@@ -157,8 +167,12 @@ LayerArrays read_numbers(ByteReader& in) {
   LayerArrays numbers;
   numbers.options.weights = take_enum(in, WeightRule::shape);
   numbers.options.topology = take_enum(in, Topology::fast);
-  numbers.options.coverage = take_enum(in, CoverageMode::on);
+  const auto coverage = in.take<std::uint8_t>();
+  const bool has_blocks = (coverage & kBlocksBit) != 0;
+  numbers.options.coverage =
+      enum_of(static_cast<std::uint8_t>(coverage & ~kBlocksBit), CoverageMode::on);
   numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());
+  if (has_blocks) numbers.options.merge = std::bit_cast<double>(in.take<std::uint64_t>());
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();
@@ -344,6 +358,10 @@ void check_options(const LayerOptions& options, const PreparedDemands& demands) 
     throw UnfitError("was prepared with gaps closed up to " + text_of(options.close_gaps) +
                      " m, and " + text_of(*demands.close_gaps) + " m are configured");
   }
+  if (demands.merge && *demands.merge != options.merge) {
+    throw UnfitError("was prepared with blocks of what is up to " + text_of(options.merge) +
+                     " pixels apart, and " + text_of(*demands.merge) + " are configured");
+  }
 }
 
 /// Of how layers are built, and on which grid.
@@ -507,7 +525,7 @@ EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& 
     SectionReader sections(file->bytes());
     Description description = take_description(sections);
     check_options(description.numbers.options,
-                  {options.weights, "", options.coverage, options.close_gaps});
+                  {options.weights, "", options.coverage, options.close_gaps, "", options.merge});
     check_fingerprint(options, grid, sections.fingerprint());
     earlier.layer = layer_from_sections(sections, std::move(description), file).layer;
     earlier.file = file;

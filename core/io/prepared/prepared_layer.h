@@ -30,6 +30,7 @@ struct PreparedDemands {
   std::optional<CoverageMode> coverage = {};  // unset: any
   std::optional<double> close_gaps = {};      // unset: any
   std::string grid = {};                      // see LoadOptions
+  std::optional<double> merge = {};           // unset: any
 };
 
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large

@@ -681,6 +681,8 @@ TEST(ProgramTest, WrongArgumentsAreErrorsThatHelp) {
        "--close-gaps takes a number from 0 to 1000, given was \"x\""},
       {{"check", fixture("rings.geojson"), "--coverage", "off", "--close-gaps", "5"},
        "--close-gaps needs --coverage auto or on"},
+      {{"check", fixture("rings.geojson"), "--coverage", "off", "--merge", "4"},
+       "--merge needs --coverage auto or on"},
       {{"check", fixture("rings.geojson"), "--coverage", "of"}, "did you mean o"},
       {{"check", fixture("rings.geojson"), "--max-skipped", "101%"},
        "--max-skipped takes a number of features, or a share of them such as \"1%\", given was"},

@@ -53,6 +53,7 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
     weights = "raised-parents"
     coverage = "on"
     close_gaps = 2.5
+    merge = 4
     [[layer]]
     name = "c"
     prepared = "c.trapeze")");
@@ -66,6 +67,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
   EXPECT_EQ(config.layers[1].coverage, CoverageMode::on);
   EXPECT_EQ(config.layers[0].close_gaps, std::nullopt);
   EXPECT_EQ(config.layers[1].close_gaps, 2.5);
+  EXPECT_EQ(config.layers[0].merge, std::nullopt);
+  EXPECT_EQ(config.layers[1].merge, 4);
   EXPECT_EQ(config.layers[2].file, "");
   EXPECT_THAT(config.layers[2].file_to_open(), ::testing::EndsWith("/c.trapeze"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\""), HasSubstr("needs a file"));
@@ -75,6 +78,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
               HasSubstr("\"auto\", \"on\" or \"off\""));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nclose_gaps = -1"),
               HasSubstr("a number from 0 to 1000"));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nmerge = 65"),
+              HasSubstr("a number from 0 to 64"));
 }
 
 TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {

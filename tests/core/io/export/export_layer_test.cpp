@@ -350,6 +350,20 @@ TEST_P(ExportFormatTest, NeighboursGetFurtherVerticesTogether) {
   EXPECT_TRUE(cut->IsEmpty() || cut->getDimension() < 2) << "they overlap";
 }
 
+TEST_P(ExportFormatTest, WhatIsNearEachOtherIsWrittenAsOneBlock) {
+  const std::string source =
+      metres_source(folder_, {{.wkt = "POLYGON((0 0,100 0,100 100,0 100,0 0))"},
+                              {.wkt = "POLYGON((110 0,210 0,210 100,110 100,110 0))"}});
+  ExportOptions options;
+  options.generalization.merge = 4;
+  options.epsilon = 40;  // cells: 16 times as many are 12 m
+  const ExportReport report = export_layer(source, output(), options);
+  EXPECT_EQ(report.written, 1u);
+  const Written written(output());
+  ASSERT_EQ(written.size(), 1u);
+  EXPECT_TRUE(written.are_all_valid());
+}
+
 TEST_P(ExportFormatTest, AFileOfWhichNothingIsLeftHasFieldsAndNoFeatures) {
   const std::string source = metres_source(folder_, {{.wkt = kSquare}});
   ExportOptions options;

@@ -399,6 +399,19 @@ TEST_F(PreparedLayerTest, WithOtherGapsClosedThanDemandedIsRefused) {
   EXPECT_NO_THROW(open_prepared_layer(prepared_, demands));
 }
 
+TEST_F(PreparedLayerTest, WithOtherBlocksThanDemandedIsRefused) {
+  LoadOptions options;
+  options.generalization.merge = 2.5;
+  prepare(kMixed, prepared_, options);
+  PreparedDemands demands;
+  demands.merge = 0;
+  EXPECT_THAT(failure_of(prepared_, demands), AllOf(HasSubstr("blocks of what is up to 2.5 pixels"),
+                                                    HasSubstr("0 are configured")));
+  demands.merge = 2.5;
+  EXPECT_EQ(arrays_of(*open_prepared_layer(prepared_, demands).layer).options,
+            options.generalization);
+}
+
 TEST_F(PreparedLayerTest, IsServedWithoutItsSource) {
   const std::string file = source("source.geojson", "a");
   prepare(file, prepared_);
@@ -582,6 +595,7 @@ TEST_F(PreparedLayerTest, NothingIsTakenOverFromWhatWasBuiltOtherwise) {
   EXPECT_THAT(unfit([](LayerOptions& o) { o.coverage = CoverageMode::on; }),
               HasSubstr("coverage auto"));
   EXPECT_THAT(unfit([](LayerOptions& o) { o.close_gaps = 3; }), HasSubstr("gaps closed up to 2 m"));
+  EXPECT_THAT(unfit([](LayerOptions& o) { o.merge = 4; }), HasSubstr("blocks"));
   change_header(prepared_, [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("builds layers otherwise"));
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });

@@ -214,6 +214,7 @@ TEST_F(SourceSelectionTest, FindsTheSameWithoutReading) {
   EXPECT_THAT(parts({.selection = {.layer = "roads"}}), ElementsAre(OpenPart::layer));
   EXPECT_THAT(parts({.coverage = CoverageMode::off, .close_gaps = 1}),
               ElementsAre(OpenPart::close_gaps));
+  EXPECT_THAT(parts({.coverage = CoverageMode::off, .merge = 1}), ElementsAre(OpenPart::merge));
   std::filesystem::resize_file(town_, 5000);
   EXPECT_THAT(parts({}), ElementsAre(OpenPart::file));
   std::filesystem::remove(town_);

@@ -1,0 +1,261 @@
+#include "core/borders/merging.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <queue>
+
+#include "core/grid/disjoint_sets.h"
+#include "core/grid/tolerance.h"
+
+namespace trapeze {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr FaceId kNoPiece = kOutside;
+
+/// The face on the side of a wall that is not void. A piece of an edge may lead up where the edge
+/// leads down, as its ends are rounded.
+FaceId face_behind(const VoidMesh& mesh, const TrapezoidalGraph& graph, VoidMesh::HalfEdge wall) {
+  const Edge& edge = graph.edge(mesh.edge_of(wall));
+  return edge.face[kLeft] == kOutside ? edge.face[kRight] : edge.face[kLeft];
+}
+
+/// The class of the polygons at each vertex.
+std::vector<std::uint32_t> classes_at_vertices(const VoidMesh& mesh, const TrapezoidalGraph& graph,
+                                               std::span<const std::uint32_t> class_of_face) {
+  constexpr std::uint32_t kUnset = kMixedClass - 1;
+  std::vector<std::uint32_t> classes(mesh.vertex_count(), kUnset);
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    const std::uint32_t own = class_of_face[face_behind(mesh, graph, wall)];
+    for (const VoidMesh::HalfEdge h : {wall, VoidMesh::next(wall)}) {
+      std::uint32_t& known = classes[mesh.vertex(h).value];
+      known = known == kUnset || known == own ? own : kMixedClass;
+    }
+  }
+  return classes;
+}
+
+/// What a triangle bridges by itself.
+double own_distance(const VoidMesh& mesh, std::uint32_t triangle) {
+  double narrowest = kNever;
+  std::array<double, 3> sides{};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const VoidMesh::HalfEdge h = 3 * triangle + i;
+    sides[i] = mesh.length(h);
+    if (mesh.is_wall(h)) narrowest = std::min(narrowest, mesh.distance_across(h));
+  }
+  if (narrowest < kNever) return narrowest;
+  std::sort(sides.begin(), sides.end());
+  return sides[1];
+}
+
+/// The shortest sides that tie all polygons of a class together that are near enough, as a
+/// minimum spanning tree.
+std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
+                                                 const TrapezoidalGraph& graph,
+                                                 std::span<const std::uint32_t> class_of_face) {
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+  // Of vertices, and of the faces of the polygons.
+  DisjointSets ties(vertices + class_of_face.size());
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    for (const VoidMesh::HalfEdge h : {wall, VoidMesh::next(wall)}) {
+      ties.tie(mesh.vertex(h).value, vertices + face_behind(mesh, graph, wall));
+    }
+  }
+  std::vector<std::pair<double, VoidMesh::HalfEdge>> sides;
+  for (VoidMesh::HalfEdge h = 0; h < 3 * mesh.triangle_count(); ++h) {
+    if (mesh.is_wall(h) || mesh.twin(h) < h) continue;
+    const std::uint32_t a = mesh.vertex(h).value;
+    const std::uint32_t b = mesh.vertex(VoidMesh::next(h)).value;
+    if (a == 0 || b == 0 || classes[a] != classes[b] || classes[a] == kMixedClass) continue;
+    if (ties.find(a) != ties.find(b)) sides.emplace_back(mesh.length(h), h);
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<VoidMesh::HalfEdge> bridges;
+  for (const auto& [length, h] : sides) {
+    if (length > kWidestBridge) break;
+    const std::uint32_t a = ties.find(mesh.vertex(h).value);
+    const std::uint32_t b = ties.find(mesh.vertex(VoidMesh::next(h)).value);
+    if (a == b) continue;
+    ties.tie(a, b);
+    bridges.push_back(h);
+  }
+  return bridges;
+}
+
+/// Numbers the pieces from first_void on.
+class Pieces {
+ public:
+  Pieces(const VoidMesh& mesh, const std::vector<double>& distances, double ratio,
+         FaceId first_void) {
+    const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+    std::vector<int> levels(count, kLastLevel + 1);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (distances[t] <= kWidestBridge) levels[t] = level_above(distances[t] / ratio);
+    }
+    DisjointSets ties(count);
+    for (VoidMesh::HalfEdge h = 0; h < 3 * count; ++h) {
+      if (mesh.is_wall(h)) continue;
+      const std::uint32_t t = VoidMesh::triangle_of(h);
+      const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
+      if (levels[t] == levels[beyond]) ties.tie(t, beyond);
+    }
+    faces_.assign(count, kNoPiece);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (levels[t] > kLastLevel) continue;
+      FaceId& face = faces_[ties.find(t)];
+      if (face == kNoPiece) {
+        face = first_void + static_cast<FaceId>(due_.size());
+        due_.push_back(0);
+        firsts_.push_back(t);
+      }
+      faces_[t] = face;
+      double& due = due_[face - first_void];
+      due = std::max(due, distances[t] / ratio);
+    }
+  }
+
+  FaceId face_of(std::uint32_t triangle) const { return faces_[triangle]; }
+  const std::vector<double>& due() const { return due_; }
+  /// Of each: one of its triangles.
+  const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+
+ private:
+  std::vector<FaceId> faces_;  // by triangle
+  std::vector<double> due_;
+  std::vector<std::uint32_t> firsts_;
+};
+
+void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, DividedVoid& divided) {
+  if (is_above(a, b)) {
+    divided.segments.emplace_back(a, b);
+    divided.sides.emplace_back(right_of_ab, left_of_ab);  // what is right of one that goes down
+  } else {                                                // is on the left of the map
+    divided.segments.emplace_back(b, a);
+    divided.sides.emplace_back(left_of_ab, right_of_ab);
+  }
+}
+
+}  // namespace
+
+Box widened_for_blocks(const Box& box) {
+  constexpr auto kHalf = static_cast<std::int32_t>(kWidestBridge / 2) + 1;
+  if (box.is_empty()) return box;
+  return {
+      std::max(box.min_x, kGridMin + kHalf) - kHalf, std::max(box.min_y, kGridMin + kHalf) - kHalf,
+      std::min(box.max_x, kGridMax - kHalf) + kHalf, std::min(box.max_y, kGridMax - kHalf) + kHalf};
+}
+
+bool MergePlan::are_of_one_class(FaceId a, FaceId b) const {
+  return classes[a - 1] == classes[b - 1] && classes[a - 1] != kMixedClass;
+}
+
+// The largest set is what is left when everything else is taken away, from the greatest distance
+// down: a triangle goes at its own distance, or where a neighbour has gone and the side between
+// them is longer, at the smaller of the two.
+std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGraph& graph,
+                                      std::span<const std::uint32_t> class_of_face) {
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
+  std::vector<double> distances(count);
+  std::vector<bool> is_known(count, false);
+  // What is not raised stays in order; what is waits apart, as it is little.
+  std::vector<std::pair<double, std::uint32_t>> order(count);
+  std::priority_queue<std::pair<double, std::uint32_t>> raised;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const auto class_at = [&](std::uint32_t i) { return classes[mesh.vertex(3 * t + i).value]; };
+    const bool is_between_equals = !mesh.is_beyond(t) && class_at(0) != kMixedClass &&
+                                   class_at(0) == class_at(1) && class_at(0) == class_at(2);
+    distances[t] = is_between_equals ? own_distance(mesh, t) : kNever;
+    order[t] = {distances[t], t};
+  }
+  std::sort(order.begin(), order.end(), std::greater<>());
+  for (std::size_t i = 0; i < order.size() || !raised.empty();) {
+    const bool is_raised = !raised.empty() && (i == order.size() || order[i] < raised.top());
+    const auto [distance, t] = is_raised ? raised.top() : order[i];
+    if (is_raised) {
+      raised.pop();
+    } else {
+      ++i;
+    }
+    if (is_known[t]) continue;
+    is_known[t] = true;
+    for (std::uint32_t side = 0; side < 3; ++side) {
+      const VoidMesh::HalfEdge h = 3 * t + side;
+      if (mesh.is_wall(h)) continue;
+      const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
+      if (is_known[beyond]) continue;
+      const double at_least = std::min(distance, mesh.length(h));
+      if (at_least <= distances[beyond]) continue;
+      distances[beyond] = at_least;
+      raised.emplace(at_least, beyond);
+    }
+  }
+  return distances;
+}
+
+void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
+                              std::span<const std::uint32_t> class_of_face) {
+  constexpr int kMostPasses = 1;
+  mesh.divide_walls(kWidestBridge);
+  for (int pass = 0; pass < kMostPasses && !mesh.has_failed(); ++pass) {
+    const std::vector<double> distances = distances_to_fill(mesh, graph, class_of_face);
+    std::vector<VoidMesh::HalfEdge> bridges = shortest_bridges(mesh, graph, class_of_face);
+    std::erase_if(bridges, [&](VoidMesh::HalfEdge h) {
+      const double distance = std::min(distances[VoidMesh::triangle_of(h)],
+                                       distances[VoidMesh::triangle_of(mesh.twin(h))]);
+      return distance <= std::numbers::sqrt2 * mesh.length(h);
+    });
+    if (bridges.empty() || !mesh.divide_walls_beside(bridges)) return;
+  }
+}
+
+std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double ratio,
+                                       FaceId first_void,
+                                       std::span<const std::uint32_t> class_of_face) {
+  VoidMesh mesh(graph);
+  if (!mesh.has_failed()) divide_walls_for_bridges(mesh, graph, class_of_face);
+  if (mesh.has_failed()) return std::nullopt;
+  const Pieces pieces(mesh, distances_to_fill(mesh, graph, class_of_face), ratio, first_void);
+  if (pieces.due().empty()) return std::nullopt;
+
+  DividedVoid divided;
+  for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+    const Edge& edge = graph.edge(EdgeId(i));
+    if (graph.is_frame(EdgeId(i)) || edge.face[kLeft] == kOutside ||
+        edge.face[kRight] == kOutside) {
+      continue;
+    }
+    divided.segments.emplace_back(graph.point(edge.end[kUp]), graph.point(edge.end[kDown]));
+    divided.sides.emplace_back(edge.face[kLeft], edge.face[kRight]);
+  }
+  for (const VoidMesh::HalfEdge wall : mesh.walls()) {
+    add_segment(mesh.corner(wall), mesh.corner(VoidMesh::next(wall)),
+                pieces.face_of(VoidMesh::triangle_of(wall)), face_behind(mesh, graph, wall),
+                divided);
+  }
+  for (VoidMesh::HalfEdge h = 0; h < 3 * mesh.triangle_count(); ++h) {
+    if (mesh.is_wall(h) || mesh.twin(h) < h) continue;
+    const FaceId here = pieces.face_of(VoidMesh::triangle_of(h));
+    const FaceId beyond = pieces.face_of(VoidMesh::triangle_of(mesh.twin(h)));
+    if (here == beyond) continue;
+    add_segment(mesh.corner(h), mesh.corner(VoidMesh::next(h)), here, beyond, divided);
+  }
+
+  MergePlan& plan = divided.plan;
+  plan.ratio = ratio;
+  plan.first_void = first_void;
+  plan.due = pieces.due();
+  plan.classes.assign(class_of_face.begin() + 1, class_of_face.end());
+  const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
+  for (const std::uint32_t t : pieces.firsts())
+    plan.classes.push_back(classes[mesh.vertex(3 * t).value]);
+  return divided;
+}
+
+}  // namespace trapeze
