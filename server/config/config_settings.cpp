@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
-#include "core/layer/layer_options.h"
 #include "core/graph/topological_consistency.h"
+#include "core/layer/layer_options.h"
 #include "server/base/language_tag.h"
 #include "server/base/url.h"
 #include "server/base/zoom_range.h"

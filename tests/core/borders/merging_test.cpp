@@ -270,7 +270,9 @@ TEST(Merging, WhatIsNearerIsInOneBlockAndWhatIsFartherIsNot) {
           ++pairs;
           EXPECT_TRUE(is_one) << i << " and " << k << ", " << least << " apart, at " << distance;
         }
-        if (is_one) EXPECT_EQ(near.find(i), near.find(k));
+        if (is_one) {
+          EXPECT_EQ(near.find(i), near.find(k));
+        }
       }
     }
   }
@@ -309,8 +311,12 @@ TEST(Merging, BlocksAreTheSameWhenTheTownIsTurned) {
         for (std::uint32_t k = 0; k < i; ++k) {
           ++compared;
           others += (blocks[i] == blocks[k]) != (same[i] == same[k]);
-          if (fewer[i] == fewer[k]) EXPECT_EQ(blocks[i], blocks[k]) << distance;
-          if (blocks[i] == blocks[k]) EXPECT_EQ(more[i], more[k]) << distance;
+          if (fewer[i] == fewer[k]) {
+            EXPECT_EQ(blocks[i], blocks[k]) << distance;
+          }
+          if (blocks[i] == blocks[k]) {
+            EXPECT_EQ(more[i], more[k]) << distance;
+          }
         }
       }
       filled += static_cast<double>(as_is.doubled_area_filled(distance));
