@@ -175,7 +175,7 @@ std::vector<double> weights_the_plain_way(const Points& points, Line line) {
       if (is_end(k)) continue;
       choices.push_back({cost_of_vertex(at(k + n - 1), at(k), at(k + 1)), 1, at(k), at(k), k});
       if (n < 4 || is_end(k + 1)) continue;
-      const auto [upper, lower] = std::minmax(at(k), at(k + 1), is_above);
+      const auto [upper, lower] = std::minmax({at(k), at(k + 1)}, is_above);
       choices.push_back(
           {cost_of_pair(at(k + n - 1), at(k), at(k + 1), at(k + 2)), 2, upper, lower, k});
     }
