@@ -1,5 +1,5 @@
-// Whether a test is built with sanitizers, under which its times say nothing of the program, and the
-// longest of the tests by random shapes take a part of them.
+// Whether a test is built with sanitizers, under which its times say nothing of the program, and
+// the longest of the tests by random shapes take a part of them.
 #pragma once
 
 namespace trapeze::testing {
