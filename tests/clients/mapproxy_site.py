@@ -12,6 +12,17 @@ except ImportError as error:
     skip(f"MapProxy is not installed ({error})")
 
 
+# The end of a configuration, before its {folder} is named.
+GLOBALS = """
+globals:
+  cache:
+    base_dir: {folder}/cache
+    lock_dir: {folder}/locks
+  image:
+    paletted: false
+"""
+
+
 class MapProxySite:
     """Of a configuration, which is written into a folder."""
 

@@ -2,7 +2,7 @@
 
 import io
 
-from mapproxy_site import MapProxySite
+from mapproxy_site import GLOBALS, MapProxySite
 from served_map import get, served_map
 from PIL import Image
 
@@ -24,13 +24,7 @@ sources:
     grid: GLOBAL_WEBMERCATOR
     url: {base}tiles/land,lake/%(z)s/%(x)s/%(y)s.png?lake.fill=ff0000
     transparent: true
-globals:
-  cache:
-    base_dir: {folder}/cache
-    lock_dir: {folder}/locks
-  image:
-    paletted: false
-"""
+""" + GLOBALS
 
 
 def pixels(png):

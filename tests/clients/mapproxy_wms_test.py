@@ -4,7 +4,7 @@ import io
 import os
 import sys
 
-from mapproxy_site import MapProxySite
+from mapproxy_site import GLOBALS, MapProxySite
 from served_map import get, served_map
 from PIL import Image, ImageChops
 
@@ -51,13 +51,7 @@ sources:
     supported_srs: ["EPSG:3857", "EPSG:25832"]
     req: *request
     wms_opts: *options
-globals:
-  cache:
-    base_dir: {folder}/cache
-    lock_dir: {folder}/locks
-  image:
-    paletted: false
-"""
+""" + GLOBALS
 PLACE = (200000, 4700000, 1200000, 5700000)  # of UTM, with the lake, the bay and the eastern coast
 SIZE = 500
 TOLERANCE = 2  # of 255: MapProxy rounds sides of windows

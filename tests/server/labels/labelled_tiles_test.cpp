@@ -15,6 +15,7 @@
 #include "render/software/software_renderer.h"
 #include "server/labels/draw_labels.h"
 #include "server/tiles/tile_painter.h"
+#include "tests/server/labels/seen_labels.h"
 #include "tests/server/seed/seeded_tiles.h"
 #include "tests/server/service/sample_site.h"
 #include "tests/server/tiles/edited_land.h"
@@ -23,8 +24,13 @@ namespace trapeze {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::is_among;
 using testing::label_book;
+using testing::label_places;
+using testing::LabelPlace;
+using testing::labels_in;
 using ::testing::Not;
+using testing::SeenLabel;
 
 const std::vector<std::string> kStyles = {
     "label=kind",
@@ -38,21 +44,8 @@ TileRequest request_of(const std::string& target) {
       *parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook()));
 }
 
-/// A label as any picture has it: by its pixels of the world at that zoom.
-using Seen = std::tuple<std::int64_t, std::int64_t, std::string>;
-
-std::set<Seen> labels_of(const TilePlan& plan) {
-  std::set<Seen> seen;
-  const View& view = plan.view;
-  for (const DrawnLabel& label :
-       label_book()->find({*plan.dataset, plan.labels, view, plan.scale})) {
-    const auto pixel = [&view](std::int64_t origin) {
-      return static_cast<std::int64_t>(static_cast<double>(origin) / view.cells_per_pixel);
-    };
-    seen.emplace(pixel(view.origin_x) + label.left, pixel(view.origin_y) + label.top,
-                 label.image->identity);
-  }
-  return seen;
+std::set<SeenLabel> labels_of(const TilePlan& plan) {
+  return labels_in(plan, plan.view, plan.scale);
 }
 
 class LabelledTilesTest : public ::testing::Test {
@@ -94,13 +87,13 @@ TEST_F(LabelledTilesTest, NeighboursShowTheSameLabels) {
         (static_cast<std::int64_t>(x) + 1 - (std::int64_t{1} << z) / 2) * 256 * scale;
     TilePlan both = left;
     both.view.width *= 2;
-    std::set<Seen> united = of_left;
+    std::set<SeenLabel> united = of_left;
     united.insert(of_right.begin(), of_right.end());
     EXPECT_EQ(labels_of(both), united) << left.key();
-    for (const Seen& label : of_left) {
+    for (const SeenLabel& label : of_left) {
       const bool is_right = of_right.contains(label);
       crossing += is_right ? 1U : 0U;
-      EXPECT_LT(std::get<0>(label), border);
+      EXPECT_LT(label.left, border);
     }
   }
   EXPECT_GT(crossing, 100u);
@@ -108,12 +101,7 @@ TEST_F(LabelledTilesTest, NeighboursShowTheSameLabels) {
 
 TEST_F(LabelledTilesTest, WhatIsShownIsShownAtAllLargerScales) {
   for (const std::string& style : kStyles) {
-    struct Label {
-      double x;
-      double y;
-      std::string identity;
-    };
-    std::vector<Label> before;
+    std::vector<LabelPlace> before;
     double pixel_before = 0;
     std::size_t most = 0;
     for (double zoom = 0; zoom <= 11; zoom += 0.25) {
@@ -121,21 +109,9 @@ TEST_F(LabelledTilesTest, WhatIsShownIsShownAtAllLargerScales) {
       // The whole world at that zoom: more than anybody would draw.
       plan.view.cells_per_pixel = std::exp2(23 - zoom);
       plan.view.width = plan.view.height = static_cast<int>(std::exp2(8 + zoom));
-      std::vector<Label> now;
-      for (const auto& label :
-           label_book()->find({*plan.dataset, plan.labels, plan.view, plan.scale})) {
-        const double x = (label.left + label.image->mask.width / 2) * plan.view.cells_per_pixel;
-        const double y = (label.top + label.image->mask.height / 2) * plan.view.cells_per_pixel;
-        now.push_back({x, y, label.image->identity});
-      }
-      for (const Label& shown : before) {
-        EXPECT_TRUE(std::ranges::any_of(now,
-                                        [&](const Label& label) {
-                                          return label.identity == shown.identity &&
-                                                 std::abs(label.x - shown.x) < pixel_before &&
-                                                 std::abs(label.y - shown.y) < pixel_before;
-                                        }))
-            << style << " at zoom " << zoom;
+      const std::vector<LabelPlace> now = label_places(plan, plan.view);
+      for (const LabelPlace& shown : before) {
+        EXPECT_TRUE(is_among(shown, now, pixel_before)) << style << " at zoom " << zoom;
       }
       most = std::max(most, now.size());
       before = now;

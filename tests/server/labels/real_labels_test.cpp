@@ -23,10 +23,16 @@
 #include "server/labels/label_book.h"
 #include "server/tiles/tile_plan.h"
 #include "server/tiles/tile_request.h"
-#include "tests/server/service/sample_site.h"
+#include "tests/server/labels/seen_labels.h"
 
 namespace trapeze {
 namespace {
+
+using testing::is_among;
+using testing::label_places;
+using testing::LabelPlace;
+using testing::labels_in;
+using testing::SeenLabel;
 
 constexpr int kPairs = 2'000;  // of all layers and styles
 constexpr int kLastZoom = 16;
@@ -77,39 +83,15 @@ class RealLabelsTest : public ::testing::TestWithParam<File> {
   std::shared_ptr<const Dataset> dataset_;
 };
 
-/// A label as every picture of that scale has it.
-struct Seen {
-  std::int64_t left = 0;  // in pixels from the middle of the world
-  std::int64_t top = 0;
-  std::shared_ptr<const LabelImage> image;
-
-  auto key() const { return std::tuple(left, top, image->identity); }
-  bool operator<(const Seen& other) const { return key() < other.key(); }
-  bool operator==(const Seen& other) const { return key() == other.key(); }
-};
-
-std::set<Seen> labels_in(const TilePlan& plan, const View& view, double scale) {
-  std::set<Seen> seen;
-  const auto pixel = [&view](std::int64_t origin) {
-    return static_cast<std::int64_t>(
-        std::floor(static_cast<double>(origin) / view.cells_per_pixel));
-  };
-  for (const DrawnLabel& label :
-       testing::label_book()->find({*plan.dataset, plan.labels, view, scale})) {
-    seen.insert({pixel(view.origin_x) + label.left, pixel(view.origin_y) + label.top, label.image});
-  }
-  return seen;
-}
-
 /// Whether two labels, with their halos, have a pixel in common.
-bool overlap(const Seen& a, const Seen& b) {
+bool overlap(const SeenLabel& a, const SeenLabel& b) {
   const TextMask& one = a.image->mask;
   const TextMask& other = b.image->mask;
   const std::int64_t left = std::max(a.left, b.left);
   const std::int64_t top = std::max(a.top, b.top);
   const std::int64_t right = std::min(a.left + one.width, b.left + other.width);
   const std::int64_t bottom = std::min(a.top + one.height, b.top + other.height);
-  const auto has = [](const Seen& label, std::int64_t x, std::int64_t y) {
+  const auto has = [](const SeenLabel& label, std::int64_t x, std::int64_t y) {
     const TextMask& mask = label.image->mask;
     return mask.halo[static_cast<std::size_t>((y - label.top) * mask.width + x - label.left)] > 0;
   };
@@ -121,7 +103,7 @@ bool overlap(const Seen& a, const Seen& b) {
   return false;
 }
 
-void expect_none_over_another(const std::set<Seen>& labels) {
+void expect_none_over_another(const std::set<SeenLabel>& labels) {
   for (auto a = labels.begin(); a != labels.end(); ++a) {
     for (auto b = std::next(a); b != labels.end(); ++b) {
       if (b->left >= a->left + a->image->mask.width) break;  // in order from west to east
@@ -167,7 +149,7 @@ TEST_P(RealLabelsTest, AreTheSameFromBothSidesOfBordersAndLieApart) {
     const auto of_one = labels_in(plan, one, scale);
     const auto of_other = labels_in(plan, other, scale);
     const auto of_both = labels_in(plan, both, scale);
-    std::set<Seen> united = of_one;
+    std::set<SeenLabel> united = of_one;
     united.insert(of_other.begin(), of_other.end());
     EXPECT_EQ(of_both, united) << plan.key() << " zoom " << zoom << " scale " << scale << " at "
                                << one.origin_x << ' ' << one.origin_y;
@@ -193,12 +175,7 @@ TEST_P(RealLabelsTest, GoOnBeingShownWhileOneZoomsIn) {
   for (int i = 0; i < places; ++i) {
     const TilePlan& plan = plans[static_cast<std::size_t>(i) % plans.size()];
     const Point place = random_place(random);
-    struct Label {
-      double x;
-      double y;
-      std::string identity;
-    };
-    std::vector<Label> before;
+    std::vector<LabelPlace> before;
     double pixel_before = 0;
     for (int quarter = 0; quarter <= 4 * kLastZoom; ++quarter) {
       View view;
@@ -206,24 +183,11 @@ TEST_P(RealLabelsTest, GoOnBeingShownWhileOneZoomsIn) {
       view.width = view.height = kWidth;
       view.origin_x = std::llround(place.x - kWidth / 2 * view.cells_per_pixel);
       view.origin_y = std::llround(place.y - kWidth / 2 * view.cells_per_pixel);
-      std::vector<Label> now;
-      for (const auto& label : testing::label_book()->find({*plan.dataset, plan.labels, view, 1})) {
-        const TextMask& mask = label.image->mask;
-        now.push_back({static_cast<double>(view.origin_x) +
-                           (label.left + mask.width / 2) * view.cells_per_pixel,
-                       static_cast<double>(view.origin_y) +
-                           (label.top + mask.height / 2) * view.cells_per_pixel,
-                       label.image->identity});
-      }
+      const std::vector<LabelPlace> now = label_places(plan, view);
       const double near = (kWidth / 2 - 1) * view.cells_per_pixel;
-      for (const Label& shown : before) {
+      for (const LabelPlace& shown : before) {
         if (std::abs(shown.x - place.x) > near || std::abs(shown.y - place.y) > near) continue;
-        EXPECT_TRUE(std::ranges::any_of(now,
-                                        [&](const Label& label) {
-                                          return label.identity == shown.identity &&
-                                                 std::abs(label.x - shown.x) < pixel_before &&
-                                                 std::abs(label.y - shown.y) < pixel_before;
-                                        }))
+        EXPECT_TRUE(is_among(shown, now, pixel_before))
             << plan.key() << " at zoom " << quarter / 4.0 << " around " << place.x << ' '
             << place.y;
       }
