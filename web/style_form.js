@@ -165,6 +165,14 @@ export class StyleForm {
         ],
       },
       {
+        name: "Shape",
+        controls: [
+          ...(layer.merge > 0
+            ? [number_control("merge", "Merge", range(1, 32, 1, layer.merge, pixels), change)] : []),
+          number_control("smooth", "Smooth", range(0, 32, 1, 0, pixels), change),
+        ],
+      },
+      {
         name: "Labels",
         gate: {
           control: this.label_,

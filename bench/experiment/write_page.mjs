@@ -1,16 +1,17 @@
 // From the JSON of the experiment to the page bench/RESULTS.md, its plots and pictures, and a summary.
 //
-//   node write_page.mjs EXPERIMENT.json BENCH_FOLDER
+//   node write_page.mjs EXPERIMENT.json BENCH_FOLDER PROGRAM
 import { execFileSync } from 'node:child_process'
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { basename, dirname, join } from 'node:path'
 
+import { beyond } from './beyond.mjs'
 import { plotGrowth, plotStages, plotViews } from './plots.mjs'
 import { quality } from './quality_section.mjs'
 import { bytes, count, mean, ms, ratio, slope, table } from './figures.mjs'
 import { verdicts } from './verdicts.mjs'
 
-const [jsonPath, bench] = process.argv.slice(2)
+const [jsonPath, bench, program] = process.argv.slice(2)
 const report = JSON.parse(readFileSync(jsonPath, 'utf8'))
 const folder = join(bench, 'results')
 rmSync(folder, { recursive: true, force: true })
@@ -275,6 +276,7 @@ ${raced.map(mapSection).join('\n')}
 ${report.maps.map(quality).join('\n')}
 ${growthSection()}
 ${figureSection()}
+${beyondSection}
 ${secondsSection()}`
 }
 
@@ -286,6 +288,9 @@ function summary() {
   }
 }
 
+const buildings = report.maps.flatMap(map => map.layers)
+  .find(layer => basename(layer.file) === 'shenzhen_buildings.fgb')
+const beyondSection = buildings ? await beyond(program, buildings.file, folder) : ''
 const gnuplot = script => execFileSync('gnuplot', { input: script, stdio: ['pipe', 'inherit', 'inherit'] })
 for (const map of raced) gnuplot(plotViews(map, folder))
 if (raced.length > 0) gnuplot(plotStages(raced, folder))

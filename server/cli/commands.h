@@ -78,7 +78,7 @@ int run_diff(const DiffArguments& arguments);
 struct ExportArguments {
   std::string file;
   int zoom = 0;
-  double simplify = tolerance_in_pixels({}, {});  // pixels, as tiles are drawn
+  double simplify = kTolerancePixels;  // pixels, as tiles are drawn
   std::string topology{kTopologyNames.name_of(Topology::strict)};
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;

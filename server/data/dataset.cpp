@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/layer/layer_arrays.h"
+#include "core/layer/layer_contents.h"
 #include "core/layer/untested_layer.h"
 #include "server/base/content_hash.h"
 #include "server/data/load_progress.h"
@@ -274,6 +275,10 @@ OpenOptions how_to_open(const LayerConfig& layer) {
   options.prepared_from = layer.prepared.empty() ? "" : layer.file;
   options.grid = layer.grid;
   return options;
+}
+
+double ServedLayer::merge() const {
+  return layer->contents().options.merge;
 }
 
 std::size_t ServedLayer::trapezoids() const {

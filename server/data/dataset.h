@@ -62,6 +62,8 @@ struct ServedLayer {
   }
   /// For people: its name, and its grid if that is another than that of Web Mercator.
   std::string label() const;
+  /// As it was built, whether or not it is configured: see LayerOptions.
+  double merge() const;
   /// Of all of its parts.
   LayerSize size() const { return parts == nullptr ? layer->size() : parts->size(); }
   /// Versions of trapezoids, horizontal edges and dust among them.

@@ -76,6 +76,7 @@ Json layer_json(const ServedLayer& served, std::size_t position, const std::stri
   json["coverages"] = served.report.coverage.groups;
   json["trapezoids"] = served.trapezoids();
   json["memory"] = served.memory();
+  if (served.merge() > 0) json["merge"] = served.merge();
   if (served.parts != nullptr) json["parts"] = served.parts->parts().size();
   json["repaired"] = served.report.repaired;
   json["skipped"] = served.report.skipped;

@@ -68,7 +68,7 @@ Result<PlaceQuery> parse_request(const DocumentRequest& request) {
   return parsed;
 }
 
-Level level_of(const PlaceQuery& request, const StyleQuery& style, const std::string& layer) {
+Level level_of(const PlaceQuery& request, const StyleQuery& style, const ServedLayer& layer) {
   if (!request.zoom) return 0;
   return nearest_level(tolerance_in_pixels(style, layer) * request.system->cells_at(*request.zoom));
 }
@@ -237,7 +237,7 @@ Result<std::vector<FoundFeature>> find_features(const PlaceQuery& request,
     const Classing classing = style->classing.over(layer->features());
     const FeatureClassifier classifier(classing, layer->features());
     for (const std::uint32_t row :
-         features_at(*layer, request.place, level_of(request, *query, served.config.name))) {
+         features_at(*layer, request.place, level_of(request, *query, served))) {
       if (classifier.class_of(row) != kNotDrawn) found.push_back({layer, row});
     }
   }

@@ -9,6 +9,7 @@
 
 #include "core/graph/topological_consistency.h"
 #include "core/layer/layer.h"
+#include "core/layer/layer_options.h"
 #include "render/mask/stroke.h"
 #include "render/picture/pattern.h"
 #include "render/picture/reduce_colours.h"
@@ -212,6 +213,14 @@ constexpr std::array kParameters = {
                    .max = 64,
                    .default_text = "12",
                    .description = "size of the letters of labels, in pixels"},
+    StyleParameter{.id = ParameterId::merge,
+                   .name = "merge",
+                   .type = Type::number,
+                   .max = kWidestMerge,
+                   .default_text = "as far as simplify takes it",
+                   .description = "how far apart polygons may be and still be drawn as one block, "
+                                  "in pixels, of a layer that has a merge in its configuration; "
+                                  "simplify goes with it"},
     StyleParameter{.id = ParameterId::no_data_color,
                    .name = "no-data-color",
                    .type = Type::colour,

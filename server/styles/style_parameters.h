@@ -51,6 +51,7 @@ enum class ParameterId : std::uint8_t {
   label_priority,
   label_repeat,
   label_size,
+  merge,
   no_data_color,
   opacity,
   pattern,

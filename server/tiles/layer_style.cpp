@@ -434,6 +434,28 @@ std::optional<Problem> make_classes(Making& making) {
   return std::nullopt;
 }
 
+/// Nothing to make: tolerance_in_pixels() takes the distance into account.
+std::optional<Problem> check_merge(const Making& making) {
+  const auto* merge = making.settings.find<double>(ParameterId::merge);
+  if (merge == nullptr || *merge == 0) return std::nullopt;
+  const std::string& name = making.served.config.name;
+  const double built = making.served.merge();
+  if (built == 0) {
+    return Problem{400,
+                   fmt::format("The layer {} is not merged to blocks: that takes merge = 4, or "
+                               "another distance, in its configuration, or --merge 4.",
+                               name),
+                   "merge", fmt::format("{}", *merge), "a layer that is merged to blocks"};
+  }
+  const double widest = style_parameter(ParameterId::simplify).max / kTolerancePixels * built;
+  if (*merge <= widest) return std::nullopt;
+  return Problem{400,
+                 fmt::format("The layer {} is merged to blocks of what is up to {} pixels apart, "
+                             "which are too few for blocks of {}.",
+                             name, built, *merge),
+                 "merge", fmt::format("{}", *merge), fmt::format("at most {}", widest)};
+}
+
 std::optional<Problem> make_selection(Making& making) {
   Classing& classing = making.style.classing;
   using Ids = std::vector<std::int64_t>;
@@ -575,6 +597,7 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
   if (auto problem = make_joined(making)) return std::move(*problem);
   if (auto problem = make_classes(making)) return std::move(*problem);
   if (auto problem = make_selection(making)) return std::move(*problem);
+  if (auto problem = check_merge(making)) return std::move(*problem);
   making.style.stroke = stroke_of(making.settings);
   making.style.pattern = pattern_of(making.settings);
   making.style.smooth = making.settings.value_or(ParameterId::smooth, 0.0);
@@ -585,6 +608,14 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
   if (auto problem = make_label(making)) return std::move(*problem);
   make_paints(making);
   return std::move(making.style);
+}
+
+double tolerance_in_pixels(const StyleQuery& style, const ServedLayer& layer) {
+  if (const auto merge = style.value_for(layer.config.name, ParameterId::merge)) {
+    if (layer.merge() > 0) return kTolerancePixels * std::get<double>(*merge) / layer.merge();
+  }
+  const auto value = style.value_for(layer.config.name, ParameterId::simplify);
+  return value ? std::get<double>(*value) : kTolerancePixels;
 }
 
 bool names_values(const StyleQuery& style, const std::string& layer) {

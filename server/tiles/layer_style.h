@@ -81,6 +81,14 @@ enum class Looking : std::uint8_t {
 Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& served,
                                std::size_t position, Looking looking = Looking::for_drawing);
 
+/// Usual tolerance, in pixels of the picture: too small to be seen.
+constexpr double kTolerancePixels = 0.25;
+
+/// How far the drawn boundary of the layer may be from the true one. `style` is
+/// complete and fits the layer. Where it asks for blocks
+/// of what is so and so far apart, that tolerance at which they are.
+double tolerance_in_pixels(const StyleQuery& style, const ServedLayer& layer);
+
 /// Whether the style says something of that layer for which all of its features have to be known: a
 /// table to join, or a rule for breaks. Most say nothing like that.
 bool names_values(const StyleQuery& style, const std::string& layer);

@@ -12,11 +12,8 @@
 namespace trapeze {
 namespace {
 
-// Default tolerance, in output pixels: too small to be seen.
-constexpr double kTolerancePixels = 0.25;
-
 /// Of pixels that are not square, the shorter side decides.
-Level level_of_layer(const View& view, const StyleQuery& query, const std::string& layer) {
+Level level_of_layer(const View& view, const StyleQuery& query, const ServedLayer& layer) {
   return nearest_level(tolerance_in_pixels(query, layer) * view.shorter_side());
 }
 
@@ -125,11 +122,6 @@ std::string TilePlan::key() const {
   return key;
 }
 
-double tolerance_in_pixels(const StyleQuery& style, const std::string& layer) {
-  const auto value = style.value_for(layer, ParameterId::simplify);
-  return value ? std::get<double>(*value) : kTolerancePixels;
-}
-
 Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> dataset) {
   return plan_window(window_of(std::move(request)), std::move(dataset));
 }
@@ -176,14 +168,14 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
     const bool is_drawn = is_drawn_at(config, zoom);
     if (style->label != nullptr) {
       plan.labels.push_back({*drawn, style->label, style->classing,
-                             tolerance_in_pixels(*query, name),
+                             tolerance_in_pixels(*query, served),
                              static_cast<double>(config.min_zoom), is_drawn});
     }
     if (!is_drawn) continue;
     if (!style->is_visible() && !plan.debug.any()) continue;
     const Topology topology = topology_of_layer(*query, name);
     if (served.layer_for(topology) == nullptr) return no_fast_topology(name);
-    plan.layers.push_back({*drawn, *std::move(style), level_of_layer(plan.view, *query, name),
+    plan.layers.push_back({*drawn, *std::move(style), level_of_layer(plan.view, *query, served),
                            topology, small_of_layer(*query, name)});
   }
   return plan;

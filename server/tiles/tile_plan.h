@@ -70,8 +70,4 @@ bool has_to_look(const WindowRequest& request, const Dataset& dataset);
 /// The same of the window that is a tile.
 Result<TilePlan> plan_tile(TileRequest request, std::shared_ptr<const Dataset> dataset);
 
-/// How far the drawn boundary of the layer may be from the true one. `style` is
-/// complete, see complete_style().
-double tolerance_in_pixels(const StyleQuery& style, const std::string& layer);
-
 }  // namespace trapeze

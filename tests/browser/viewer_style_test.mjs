@@ -77,6 +77,10 @@ const STYLE_CONTROLS = [
     await slide(land.getByLabel("Size"), 16);
     await slide(land.getByLabel("Angle"), 0);
   }, { pattern: "hatch", "pattern-color": "00ff00", "pattern-size": "16", "pattern-angle": "0" }],
+  ["the shape", async (land) => {
+    await slide(land.getByLabel("Merge"), 8);
+    await slide(land.getByLabel("Smooth"), 6);
+  }, { merge: "8", smooth: "6" }],
   ["the names", async (land) => {
     await land.getByRole("combobox", { name: "Names" }).selectOption("name");
     await slide(land.getByLabel("Letters"), 16);

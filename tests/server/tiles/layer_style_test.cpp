@@ -22,7 +22,7 @@ constexpr Rgba kBlue{0, 0, 255, 255};
 constexpr Rgba kLime{0, 255, 0, 255};
 
 /// A layer "towns" of four features with the ids 10 to 13 and no polygons.
-ServedLayer towns() {
+ServedLayer towns(const LayerOptions& options = {}) {
   FeatureTable features(
       {{"kind", FieldType::text}, {"people", FieldType::integer}, {"height", FieldType::real}});
   const auto add = [&features](std::vector<Value> values) {
@@ -32,7 +32,8 @@ ServedLayer towns() {
   add({"village", std::int64_t{20}, -3.0});
   add({"a,b:c", std::int64_t{100}, Value()});
   add({Value(), Value(), 2.5});
-  std::vector<LayerBuilder> builders(1);
+  std::vector<LayerBuilder> builders;
+  builders.emplace_back(options);
   ServedLayer served;
   served.config.name = "towns";
   served.config.style = testing::style_of("fill=lime");
@@ -56,6 +57,11 @@ class LayerStyleTest : public ::testing::Test {
       return {};
     }
     return *std::move(resolved);
+  }
+  double tolerance(std::string_view query) {
+    const std::vector<std::string> layers = {"towns", "lakes"};
+    return tolerance_in_pixels(StyleQuery::parse(decode_query(query).value(), layers).value(),
+                               served_);
   }
   Problem problem(std::string_view query) {
     auto resolved = resolve(query);
@@ -94,6 +100,35 @@ TEST_F(LayerStyleTest, OutlinesAndPatternsHaveTheirDefaults) {
   EXPECT_EQ(style("pattern=stripes&pattern-size=12").pattern.width, 6);
   EXPECT_EQ(style("pattern=checker&pattern-angle=-90").pattern.angle, 270);
   EXPECT_EQ(style("pattern=none&pattern-size=12").pattern, Pattern());
+}
+
+TEST_F(LayerStyleTest, BlocksAreDrawnAtTheToleranceAtWhichTheyAre) {
+  LayerOptions options;
+  options.merge = 4;
+  served_ = towns(options);
+  EXPECT_EQ(tolerance(""), kTolerancePixels);
+  EXPECT_EQ(tolerance("merge=4"), kTolerancePixels);
+  EXPECT_EQ(tolerance("merge=10"), 2.5 * kTolerancePixels);
+  EXPECT_EQ(tolerance("merge=0"), 0);
+  EXPECT_EQ(tolerance("merge=8&simplify=3"), 2 * kTolerancePixels);
+  EXPECT_EQ(tolerance("towns.merge=8&merge=4"), 2 * kTolerancePixels);
+  EXPECT_EQ(tolerance("lakes.merge=8"), kTolerancePixels);
+  EXPECT_TRUE(resolve("merge=64"));
+}
+
+TEST_F(LayerStyleTest, OnlyALayerThatIsMergedHasBlocks) {
+  const Problem refused = problem("merge=8");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_EQ(refused.parameter, "merge");
+  EXPECT_THAT(refused.detail, HasSubstr("layer towns is not merged to blocks"));
+  EXPECT_THAT(refused.detail, HasSubstr("--merge 4"));
+  EXPECT_TRUE(resolve("merge=0"));
+  EXPECT_TRUE(resolve("lakes.merge=8"));
+  LayerOptions options;
+  options.merge = 0.125;
+  served_ = towns(options);
+  EXPECT_TRUE(resolve("merge=32"));
+  EXPECT_THAT(problem("merge=33").takes, HasSubstr("at most 32"));
 }
 
 TEST_F(LayerStyleTest, ClassesByValue) {

@@ -43,8 +43,7 @@ class TilePlanTest : public ::testing::Test {
 };
 
 TEST_F(TilePlanTest, TheDefaultToleranceIsTheOneThatParametersTell) {
-  EXPECT_EQ(format_value(tolerance_in_pixels({}, {})),
-            style_parameter(ParameterId::simplify).default_text);
+  EXPECT_EQ(format_value(kTolerancePixels), style_parameter(ParameterId::simplify).default_text);
 }
 
 TEST_F(TilePlanTest, FillsInTheLayersOwnColours) {
