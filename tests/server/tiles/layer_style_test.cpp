@@ -60,8 +60,8 @@ class LayerStyleTest : public ::testing::Test {
   }
   double tolerance(std::string_view query) {
     const std::vector<std::string> layers = {"towns", "lakes"};
-    return tolerance_in_pixels(StyleQuery::parse(decode_query(query).value(), layers).value(),
-                               served_);
+    const auto parsed = StyleQuery::parse(decode_query(query).value(), layers);
+    return parsed ? tolerance_in_pixels(*parsed, served_) : -1;
   }
   Problem problem(std::string_view query) {
     auto resolved = resolve(query);
