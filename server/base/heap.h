@@ -4,7 +4,7 @@
 
 namespace trapeze {
 
-/// Has arrays of more than a megabyte go back to the system as soon as they are freed, whatever was
+/// Has arrays of more than four megabytes go back to the system as soon as they are freed, whatever was
 /// freed before. Call it first thing in main: it holds for all threads.
 void return_large_arrays();
 
