@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/layer/layer_builder.h"
@@ -116,12 +118,13 @@ class GrowPicturesTest : public ::testing::Test {
     options.coverage = CoverageMode::automatic;
     std::vector<LayerBuilder> builders;
     builders.emplace_back(options);
-    FeatureTable table({{"kind", FieldType::text}});
+    FeatureTable table(std::vector<Field>{{"kind", FieldType::text}});
     std::vector<std::uint32_t> rows;
     std::vector<const Rings*> all;
-    const std::vector<std::string> kinds{"field", "river", "field"};
+    constexpr std::array<std::string_view, 3> kKinds{"field", "river", "field"};
     for (std::size_t i = 0; i < rings.size(); ++i) {
-      rows.push_back(table.append(static_cast<std::int64_t>(i), {kinds[i]}));
+      const std::array<Value, 1> values = {kKinds[i]};
+      rows.push_back(table.append(static_cast<std::int64_t>(i), values));
       all.push_back(&rings[i]);
     }
     EXPECT_TRUE(builders.front().add_coverage(rows, all).apart.empty());
