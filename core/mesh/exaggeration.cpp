@@ -196,15 +196,25 @@ void Exaggeration::take_samples(const Box& box) {
   rows_.clear();
   std::uint32_t count = 0;
   const double step = std::max(width_ / 3, kLeastStep * pixel_);
+  places_.clear();
   for (const BoundaryMap::Edge& edge : boundary_.edges()) {
+    const Vector way = edge.way();
+    const double along = length(way);
     Row row;
-    if (const auto shares = shares_in(box, edge.from(), edge.way())) {
-      row.steps = static_cast<std::int32_t>(std::ceil(length(edge.way()) / step));
+    row.normal = turned(way) * (1 / along);
+    if (const auto shares = shares_in(box, edge.from(), way)) {
+      row.steps = static_cast<std::int32_t>(std::ceil(along / step));
       row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
       const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
       row.count = std::min(last, row.steps) - row.first + 1;
       row.sample = count;
       count += 2 * static_cast<std::uint32_t>(row.count);
+      // At an end of the edge, a little beside it.
+      const double off = std::min(kOffEnds * pixel_ / along, 0.125);
+      for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
+        const double share = static_cast<double>(i) / row.steps;
+        places_.push_back(edge.from() + way * std::clamp(share, off, 1 - off));
+      }
     }
     rows_.push_back(row);
   }
@@ -221,18 +231,13 @@ Exaggeration::Sample& Exaggeration::sample(At at) {
   return samples_[row.sample + 2 * static_cast<std::uint32_t>(at.step - row.first) + at.side % 2];
 }
 
-// At an end of the edge, a little beside it.
 Vector Exaggeration::place(At at) const {
-  const BoundaryMap::Edge& edge = boundary_.edges()[at.side / 2];
   const Row& row = rows_[at.side / 2];
-  const double off = std::min(kOffEnds * pixel_ / length(edge.way()), 0.125);
-  const double share = static_cast<double>(at.step) / row.steps;
-  return edge.from() + edge.way() * std::clamp(share, off, 1 - off);
+  return places_[row.sample / 2 + static_cast<std::uint32_t>(at.step - row.first)];
 }
 
 Vector Exaggeration::inward(std::uint32_t side) const {
-  const Vector way = boundary_.edges()[side / 2].way();
-  const Vector normal = turned(way) * (1 / length(way));
+  const Vector normal = rows_[side / 2].normal;
   return is_forward(side) ? normal : normal * -1;
 }
 
@@ -330,6 +335,7 @@ void Exaggeration::walk_from(At at, double far, const Visit& visit) {
     while (walked <= far) {
       const auto next = is_on ? step_on(last) : step_back(last);
       if (!next) break;
+      if (next->side == at.side && next->step == at.step) return;  // once around
       walked += length(place(*next) - place(last));
       last = *next;
       if (visit(last)) return;
@@ -344,10 +350,13 @@ double Exaggeration::width_beside(At at) {
   const double own = disc(at, 0).radius;
   double widest = 0;
   walk_from(at, 2 * width_, [&](At other) {
-    const double radius = disc(other, 0).radius;
-    const double seen_from = std::max(0.0, radius - own) / kOpening;
-    const double beyond = std::max(0.0, length(place(other) - from) - seen_from);
-    widest = std::max(widest, 2 * radius - kThinnerBeyond * beyond);
+    const double far = length(place(other) - from);
+    const auto seen_at = [&](double radius) {
+      const double seen_from = std::max(0.0, radius - own) / kOpening;
+      return 2 * radius - kThinnerBeyond * std::max(0.0, far - seen_from);
+    };
+    if (seen_at(width_ / 2) <= widest) return false;
+    widest = std::max(widest, seen_at(disc(other, 0).radius));
     return widest >= width_;
   });
   return widest;

@@ -98,6 +98,7 @@ class Exaggeration {
   };
   // Of an edge: so many steps, and samples of those in the box.
   struct Row {
+    Vector normal;           // of length 1, into the face of the even side
     std::int32_t steps = 0;  // 0: no sample
     std::int32_t first = 0;
     std::int32_t count = 0;
@@ -168,6 +169,7 @@ class Exaggeration {
   Box box_;
   std::vector<Row> rows_;  // by edge
   std::vector<Sample> samples_;
+  std::vector<Vector> places_;  // of the samples of both sides
   std::vector<Moved> moved_;
   std::vector<MovedSide> moved_sides_;  // by side
   std::vector<Tip> tips_;               // by side
