@@ -169,6 +169,7 @@ export class StyleForm {
         controls: [
           ...(layer.merge > 0
             ? [number_control("merge", "Merge", range(1, 32, 1, layer.merge, pixels), change)] : []),
+          number_control("grow", "Grow", range(0, 8, 0.5, 0, pixels), change),
           number_control("smooth", "Smooth", range(0, 32, 1, 0, pixels), change),
         ],
       },

@@ -52,6 +52,9 @@ constexpr Style kStyles[] = {
     {"opacity", "opacity=0.5"},
     {"smooth", "smooth=8"},
     {"smooth_outline", "smooth=8&stroke=black"},
+    {"grow", "grow=2"},
+    {"grow_8", "grow=8"},
+    {"grow_outline", "grow=2&stroke=black"},
     {"labels", "label=type"},
     {"labels_and_outline", "label=type&stroke=black"},
     // Without making colours fewer, which takes most of a tile of many edges.

@@ -95,6 +95,13 @@ constexpr std::array kParameters = {
                    .type = Type::filter,
                    .default_text = "all features",
                    .description = "which features are drawn, by their properties"},
+    StyleParameter{.id = ParameterId::grow,
+                   .name = "grow",
+                   .type = Type::number,
+                   .max = 16,
+                   .default_text = "0",
+                   .description = "what is narrower than so many pixels is drawn that wide, as far "
+                                  "as neighbours leave room; not beside smooth"},
     StyleParameter{.id = ParameterId::highlight,
                    .name = "highlight",
                    .type = Type::ids,
@@ -290,10 +297,11 @@ constexpr std::array kParameters = {
                    .name = "small",
                    .type = Type::word,
                    .words = kSmallPolygonsNames.names(),
-                   .default_text = "dust",
+                   .default_text = "dust; with grow keep",
                    .description =
                        "polygons too small for the tolerance: dust keeps their area as a tint, "
-                       "keep draws each at least a pixel large, drop leaves them out"},
+                       "keep draws each at least a pixel large, or as large as grow says, drop "
+                       "leaves them out"},
     StyleParameter{.id = ParameterId::smooth,
                    .name = "smooth",
                    .type = Type::number,

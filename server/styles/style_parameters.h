@@ -32,6 +32,7 @@ enum class ParameterId : std::uint8_t {
   fill,
   fill_opacity,
   filter,
+  grow,
   highlight,
   highlight_fill,
   highlight_stroke,

@@ -127,6 +127,10 @@ std::uint64_t cost_of_layer(const TilePlan& plan, const LayerPaint& paint, const
   cost += cost_of_cuts(amounts, paint.style);
   if (view.projection == Projection::plate_carree) cost += shapes * kSidesPerProjectedTrapezoid;
   if (paint.style.smooth > 0) cost += trapezoids * kSidesPerRoundedTrapezoid;
+  if (paint.style.grow > 0) {
+    const auto pixels = static_cast<std::uint64_t>(std::ceil(paint.style.grow * plan.scale));
+    cost += trapezoids * (kSidesPerGrownTrapezoid + pixels * kSidesPerGrownPixel);
+  }
   if (plan.debug.any()) cost += trapezoids * kSidesPerMarkedTrapezoid;
   if (paint.style.stroke.width > 0) {
     const std::uint64_t edges = 2 * trapezoids + amounts.horizontal_edges;

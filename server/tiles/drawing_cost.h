@@ -18,6 +18,8 @@ constexpr std::uint64_t kPixelsPerSide = 16;
 constexpr std::uint64_t kSidesPerOutlineEdge = 4;
 constexpr std::uint64_t kSidesPerDashedEdge = 8;
 constexpr std::uint64_t kSidesPerRoundedTrapezoid = 40;  // of its corners, sides of new trapezoids
+constexpr std::uint64_t kSidesPerGrownTrapezoid = 120;   // looking around, by how far that is:
+constexpr std::uint64_t kSidesPerGrownPixel = 40;        // of the width, so many more of each
 constexpr std::uint64_t kSidesPerPartSeenThrough = 64;
 constexpr std::uint64_t kSidesPerProjectedTrapezoid = 2;  // in plate carree
 constexpr std::uint64_t kSidesPerMarkedTrapezoid = 32;    // of debug=mesh and the like

@@ -156,6 +156,15 @@ void LayerDrawing::ClassDrawing::add_corner(const CornerRounding& corners,
   corners.append_place(corner, is_hole, made_vertices, made_edges, made_trapezoids);
 }
 
+void LayerDrawing::ClassDrawing::add_grown(const Exaggeration::Triangle& triangle) {
+  Exaggeration::append(triangle, made_vertices, made_edges, made_trapezoids);
+}
+
+void LayerDrawing::ClassDrawing::give_way(const Exaggeration& exaggeration, const MeshView& mesh,
+                                          const MeshTrapezoid& trapezoid) {
+  exaggeration.append_common(mesh, trapezoid, made_vertices, made_edges, made_trapezoids);
+}
+
 void LayerDrawing::ClassDrawing::add_part(const MeshView& mesh, const TrapezoidPart& part) {
   const auto v = static_cast<std::uint32_t>(made_vertices.size());
   const auto e = static_cast<std::uint32_t>(made_edges.size());
@@ -214,6 +223,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   paint_ = &paint;
   layer_ = nullptr;
   has_pieces_ = pieces.size() > 1;
+  least_side_ = std::max(1.0, style().grow * plan.scale);
   view_ = view;
   class_count_ = 0;
   line_count_ = 0;
@@ -228,6 +238,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
     tools.plate_carree.begin(view.cells_per_row(), selection.box);
   }
   if (has_round_corners()) round_corners(plan.scale, pieces, selection, tools);
+  if (has_growth()) grow(plan.scale, pieces, selection, tools);
   tools.dust.begin(tools.shapes);
   piece_number_ = 0;
   for (const DrawnPiece& piece : pieces) {
@@ -238,6 +249,7 @@ bool LayerDrawing::select(const TilePlan& plan, const LayerPaint& paint, const V
   tools.dust.finish(view_.shorter_side(), tools.shapes);
   add_shapes(tools);
   check();
+  for (std::size_t i = 0; i < class_count_ && has_growth(); ++i) give_way(classes_[i], tools);
   for (std::size_t i = 0; i < class_count_; ++i) finish_class(selection, classes_[i]);
   leave_out_empty_lines();
   const auto is_seen = [](const ClassDrawing& drawing) {
@@ -315,6 +327,79 @@ void LayerDrawing::round_corners(double scale, std::span<const DrawnPiece> piece
     if (inside == outside) continue;
     if (inside != kNotDrawn) class_drawing(inside).add_corner(tools.corners, corner, true);
     if (outside != kNotDrawn) class_drawing(outside).add_corner(tools.corners, corner, false);
+  }
+}
+
+// All features count, as with corners. What lies over something else neither grows nor is in the
+// way.
+void LayerDrawing::find_growth(double scale, std::span<const DrawnPiece> pieces,
+                               const Layer::Selection& selection, DrawingTools& tools) const {
+  Layer::Selection polygons = selection;
+  polygons.small = SmallPolygons::drop;
+  CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
+  BoundaryMap& boundary = tools.exaggeration.boundary();
+  boundary.begin();
+  for (const DrawnPiece& piece : pieces) {
+    const Layer& layer = *piece.layer;
+    const MeshView& mesh = layer.mesh();
+    boundary.begin_piece(mesh);
+    const auto lies_over_others = [&](std::uint32_t i) {
+      return !layer.overlaps().of(layer.feature_of(i)).empty();
+    };
+    const auto add_if_cut = [&](std::uint32_t edge) {
+      const MeshEdge& ends = mesh.edges[edge];
+      const bool is_cut = view_.projection != Projection::plane &&
+                          is_on_frame(mesh.vertices[ends.upper], mesh.vertices[ends.lower]);
+      if (is_cut) boundary.add_cut(edge);
+    };
+    layer.select(polygons, tools.ranges);
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      check();
+      if (lies_over_others(i)) return;
+      const MeshTrapezoid& trapezoid = mesh.trapezoids[i];
+      boundary.add(trapezoid, layer.feature_of(i));
+      for (const std::uint32_t edge : {trapezoid.left, trapezoid.right}) add_if_cut(edge);
+    });
+    layer.select_horizontal_edges(polygons.box, polygons.level, tools.ranges);
+    for_each_trapezoid(tools.ranges, [&](std::uint32_t i) {
+      if (lies_over_others(i)) return;
+      const std::uint32_t edge = mesh.trapezoids[i].left;
+      boundary.add_edge(edge);
+      add_if_cut(edge);
+    });
+  }
+  tools.exaggeration.find({style().grow * scale, view_.shorter_side()}, view_.box(),
+                          tools.cancellation);
+}
+
+void LayerDrawing::grow(double scale, std::span<const DrawnPiece> pieces,
+                        const Layer::Selection& selection, DrawingTools& tools) {
+  find_growth(scale, pieces, selection, tools);
+  const auto class_of = [pieces](BoundaryMap::Face face) {
+    return number_of(pieces[BoundaryMap::piece_of(face)].classes.get(),
+                     BoundaryMap::number_of(face));
+  };
+  tools.exaggeration.keep([&](BoundaryMap::Face face) { return class_of(face) != kNotDrawn; });
+  for (const Exaggeration::Triangle& triangle : tools.exaggeration.triangles()) {
+    class_drawing(class_of(triangle.face)).add_grown(triangle);
+  }
+}
+
+// Where something has grown over what is wider, that is not drawn.
+void LayerDrawing::give_way(ClassDrawing& drawing, DrawingTools& tools) const {
+  if (drawing.is_beneath || tools.exaggeration.triangles().empty()) return;
+  const Box box = view_.box();
+  CancellationCheck check(tools.cancellation, kStepsBetweenChecks);
+  for (std::size_t k = 0; k < drawing.piece_count; ++k) {
+    const ClassDrawing::OfPiece& piece = drawing.pieces[k];
+    const MeshView& mesh = piece.layer->mesh();
+    for_each_trapezoid(piece.ranges, [&](std::uint32_t i) {
+      check();
+      const std::uint32_t row = piece.layer->feature_of(i);
+      if (row == Layer::kNoFeature || !piece.layer->overlaps().of(row).empty()) return;
+      if (!meets(mesh, mesh.trapezoids[i], box)) return;
+      drawing.give_way(tools.exaggeration, mesh, mesh.trapezoids[i]);
+    });
   }
 }
 
@@ -486,9 +571,9 @@ GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selectio
   return has_classes ? GrainIndex::Births{0, selection.level} : selection.later_births();
 }
 
-/// The box, as large as a pixel at least.
-Box LayerDrawing::pixel_around(const Box& box) const {
-  const double side = view_.shorter_side();
+/// The box, as large as the least that is drawn.
+Box LayerDrawing::least_around(const Box& box) const {
+  const double side = least_side_ * view_.shorter_side();
   const double middle = (static_cast<double>(box.min_y) + box.max_y) / 2;
   const double high = is_projected() ? side * mercator_stretch(middle) : side;
   return widened(box, static_cast<std::int64_t>(std::ceil(side)),
@@ -502,10 +587,10 @@ void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureCl
   // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
   // picture.
   Layer::Selection around = selection;
-  around.box = with_margin(selection.box, 2 * view_.longer_side());
+  around.box = with_margin(selection.box, 2 * least_side_ * view_.longer_side());
   if (classes == nullptr && is_kept) {
     layer_->small_polygons(around, tools.places);
-    for (const Box& place : tools.places) class_drawing(0).add_place(pixel_around(place), false);
+    for (const Box& place : tools.places) class_drawing(0).add_place(least_around(place), false);
   }
   const GrainIndex::Births births = births_of_dust(*paint_, selection);
   if (births.is_empty()) return;
@@ -519,7 +604,7 @@ void LayerDrawing::add_shapes(DrawingTools& tools) {
   for (const ClassMote& mote : tools.shapes.motes) {
     if (is_kept && mote.is_hole) continue;
     class_drawing(mote.feature_class)
-        .add_place(is_kept ? pixel_around(mote.box) : mote.box, mote.is_hole);
+        .add_place(is_kept ? least_around(mote.box) : mote.box, mote.is_hole);
   }
   for (const ClassPatch& patch : tools.shapes.patches) {
     if (is_kept && patch.is_hole) continue;
@@ -595,6 +680,7 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
                               DrawingTools& tools) const {
   const MeshView& mesh = layer_->mesh();
   lines.point_of_vertex.clear();
+  lines.point_of_place.clear();
   sort_and_part(lines.sides);
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
@@ -602,7 +688,7 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
     if (!take_edge(side, mesh.vertices[edge.upper], mesh.vertices[edge.lower], box, ink, line)) {
       continue;
     }
-    if (has_round_corners()) {
+    if (has_round_corners() || has_growth()) {
       trace_side(line, side, lines, tools);
       continue;
     }
@@ -659,7 +745,17 @@ void LayerDrawing::project_side(const OutlineEdge& line, Lines& lines, DrawingTo
   append_way(line, length_between(from, to), first, last, tools.way, lines.points, lines.edges);
 }
 
-// With the halves of the curves at both ends, where it meets the other edge that is rounded there.
+std::uint32_t LayerDrawing::Lines::point_at(Point place) {
+  const auto key = std::uint64_t{static_cast<std::uint32_t>(place.x)} << 32 |
+                   static_cast<std::uint32_t>(place.y);
+  const auto [found, is_new] =
+      point_of_place.emplace(key, static_cast<std::uint32_t>(points.size()));
+  if (is_new) points.push_back(place);
+  return found->second;
+}
+
+// With the halves of the curves at both ends, where it meets the other edge that is rounded there;
+// or where it has moved, and as far as the other one, with which it is joined.
 void LayerDrawing::trace_side(const OutlineEdge& line, std::uint32_t edge, Lines& lines,
                               DrawingTools& tools) const {
   using PointOnWay = PlateCarreeMesh::PointOnWay;
@@ -667,12 +763,21 @@ void LayerDrawing::trace_side(const OutlineEdge& line, std::uint32_t edge, Lines
   const double length = length_between(mesh.vertices[line.from], mesh.vertices[line.to]);
   const auto append = [&](std::span<const PointOnWay> way) {
     if (way.size() < 2) return;
+    if (has_growth()) {
+      const std::uint32_t first = lines.point_at(way.front().place);
+      const std::uint32_t last = lines.point_at(way.back().place);
+      return append_way(line, length, first, last, way, lines.points, lines.edges);
+    }
     const auto first = static_cast<std::uint32_t>(lines.points.size());
     lines.points.insert(lines.points.end(), {way.front().place, way.back().place});
     append_way(line, length, first, first + 1, way, lines.points, lines.edges);
   };
-  std::vector<PointOnWay>& way = tools.rounded_way;
-  tools.corners.trace(piece_number_, mesh, edge, way);
+  std::vector<PointOnWay>& way = tools.traced_way;
+  if (has_growth()) {
+    tools.exaggeration.trace(piece_number_, mesh, edge, way);
+  } else {
+    tools.corners.trace(piece_number_, mesh, edge, way);
+  }
   if (!is_projected()) return append(way);
   for (std::size_t i = 1; i < way.size(); ++i) {
     const double from = way[i - 1].share;
@@ -722,7 +827,7 @@ void LayerDrawing::append_way(const OutlineEdge& line, double length, std::uint3
 }
 
 std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
-  const bool has_own = has_pieces_ || is_projected() || has_round_corners();
+  const bool has_own = has_pieces_ || is_projected() || has_round_corners() || has_growth();
   return has_own ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
 }
 
@@ -762,6 +867,7 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   lines.sides.clear();
   lines.edges.clear();
   lines.points.clear();
+  lines.point_of_place.clear();
   lines.seen.clear();
   lines.seen_points.clear();
   lines.seen_edges.clear();

@@ -19,6 +19,7 @@
 #include "core/layer/feature_stack.h"
 #include "core/layer/layer.h"
 #include "core/mesh/corner_rounding.h"
+#include "core/mesh/exaggeration.h"
 #include "core/mesh/plate_carree_mesh.h"
 #include "core/mesh/seen_edges.h"
 #include "render/mask/mask.h"
@@ -57,8 +58,9 @@ struct DrawingTools {
   std::vector<Box> places;
   PlateCarreeMesh plate_carree;  // for outlines
   std::vector<PlateCarreeMesh::PointOnWay> way;
-  CornerRounding corners;  // of styles that round them
-  std::vector<PlateCarreeMesh::PointOnWay> rounded_way;
+  CornerRounding corners;     // of styles that round them
+  Exaggeration exaggeration;  // of styles with which something grows
+  std::vector<PlateCarreeMesh::PointOnWay> traced_way;
 };
 
 /// A layer, or a part of one, with the classes of its features: null if all are drawn alike.
@@ -157,6 +159,9 @@ class LayerDrawing {
     void add_patch(const ClassPatch& patch);
     void add_corner(const CornerRounding& corners, const CornerRounding::Corner& corner,
                     bool is_hole);
+    void add_grown(const Exaggeration::Triangle& triangle);
+    void give_way(const Exaggeration& exaggeration, const MeshView& mesh,
+                  const MeshTrapezoid& trapezoid);
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
     void project(const View& view);
   };
@@ -166,10 +171,12 @@ class LayerDrawing {
     // Edges of the mesh of the piece at hand, before they are taken once each.
     std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
-    // Of several pieces, in plate carree, and with rounded corners, the edges are between points of
-    // their own, some of which are vertices; by the numbers of those of the piece at hand.
+    // Of several pieces, in plate carree, with rounded corners, and where something has grown, the
+    // edges are between points of their own, some of which are vertices; by the numbers of those of
+    // the piece at hand, and by where they are.
     std::vector<Point> points;
     std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
+    std::unordered_map<std::uint64_t, std::uint32_t> point_of_place;
     // Of features that others lie over: what is seen of them, between points of its own.
     std::vector<SeenEdge> seen;  // of the piece at hand
     std::vector<Point> seen_points;
@@ -177,6 +184,7 @@ class LayerDrawing {
     Mask mask;
 
     std::uint32_t point_of(std::uint32_t vertex, Point place);
+    std::uint32_t point_at(Point place);
   };
 
   // A trapezoid with the feature that it is a part of, and the class of that.
@@ -192,6 +200,7 @@ class LayerDrawing {
   const LayerStyle& style() const { return paint_->style; }
   bool is_projected() const { return view_.projection == Projection::plate_carree; }
   bool has_round_corners() const { return style().smooth > 0; }
+  bool has_growth() const { return style().grow > 0; }
   bool has_lines() const { return style().stroke.width > 0; }
   bool has_pattern() const { return style().pattern.kind != PatternKind::none; }
   // `ink` is null if no outlines are drawn.
@@ -201,7 +210,12 @@ class LayerDrawing {
                      const Layer::Selection& selection, DrawingTools& tools);
   void find_corners(double scale, std::span<const DrawnPiece> pieces,
                     const Layer::Selection& selection, DrawingTools& tools) const;
-  Box pixel_around(const Box& box) const;
+  void grow(double scale, std::span<const DrawnPiece> pieces, const Layer::Selection& selection,
+            DrawingTools& tools);
+  void find_growth(double scale, std::span<const DrawnPiece> pieces,
+                   const Layer::Selection& selection, DrawingTools& tools) const;
+  void give_way(ClassDrawing& drawing, DrawingTools& tools) const;
+  Box least_around(const Box& box) const;
   void add_shapes(DrawingTools& tools);
   std::span<const Point> points_of(const Lines& lines) const;
   ClassDrawing& new_drawing(std::uint8_t number);
@@ -252,6 +266,7 @@ class LayerDrawing {
   const Layer* layer_ = nullptr;  // the piece at hand; afterwards the only one
   std::uint32_t piece_number_ = 0;
   bool has_pieces_ = false;  // several of them
+  double least_side_ = 1;    // of what is drawn for a small polygon, in pixels
   View view_;
   bool has_stack_ = false;            // features lie over each other here
   std::deque<ClassDrawing> classes_;  // parts point into them

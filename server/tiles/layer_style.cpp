@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/mesh/exaggeration.h"
 #include "server/base/nearest_name.h"
 #include "server/base/problem.h"
 #include "server/styles/colour_ramps.h"
@@ -535,6 +536,15 @@ std::optional<Problem> make_label(Making& making) {
   return std::nullopt;
 }
 
+std::optional<Problem> make_boundary(Making& making) {
+  LayerStyle& style = making.style;
+  style.grow = making.settings.value_or(ParameterId::grow, 0.0);
+  style.smooth = making.settings.value_or(ParameterId::smooth, 0.0);
+  if (style.grow == 0 || style.smooth == 0) return std::nullopt;
+  return Problem{400, "What grows keeps its corners: a layer is drawn with grow or with smooth.",
+                 "grow", fmt::format("{}", style.grow), "0 beside smooth, or smooth=0 beside it"};
+}
+
 void make_paints(Making& making) {
   const LayerSettings& settings = making.settings;
   const double opacity = settings.value_or(ParameterId::stroke_opacity, 1.0);
@@ -551,7 +561,8 @@ void make_paints(Making& making) {
 }  // namespace
 
 double LayerStyle::reach(double scale) const {
-  return (stroke.width > 0 ? stroke.reach(scale) : 0) + 2 * smooth * scale;
+  const double of_growth = grow > 0 ? Exaggeration::reach_of(grow * scale) : 0;
+  return (stroke.width > 0 ? stroke.reach(scale) : 0) + 2 * smooth * scale + of_growth;
 }
 
 bool LayerStyle::is_visible() const {
@@ -577,6 +588,7 @@ std::string LayerStyle::key() const {
     text += fmt::format("pattern {} {} {} {} {} ", static_cast<int>(pattern.kind),
                         to_hex(pattern.colour), pattern.size, pattern.angle, pattern.width);
   }
+  if (grow > 0) text += fmt::format("grow {} ", grow);
   if (smooth > 0) text += fmt::format("smooth {} ", smooth);
   text += fmt::format("{}", opacity);
   if (label != nullptr) text += " label " + label->key();
@@ -600,7 +612,7 @@ Result<LayerStyle> layer_style(const StyleQuery& style, const ServedLayer& serve
   if (auto problem = check_merge(making)) return std::move(*problem);
   making.style.stroke = stroke_of(making.settings);
   making.style.pattern = pattern_of(making.settings);
-  making.style.smooth = making.settings.value_or(ParameterId::smooth, 0.0);
+  if (auto problem = make_boundary(making)) return std::move(*problem);
   making.style.opacity = making.settings.value_or(ParameterId::opacity, 1.0);
   making.style.units = making.settings.value_or(ParameterId::units, std::string());
   const auto* format = making.settings.find<NumberFormat>(ParameterId::label_format);

@@ -44,7 +44,9 @@ struct LayerStyle {
   std::vector<ClassPaint> paints;  // by number of class, one for each; at least one
   Stroke stroke;
   Pattern pattern;
-  double smooth = 0;   // how far from corners they are rounded, in pixels of a picture of scale 1
+  // In pixels of a picture of scale 1. At most one of them is not 0.
+  double grow = 0;     // how wide what is narrower is drawn
+  double smooth = 0;   // how far from corners they are rounded
   double opacity = 1;  // of fill, pattern and outline together
   Classing classing;
   std::optional<ClassOrigin> origin = {};  // of classes by value; nothing of what it says is drawn
@@ -56,7 +58,8 @@ struct LayerStyle {
   /// How features are drawn that are in no class by value.
   const ClassPaint& paint_of_others() const { return paints[classing.class_of_others()]; }
   /// How far beyond a picture of that scale it has to be known what there is, in pixels: as far as
-  /// outlines reach, and for corners what may lie within the triangles in which they are rounded.
+  /// outlines reach, for corners what may lie within the triangles in which they are rounded, and
+  /// for what grows, whatever may be in its way.
   double reach(double scale) const;
   /// Whether any polygon or outline is drawn with it.
   bool is_visible() const;

@@ -22,10 +22,10 @@ Topology topology_of_layer(const StyleQuery& query, const std::string& layer) {
   return value ? kTopologyNames.find(std::get<std::string>(*value)).value() : Topology::strict;
 }
 
-SmallPolygons small_of_layer(const StyleQuery& query, const std::string& layer) {
+SmallPolygons small_of_layer(const StyleQuery& query, const std::string& layer, double grow) {
   const auto value = query.value_for(layer, ParameterId::small);
-  return value ? kSmallPolygonsNames.find(std::get<std::string>(*value)).value()
-               : SmallPolygons::dust;
+  if (value) return kSmallPolygonsNames.find(std::get<std::string>(*value)).value();
+  return grow > 0 ? SmallPolygons::keep : SmallPolygons::dust;
 }
 
 DebugMarks debug_marks(const StyleQuery& query) {
@@ -175,8 +175,9 @@ Result<TilePlan> plan_window(const WindowRequest& request, std::shared_ptr<const
     if (!style->is_visible() && !plan.debug.any()) continue;
     const Topology topology = topology_of_layer(*query, name);
     if (served.layer_for(topology) == nullptr) return no_fast_topology(name);
-    plan.layers.push_back({*drawn, *std::move(style), level_of_layer(plan.view, *query, served),
-                           topology, small_of_layer(*query, name)});
+    const SmallPolygons small = small_of_layer(*query, name, style->grow);
+    plan.layers.push_back(
+        {*drawn, *std::move(style), level_of_layer(plan.view, *query, served), topology, small});
   }
   return plan;
 }

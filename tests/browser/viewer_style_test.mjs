@@ -79,8 +79,9 @@ const STYLE_CONTROLS = [
   }, { pattern: "hatch", "pattern-color": "00ff00", "pattern-size": "16", "pattern-angle": "0" }],
   ["the shape", async (land) => {
     await slide(land.getByLabel("Merge"), 8);
-    await slide(land.getByLabel("Smooth"), 6);
-  }, { merge: "8", smooth: "6" }],
+    await slide(land.getByLabel("Grow"), 2);
+  }, { merge: "8", grow: "2" }],
+  ["the corners", (land) => slide(land.getByLabel("Smooth"), 6), { smooth: "6" }],
   ["the names", async (land) => {
     await land.getByRole("combobox", { name: "Names" }).selectOption("name");
     await slide(land.getByLabel("Letters"), 16);

@@ -123,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
                                            "fill-opacity=0.5&small=keep&simplify=2",
                                            "filter=kind='wood'&simplify=0",
                                            "highlight=3,50,60&pattern=dots",
-                                           "smooth=40&stroke=black&simplify=2"));
+                                           "smooth=40&stroke=black&simplify=2",
+                                           "grow=8&stroke=black"));
 
 TEST(ChangedTiles, OfTheSameDataAreNone) {
   EditedLand land(3);

@@ -228,6 +228,7 @@ constexpr const char* kExactQueries[] = {
     "small=drop&fill-opacity=0.4&stroke=black&stroke-width=3&stroke-linejoin=miter",
     "small=drop&fill=none&stroke=black&stroke-dasharray=4,2&simplify=2",
     "small=drop&smooth=12&simplify=1&fill-opacity=0.6&stroke=black&stroke-dasharray=4,2",
+    "small=drop&grow=5&fill-opacity=0.6&stroke=black&stroke-dasharray=4,2",
     "color-by=kind&classes=house:f00,pond:00f,roof:0f0,other:888",
     "filter=number%20%3C%209&fill-opacity=0.5&stroke=000",
     "small=drop&pattern=hatch&ids=107,120,333,700&highlight=120,500",

@@ -28,6 +28,8 @@ const std::vector<std::string> kStyles = {
     "simplify=4",
     "smooth=60",
     "smooth=9&simplify=2&stroke=black&stroke-width=5",
+    "grow=3",
+    "grow=16&simplify=2&stroke=black&stroke-width=5",
     "simplify=0",
     "simplify=6&small=keep",
     "background=cfe8ff",

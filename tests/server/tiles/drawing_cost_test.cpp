@@ -26,6 +26,8 @@ TEST_F(DrawingCostTest, IsNeverLessForMore) {
   EXPECT_LT(plain, cost("rings/0/0/0.png?stroke=000"));
   EXPECT_LT(cost("rings/0/0/0.png?stroke=000"), cost("rings/0/0/0.png?stroke=000&stroke-width=32"));
   EXPECT_LT(plain, cost("rings/0/0/0.png?smooth=1"));
+  EXPECT_LT(plain, cost("rings/0/0/0.png?grow=1"));
+  EXPECT_LT(cost("rings/0/0/0.png?grow=1"), cost("rings/0/0/0.png?grow=16"));
   EXPECT_LE(cost("rings/0/0/0.png?smooth=1"), cost("rings/0/0/0.png?smooth=64"));
   EXPECT_LE(cost("rings/4/0/0.png"), plain) << "nothing is there";
 }

@@ -63,6 +63,8 @@ const std::vector<std::string> kStyles = {
     ".png?filter=kind='wood'&small=keep",
     ".png?color-by=kind&classes=field:tan,wood:green&smooth=12",
     ".png?stroke=black&smooth=30&simplify=2",
+    ".png?color-by=kind&classes=field:tan,wood:green&grow=6",
+    ".png?stroke=black&grow=3&small=dust",
     ".png?highlight=3,50&simplify=3",
     "@2x.png?simplify=0",
 };

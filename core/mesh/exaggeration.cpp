@@ -1,0 +1,806 @@
+#include "core/mesh/exaggeration.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace trapeze {
+namespace {
+
+constexpr std::uint32_t kNone = BoundaryMap::kNone;
+
+// Lengths in pixels.
+constexpr double kLeastStep = 1;    // between samples
+constexpr double kOffEnds = 0.05;   // what is told of an end of an edge is told beside it
+constexpr double kTouching = 0.02;  // walls so near to each other are one
+constexpr double kLeastMove = 0.002;
+constexpr double kLeastBend = 0.004;
+
+// Samples after which a strip is broken in any case, so that what is drawn of an edge here does not
+// depend on how much of it is known.
+constexpr std::int32_t kStepsOfStrip = 4;
+
+constexpr double kStraight = 3 * std::numbers::pi / 180;  // angles that are no corner
+constexpr double kMostOfTip = 1.5;                        // of how far the sides of a corner move
+
+constexpr unsigned kStepsBetweenChecks = 1024;
+
+// How far from a place it is seen how thick a face is there: by how much discs within it have to
+// grow on the way, about as they do in a corner of 40 degrees; and how much thinner it is taken for
+// by what is farther away.
+constexpr double kOpening = 0.36;
+constexpr double kThinnerBeyond = 2;
+// Of reserves, for which it counts what is farther than the radius of a disc away from it.
+constexpr double kLessReserve = 0.5;
+
+// In widths: how far a ray goes, and how large discs are.
+constexpr double kRay = 2.5;
+constexpr std::array<double, 2> kMostRadii{0.5, 1};
+
+// Of a radius: how far within the boundary a disc is looked for where there is none beside it, as
+// it is uneven.
+constexpr double kDepth = 1.5;
+
+Vector turned(Vector way) {
+  return {-way.y, way.x};
+}
+
+Point to_point(Vector v) {
+  const auto cell = [](double x) {
+    return static_cast<std::int32_t>(std::lround(std::clamp<double>(x, kGridMin, kGridMax)));
+  };
+  return {cell(v.x), cell(v.y)};
+}
+
+struct Touch {
+  double radius = 0;
+  double share = 0;  // of the way, where it is touched
+};
+
+/// The smallest circle that touches a line through `from` there, on the side of the normal, and
+/// reaches the way that begins at `at`.
+std::optional<Touch> circle_to(Vector from, Vector normal, Vector at, Vector way) {
+  const Vector c = at - from;
+  const double nc = dot(normal, c);
+  const double nv = dot(normal, way);
+  if (nc <= 0 && nc + nv <= 0) return std::nullopt;
+  const double cc = dot(c, c);
+  if (cc == 0) return Touch{0, 0};
+  const double cv = dot(c, way);
+  const double vv = dot(way, way);
+  std::optional<Touch> least;
+  const auto take = [&](double t) {
+    const double ahead = nc + t * nv;
+    if (!(t >= 0 && t <= 1) || ahead <= 1e-9) return;
+    const double radius = (cc + 2 * t * cv + t * t * vv) / (2 * ahead);
+    if (!least || radius < least->radius) least = Touch{radius, t};
+  };
+  take(0);
+  take(1);
+  // Where the radius changes no more along the way.
+  const double a = vv * nv;
+  const double half_b = vv * nc;
+  const double e = 2 * cv * nc - nv * cc;
+  if (std::abs(a) < 1e-12 * std::abs(half_b)) {
+    if (half_b != 0) take(-e / (2 * half_b));
+  } else {
+    const double root = half_b * half_b - a * e;
+    if (root >= 0) {
+      take((-half_b + std::sqrt(root)) / a);
+      take((-half_b - std::sqrt(root)) / a);
+    }
+  }
+  return least;
+}
+
+/// The shares of the way between which it is in the box; nothing if it is not.
+std::optional<std::pair<double, double>> shares_in(const Box& box, Vector from, Vector way) {
+  double first = 0;
+  double last = 1;
+  const auto clip = [&](double at, double by, double min, double max) {
+    if (by == 0) return at >= min && at <= max;
+    const auto [enters, leaves] = std::minmax({(min - at) / by, (max - at) / by});
+    first = std::max(first, enters);
+    last = std::min(last, leaves);
+    return first <= last;
+  };
+  if (!clip(from.x, way.x, box.min_x, box.max_x)) return std::nullopt;
+  if (!clip(from.y, way.y, box.min_y, box.max_y)) return std::nullopt;
+  return std::pair(first, last);
+}
+
+Box with_margin(const Box& box, double margin) {
+  const auto cell = [](double v) {
+    return static_cast<std::int32_t>(std::clamp<double>(v, kGridMin, kGridMax));
+  };
+  return {cell(box.min_x - margin), cell(box.min_y - margin), cell(box.max_x + margin),
+          cell(box.max_y + margin)};
+}
+
+bool is_forward(std::uint32_t side) {
+  return side % 2 == 0;
+}
+
+struct Ends {
+  Point upper;
+  Point lower;
+
+  double x_at(double y) const { return EdgeLine(upper, lower).x_at(y); }
+};
+
+/// Appends, as holes, what lies between two heights to the east of both `wests` and to the west of
+/// both `easts`, which all reach from one height to the other. Where they cross is rounded to
+/// cells.
+void append_cut(const std::array<Ends, 2>& wests, const std::array<Ends, 2>& easts,
+                std::int32_t top, std::int32_t bottom, std::vector<Point>& vertices,
+                std::vector<MeshEdge>& edges, std::vector<MeshTrapezoid>& trapezoids) {
+  if (top >= bottom) return;
+  std::array<std::int32_t, 6> heights{top, bottom, bottom, bottom, bottom, bottom};
+  std::size_t count = 2;
+  const auto add_crossing = [&](const Ends& one, const Ends& other) {
+    const double above = one.x_at(top) - other.x_at(top);
+    const double below = one.x_at(bottom) - other.x_at(bottom);
+    if ((above > 0) == (below > 0) || above == below) return;
+    const double y = top + (static_cast<double>(bottom) - top) * above / (above - below);
+    heights[count++] = static_cast<std::int32_t>(std::lround(y));
+  };
+  add_crossing(wests[0], wests[1]);
+  add_crossing(easts[0], easts[1]);
+  add_crossing(wests[0], easts[1]);
+  add_crossing(wests[1], easts[0]);
+  std::ranges::sort(heights);
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    if (heights[i - 1] >= heights[i]) continue;
+    const double middle = (static_cast<double>(heights[i - 1]) + heights[i]) / 2;
+    const Ends& west = wests[wests[0].x_at(middle) < wests[1].x_at(middle) ? 1 : 0];
+    const Ends& east = easts[easts[0].x_at(middle) > easts[1].x_at(middle) ? 1 : 0];
+    if (west.x_at(middle) >= east.x_at(middle)) continue;
+    const auto v = static_cast<std::uint32_t>(vertices.size());
+    const auto e = static_cast<std::uint32_t>(edges.size());
+    vertices.insert(vertices.end(),
+                    {west.upper, west.lower, east.upper, east.lower,
+                     Point{west.upper.x, heights[i - 1]}, Point{west.upper.x, heights[i]}});
+    edges.insert(edges.end(), {{v, v + 1}, {v + 2, v + 3}});
+    trapezoids.push_back({v + 4, v + 5, e + 1, e});
+  }
+}
+
+}  // namespace
+
+void Exaggeration::find(const Size& size, const Box& box, const Cancellation* cancellation) {
+  width_ = size.width * size.pixel;
+  pixel_ = size.pixel;
+  box_ = box;
+  const Box around = with_margin(box, reach_of(size.width) * size.pixel);
+  boundary_.find(around, std::max(size.width / 2, kLeastStep) * size.pixel);
+  take_samples(around);
+  moved_.clear();
+  moved_sides_.clear();
+  tips_.clear();
+  triangles_.clear();
+  CancellationCheck check(cancellation, kStepsBetweenChecks);
+  const auto sides = static_cast<std::uint32_t>(2 * boundary_.edges().size());
+  for (std::uint32_t side = 0; side < sides; ++side) {
+    check();
+    move_side(side);
+  }
+  for (const MovedSide& moved : moved_sides_) append_strip(moved);
+  for (std::uint32_t side = 0; side < sides; ++side) {
+    const std::uint32_t next = boundary_.next(side);
+    if (next != kNone) append_corner(side, next);
+  }
+  sort_triangles();
+}
+
+void Exaggeration::take_samples(const Box& box) {
+  rows_.clear();
+  std::uint32_t count = 0;
+  const double step = std::max(width_ / 3, kLeastStep * pixel_);
+  places_.clear();
+  for (const BoundaryMap::Edge& edge : boundary_.edges()) {
+    const Vector way = edge.way();
+    const double along = length(way);
+    Row row;
+    row.normal = turned(way) * (1 / along);
+    if (const auto shares = shares_in(box, edge.from(), way)) {
+      row.steps = static_cast<std::int32_t>(std::ceil(along / step));
+      row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
+      const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
+      row.count = std::min(last, row.steps) - row.first + 1;
+      row.sample = count;
+      count += 2 * static_cast<std::uint32_t>(row.count);
+      // At an end of the edge, a little beside it.
+      const double off = std::min(kOffEnds * pixel_ / along, 0.125);
+      for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
+        const double share = static_cast<double>(i) / row.steps;
+        places_.push_back(edge.from() + way * std::clamp(share, off, 1 - off));
+      }
+    }
+    rows_.push_back(row);
+  }
+  samples_.assign(count, {});
+}
+
+bool Exaggeration::has_sample(At at) const {
+  const Row& row = rows_[at.side / 2];
+  return row.steps > 0 && at.step >= row.first && at.step < row.first + row.count;
+}
+
+Exaggeration::Sample& Exaggeration::sample(At at) {
+  const Row& row = rows_[at.side / 2];
+  return samples_[row.sample + 2 * static_cast<std::uint32_t>(at.step - row.first) + at.side % 2];
+}
+
+Vector Exaggeration::place(At at) const {
+  const Row& row = rows_[at.side / 2];
+  return places_[row.sample / 2 + static_cast<std::uint32_t>(at.step - row.first)];
+}
+
+Vector Exaggeration::inward(std::uint32_t side) const {
+  const Vector normal = rows_[side / 2].normal;
+  return is_forward(side) ? normal : normal * -1;
+}
+
+std::optional<Exaggeration::At> Exaggeration::step_on(At at) const {
+  const bool is_last = at.step == (is_forward(at.side) ? rows_[at.side / 2].steps : 0);
+  At next{at.side, at.step + (is_forward(at.side) ? 1 : -1)};
+  if (is_last) {
+    next.side = boundary_.next(at.side);
+    if (next.side == kNone) return std::nullopt;
+    next.step = is_forward(next.side) ? 0 : rows_[next.side / 2].steps;
+  }
+  if (!has_sample(next)) return std::nullopt;
+  return next;
+}
+
+std::optional<Exaggeration::At> Exaggeration::step_back(At at) const {
+  const bool is_first = at.step == (is_forward(at.side) ? 0 : rows_[at.side / 2].steps);
+  At next{at.side, at.step - (is_forward(at.side) ? 1 : -1)};
+  if (is_first) {
+    next.side = boundary_.before(at.side);
+    if (next.side == kNone) return std::nullopt;
+    next.step = is_forward(next.side) ? rows_[next.side / 2].steps : 0;
+  }
+  if (!has_sample(next)) return std::nullopt;
+  return next;
+}
+
+// ---- how wide a face is
+
+/// Straight into the face, to its boundary, and no farther than kRay.
+float Exaggeration::ray(At at) {
+  if (const float known = sample(at).ray; known >= 0) return known;
+  const Vector from = place(at);
+  const Vector way = inward(at.side) * (kRay * width_);
+  double least = 1;
+  const Vector to = from + way;
+  boundary_.for_each_near({std::min(from.x, to.x), std::min(from.y, to.y)},
+                          {std::max(from.x, to.x), std::max(from.y, to.y)}, [&](std::uint32_t i) {
+                            const BoundaryMap::Edge& edge = boundary_.edges()[i];
+                            if (i == at.side / 2 || edge.is_cut) return;
+                            const Vector along = edge.way();
+                            const double turn = cross(way, along);
+                            if (turn == 0) return;
+                            const Vector c = edge.from() - from;
+                            const double share = cross(c, along) / turn;
+                            const double there = cross(c, way) / turn;
+                            if (share > 0 && there >= 0 && there <= 1)
+                              least = std::min(least, share);
+                          });
+  return sample(at).ray = static_cast<float>(least * kRay * width_);
+}
+
+/// A disc in the face, over against the place: the smaller one, or the larger one, of kMostRadii.
+Exaggeration::Disc Exaggeration::disc(At at, std::size_t size) {
+  Disc& known = sample(at).discs[size];
+  if (known.radius >= 0) return known;
+  const double most = kMostRadii[size] * width_;
+  for (const double depth : {most, kDepth * most}) {
+    const double deep = std::min(depth, ray(at) / 2.0);
+    const Vector middle = place(at) + inward(at.side) * deep;
+    const double radius = clearance(middle, std::min(most, deep));
+    if (radius > known.radius) known = {middle, radius};
+    if (radius >= most || deep < depth) break;
+  }
+  return known;
+}
+
+/// How far it is to the boundary, and no more than `most`.
+double Exaggeration::clearance(Vector middle, double most) {
+  double radius = most;
+  // Near the place first: it often becomes so small there that little else has to be looked at.
+  for (const double part : {0.25, 1.0}) {
+    const double looked_at = most * part;
+    const Vector corner{looked_at, looked_at};
+    boundary_.for_each_near(middle - corner, middle + corner, [&](std::uint32_t i) {
+      const BoundaryMap::Edge& edge = boundary_.edges()[i];
+      if (edge.is_cut) return;
+      const Vector way = edge.way();
+      const double share = dot(way, middle - edge.from()) / dot(way, way);
+      const Vector nearest = edge.from() + way * std::clamp(share, 0.0, 1.0);
+      radius = std::min(radius, length(nearest - middle));
+    });
+    if (radius <= looked_at) break;
+  }
+  return radius;
+}
+
+/// Calls visit(place) for those along the boundary, on both sides, until one returns true.
+template <typename Visit>
+void Exaggeration::walk_from(At at, double far, const Visit& visit) {
+  if (visit(at)) return;
+  for (const bool is_on : {true, false}) {
+    double walked = 0;
+    At last = at;
+    while (walked <= far) {
+      const auto next = is_on ? step_on(last) : step_back(last);
+      if (!next) break;
+      if (next->side == at.side && next->step == at.step) return;  // once around
+      walked += length(place(*next) - place(last));
+      last = *next;
+      if (visit(last)) return;
+    }
+  }
+}
+
+/// How wide the face is for growth, at a place where it is narrow straight across: in a corner, as
+/// where the corner has become wide.
+double Exaggeration::width_beside(At at) {
+  const Vector from = place(at);
+  const double own = disc(at, 0).radius;
+  double widest = 0;
+  walk_from(at, 2 * width_, [&](At other) {
+    const double far = length(place(other) - from);
+    const auto seen_at = [&](double radius) {
+      const double seen_from = std::max(0.0, radius - own) / kOpening;
+      return 2 * radius - kThinnerBeyond * std::max(0.0, far - seen_from);
+    };
+    if (seen_at(width_ / 2) <= widest) return false;
+    widest = std::max(widest, seen_at(disc(other, 0).radius));
+    return widest >= width_;
+  });
+  return widest;
+}
+
+/// The diameter of a disc in the face near the place, up to twice the width.
+double Exaggeration::thickness(At at) {
+  const Vector from = place(at);
+  double thickest = 0;
+  walk_from(at, 2 * width_, [&](At other) {
+    const Disc found = disc(other, 1);
+    const double gap = std::max(0.0, length(found.middle - from) - found.radius);
+    const double beyond = std::max(0.0, gap - found.radius);
+    thickest = std::max(thickest, 2 * found.radius - kLessReserve * beyond);
+    return thickest >= 2 * width_;
+  });
+  return thickest;
+}
+
+double Exaggeration::growth(At at) {
+  if (const float known = sample(at).growth; known >= 0) return known;
+  const bool is_still =
+      boundary_.edges()[at.side / 2].is_cut || boundary_.face_of(at.side) == BoundaryMap::kNoFace;
+  double by = 0;
+  if (!is_still && ray(at) < width_) {
+    const double wide = std::max<double>(ray(at), width_beside(at));
+    by = std::max(0.0, (width_ - wide) / 2);
+  }
+  sample(at).growth = static_cast<float>(by);
+  return sample(at).growth;
+}
+
+double Exaggeration::reserve(At at) {
+  if (growth(at) > 0) return 0;
+  if (const float known = sample(at).reserve; known >= 0) return known;
+  const double more = (thickness(at) - width_) / 2;
+  sample(at).reserve = static_cast<float>(std::max(0.0, more));
+  return sample(at).reserve;
+}
+
+/// Between samples; less than 0 where there is a reserve.
+double Exaggeration::signed_growth(std::uint32_t side, double share) {
+  const Row& row = rows_[side / 2];
+  const double at = share * row.steps;
+  const auto step = static_cast<std::int32_t>(std::clamp<double>(std::floor(at), 0, row.steps));
+  const auto of = [&](std::int32_t i) {
+    const At place{side, std::clamp(i, 0, row.steps)};
+    if (!has_sample(place)) return 0.0;
+    const double by = growth(place);
+    return by > 0 ? by : -reserve(place);
+  };
+  const double between = at - step;
+  if (between == 0) return of(step);
+  return of(step) * (1 - between) + of(step + 1) * between;
+}
+
+// ---- how far it may grow
+
+/// By how much a place may move along the normal, up to `by`.
+double Exaggeration::limited(Vector from, Vector normal, double by,
+                             const std::array<std::uint32_t, 3>& exempt) {
+  if (by <= 0) return 0;
+  double most = by;
+  const Vector middle = from + normal * by;
+  const Vector corner{by, by};
+  boundary_.for_each_near(middle - corner, middle + corner, [&](std::uint32_t i) {
+    const BoundaryMap::Edge& edge = boundary_.edges()[i];
+    if (edge.is_cut || std::ranges::find(exempt, i) != exempt.end()) return;
+    const Vector way = edge.way();
+    const double along = length(way);
+    const double beside = cross(way, from - edge.from()) / along;
+    const auto limit = [&](std::uint32_t side, double radius, double at) {
+      if (boundary_.face_of(side) == BoundaryMap::kNoFace || radius >= most) return;
+      const double gap = length(edge.from() + way * at - from);
+      const double theirs = signed_growth(side, at);
+      // Beyond a void nothing is grown over.
+      const bool is_beside_void = boundary_.face_of(side ^ 1U) == BoundaryMap::kNoFace;
+      const double left = gap - (is_beside_void ? std::max(0.0, theirs) : theirs);
+      most = std::min(most, std::max(radius, left));
+    };
+    const double nearest = dot(way, from - edge.from()) / (along * along);
+    const bool is_wall = std::abs(beside) < kTouching * pixel_ && nearest > 0 && nearest < 1 &&
+                         std::abs(dot(way, normal)) < 0.1 * along;
+    if (is_wall) return limit(2 * i + (dot(turned(way), normal) > 0 ? 0 : 1), 0, nearest);
+    const auto touch = circle_to(from, normal, edge.from(), way);
+    if (!touch) return;
+    if (beside > -kTouching * pixel_) limit(2 * i + 1, touch->radius, touch->share);
+    if (beside < kTouching * pixel_) limit(2 * i, touch->radius, touch->share);
+  });
+  return std::max(most, 0.0);
+}
+
+double Exaggeration::limited_by_neighbour(std::uint32_t side, double share, double by) {
+  if (by <= 0 || boundary_.face_of(side ^ 1U) == BoundaryMap::kNoFace) return by;
+  return std::min(by, std::max(0.0, -signed_growth(side ^ 1U, share)));
+}
+
+double Exaggeration::growth_at_end(std::uint32_t side, bool is_at_head) {
+  const bool is_lower = is_forward(side) == is_at_head;
+  const At at{side, is_lower ? rows_[side / 2].steps : 0};
+  if (!has_sample(at)) return 0;
+  return limited_by_neighbour(side, is_lower ? 1 : 0, growth(at));
+}
+
+/// By how much the boundary turns at the end of a side, towards the face.
+double Exaggeration::turn_between(std::uint32_t side, std::uint32_t next) const {
+  const auto way_of = [this](std::uint32_t of) {
+    const Vector way = boundary_.edges()[of / 2].way();
+    return is_forward(of) ? way : way * -1;
+  };
+  const Vector one = way_of(side);
+  const Vector other = way_of(next);
+  return std::atan2(cross(one, other), dot(one, other));
+}
+
+/// Where the boundary turns away from the face: how far from the end of the side, and from the
+/// begin of the next, their moved lines meet.
+std::optional<std::array<double, 2>> Exaggeration::fold_between(std::uint32_t side,
+                                                                std::uint32_t next) {
+  const double turn = turn_between(side, next);
+  if (turn > -kStraight) return std::nullopt;
+  const double one = growth_at_end(side, true);
+  const double other = growth_at_end(next, false);
+  const double sine = std::abs(std::sin(turn));
+  const auto from_end = [&](double own, double theirs) {
+    return std::max(0.0, (theirs - own * std::cos(turn)) / std::max(sine, 1e-9));
+  };
+  const std::array<double, 2> gone{from_end(one, other), from_end(other, one)};
+  return gone;
+}
+
+// ---- what moves
+
+void Exaggeration::move_side(std::uint32_t side) {
+  const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
+  if (edge.is_cut || boundary_.face_of(side) == BoundaryMap::kNoFace) return;
+  const Row& row = rows_[side / 2];
+  const auto seen = shares_in(with_margin(box_, kMostOfTip * width_), edge.from(), edge.way());
+  if (!seen || row.steps == 0) return;
+  const auto strip = [&](double share, double round) {
+    const double strips = share * row.steps / kStepsOfStrip;
+    return static_cast<std::int32_t>(std::floor(strips + round)) * kStepsOfStrip;
+  };
+  const std::int32_t first = std::max(strip(seen->first, 0), row.first);
+  const std::int32_t last =
+      std::min({strip(seen->second, 1), row.steps, row.first + row.count - 1});
+  bool grows = false;
+  for (std::int32_t i = first; i <= last && !grows; ++i) grows = growth({side, i}) > 0;
+  if (!grows) return;
+
+  const double along = length(edge.way());
+  std::array<std::uint32_t, 3> exempt{side / 2, kNone, kNone};
+  std::array<double, 2> gone{};  // at the upper and the lower end
+  for (const bool is_at_head : {false, true}) {
+    const std::uint32_t other = is_at_head ? boundary_.next(side) : boundary_.before(side);
+    if (other == kNone) continue;
+    const std::uint32_t one = is_at_head ? side : other;
+    const std::uint32_t next = is_at_head ? other : side;
+    const auto fold = fold_between(one, next);
+    const auto has_room = [this](double is_gone, std::uint32_t of) {
+      return is_gone <= length(boundary_.edges()[of / 2].way()) / 2;
+    };
+    if (fold) {
+      double& own = gone[is_forward(side) == is_at_head ? 1 : 0];
+      own = std::min((*fold)[is_at_head ? 0 : 1], along / 2);
+    }
+    if (!fold || (has_room((*fold)[0], one) && has_room((*fold)[1], next))) {
+      exempt[is_at_head ? 1 : 2] = other / 2;
+    }
+  }
+  for (double& length_gone : gone) {
+    if (length_gone < kTouching * pixel_) length_gone = 0;
+  }
+
+  const auto begin = moved_.size();
+  const Vector outward = inward(side) * -1;
+  const auto move = [&](Vector from, double share, double by) {
+    const double wanted = limited_by_neighbour(side, share, by);
+    const double moves = limited(from, outward, wanted, exempt);
+    moved_.push_back({share, moves < kLeastMove * pixel_ ? 0 : moves});
+  };
+  const auto move_between = [&](double share) {
+    move(edge.from() + edge.way() * share, share, std::max(0.0, signed_growth(side, share)));
+  };
+  const double upper = gone[0] / along;
+  const double lower = 1 - gone[1] / along;
+  for (std::int32_t i = first; i <= last; ++i) {
+    const double share = static_cast<double>(i) / row.steps;
+    const bool is_lower_end = i == row.steps && gone[1] > 0;
+    if (is_lower_end) move_between(lower);
+    if ((i == 0 && gone[0] > 0) || is_lower_end) {
+      moved_.push_back({share, 0, true});
+      if (i == 0) move_between(upper);
+      continue;
+    }
+    if (share <= upper && gone[0] > 0) continue;
+    if (share >= lower && gone[1] > 0) continue;
+    move(place({side, i}), share, growth({side, i}));
+  }
+  straighten(begin, row.steps);
+  const auto moves = [](const Moved& one) { return one.by > 0; };
+  if (!std::any_of(moved_.begin() + static_cast<std::ptrdiff_t>(begin), moved_.end(), moves)) {
+    moved_.resize(begin);
+    return;
+  }
+  moved_sides_.push_back(
+      {side, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(moved_.size() - begin)});
+}
+
+/// Leaves out places that lie on the line between those before and after them.
+void Exaggeration::straighten(std::size_t first, std::int32_t steps) {
+  std::size_t kept = first + 1;
+  for (std::size_t i = first + 1; i < moved_.size(); ++i) {
+    const Moved one = moved_[i];
+    const double strips = one.share * steps / kStepsOfStrip;
+    bool is_kept = i + 1 == moved_.size() || strips == std::floor(strips) || one.is_folded;
+    if (!is_kept) {
+      const Moved& last = moved_[kept - 1];
+      const Moved& next = moved_[i + 1];
+      const double share = (one.share - last.share) / (next.share - last.share);
+      const double on_line = last.by + (next.by - last.by) * share;
+      is_kept = std::abs(one.by - on_line) > kLeastBend * pixel_;
+    }
+    if (is_kept) moved_[kept++] = one;
+  }
+  moved_.resize(std::min(kept, moved_.size()));
+}
+
+Point Exaggeration::place_of(std::uint32_t side, const Moved& moved) const {
+  const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
+  const Vector at = edge.from() + edge.way() * moved.share;
+  return to_point(at - inward(side) * moved.by);
+}
+
+void Exaggeration::append_strip(const MovedSide& moved) {
+  const BoundaryMap::Face face = boundary_.face_of(moved.side);
+  const std::span<const Moved> places = std::span(moved_).subspan(moved.first, moved.count);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Moved& one = places[i - 1];
+    const Moved& other = places[i];
+    if (one.by == 0 && other.by == 0) continue;
+    const Point a = place_of(moved.side, {one.share, 0});
+    const Point b = place_of(moved.side, {other.share, 0});
+    const Point moved_a = place_of(moved.side, one);
+    const Point moved_b = place_of(moved.side, other);
+    append_triangle(face, a, b, moved_b);
+    append_triangle(face, a, moved_b, moved_a);
+  }
+}
+
+void Exaggeration::append_corner(std::uint32_t side, std::uint32_t next) {
+  const MovedSide* moved = find_moved(side);
+  const MovedSide* moved_next = find_moved(next);
+  if (moved == nullptr && moved_next == nullptr) return;
+  const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
+  const BoundaryMap::Face face = boundary_.face_of(side);
+  const Vector at = to_vector(is_forward(side) ? edge.lower : edge.upper);
+  const Point corner = to_point(at);
+  const double one = moved_end(side, true);
+  const double other = moved_end(next, false);
+  const Point begin = end_place(side, true);
+  const Point end = to_point(at - inward(next) * other);
+  const double turn = turn_between(side, next);
+  std::optional<Vector> tip;
+  if (turn > kStraight) tip = tip_between(side, next, one, other);
+  if (tip) {
+    const Point middle = to_point(at + *tip);
+    append_triangle(face, corner, begin, middle);
+    append_triangle(face, corner, middle, end);
+    tips_.push_back({side, middle});
+    return;
+  }
+  if (turn > -kStraight && orientation(corner, begin, end) > 0) {
+    append_triangle(face, corner, begin, end);
+  }
+  if (begin != end_place(next, false)) tips_.push_back({side, begin});
+}
+
+/// Where the moved boundary of a side ends, or begins.
+Point Exaggeration::end_place(std::uint32_t side, bool is_at_head) const {
+  const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
+  const bool is_lower = is_forward(side) == is_at_head;
+  const Point vertex = is_lower ? edge.lower : edge.upper;
+  const MovedSide* moved = find_moved(side);
+  if (moved == nullptr) return vertex;
+  const std::span<const Moved> places = std::span(moved_).subspan(moved->first, moved->count);
+  const Moved& end = is_lower ? places.back() : places.front();
+  if (end.share != (is_lower ? 1 : 0)) return vertex;
+  if (!end.is_folded || places.size() < 2) return place_of(side, end);
+  return place_of(side, is_lower ? places[places.size() - 2] : places[1]);
+}
+
+/// Where the moved lines of two sides meet, from their common end.
+std::optional<Vector> Exaggeration::tip_between(std::uint32_t side, std::uint32_t next, double one,
+                                                double other) {
+  if (one == 0 && other == 0) return std::nullopt;
+  const double turn = turn_between(side, next);
+  const double sine = std::max(std::sin(turn), 1e-9);
+  const double on = (other - one * std::cos(turn)) / sine;
+  const double back = (one - other * std::cos(turn)) / sine;
+  if (on <= 0 || back <= 0) return std::nullopt;
+  const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
+  const Vector inner = inward(side);
+  const Vector along{inner.y, -inner.x};  // the way of the side
+  const Vector tip = inner * -one + along * on;
+  const double far = length(tip);
+  const Vector direction = tip * (1 / far);
+  const Vector at = to_vector(is_forward(side) ? edge.lower : edge.upper);
+  const double most = std::min(far, kMostOfTip * std::max(one, other));
+  return direction * limited(at, direction, most, {side / 2, next / 2, kNone});
+}
+
+const Exaggeration::MovedSide* Exaggeration::find_moved(std::uint32_t side) const {
+  const auto found = std::ranges::lower_bound(moved_sides_, side, {}, &MovedSide::side);
+  return found != moved_sides_.end() && found->side == side ? &*found : nullptr;
+}
+
+const Exaggeration::Tip* Exaggeration::find_tip(std::uint32_t side) const {
+  const auto found = std::ranges::lower_bound(tips_, side, {}, &Tip::side);
+  return found != tips_.end() && found->side == side ? &*found : nullptr;
+}
+
+double Exaggeration::moved_end(std::uint32_t side, bool is_at_head) const {
+  const MovedSide* moved = find_moved(side);
+  if (moved == nullptr) return 0;
+  const bool is_lower = is_forward(side) == is_at_head;
+  const Moved& end = moved_[is_lower ? moved->first + moved->count - 1 : moved->first];
+  return end.share == (is_lower ? 1 : 0) ? end.by : 0;
+}
+
+void Exaggeration::append_triangle(BoundaryMap::Face face, Point a, Point b, Point c) {
+  if (orientation(a, b, c) == 0) return;
+  Triangle triangle{face, {a, b, c}};
+  std::ranges::sort(triangle.corners, is_above);
+  Box around;
+  for (const Point p : triangle.corners) around.include(p);
+  if (around.intersects(box_)) triangles_.push_back(triangle);
+}
+
+void Exaggeration::sort_triangles() {
+  std::ranges::sort(triangles_, is_above, [](const Triangle& t) { return t.corners[0]; });
+  highest_ = 0;
+  for (const Triangle& t : triangles_) {
+    highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
+  }
+}
+
+// ---- what is drawn
+
+void Exaggeration::trace(std::uint32_t piece, const MeshView& mesh, std::uint32_t edge,
+                         std::vector<PlateCarreeMesh::PointOnWay>& way) const {
+  way.clear();
+  const std::uint32_t number = boundary_.edge_number(piece, edge);
+  std::array<std::span<const Moved>, 2> places;
+  for (std::uint32_t i = 0; i < 2 && number != kNone; ++i) {
+    const MovedSide* moved = find_moved(2 * number + i);
+    if (moved != nullptr) places[i] = std::span(moved_).subspan(moved->first, moved->count);
+  }
+  // Where one of the sides moves, the other does not.
+  std::vector<std::pair<double, Point>> moved;
+  std::array<const Tip*, 2> tips{};  // at the upper and the lower end
+  for (std::uint32_t i = 0; i < 2 && number != kNone; ++i) {
+    const std::uint32_t side = 2 * number + i;
+    const std::uint32_t last = boundary_.before(side);
+    const std::size_t head = is_forward(side) ? 1 : 0;
+    if (const Tip* tip = find_tip(side)) tips[head] = tip;
+    if (const Tip* tip = last == kNone ? nullptr : find_tip(last)) tips[1 - head] = tip;
+    for (const Moved& one : places[i]) {
+      const bool is_others = one.by == 0 && moved_by(places[1 - i], one.share) > 0;
+      if (!one.is_folded && !is_others) moved.emplace_back(one.share, place_of(side, one));
+    }
+  }
+  std::ranges::sort(moved, {}, &std::pair<double, Point>::first);
+  const auto reaches = [&places](double end) {
+    return std::ranges::any_of(places, [end](std::span<const Moved> of_side) {
+      return !of_side.empty() && (of_side.front().share == end || of_side.back().share == end);
+    });
+  };
+  const auto append = [&way](Point place, double share) {
+    if (way.empty() || way.back().place != place) way.push_back({place, share});
+  };
+  const MeshEdge& ends = mesh.edges[edge];
+  if (tips[0] != nullptr) append(tips[0]->at, 0);
+  if (!reaches(0)) append(mesh.vertices[ends.upper], 0);
+  for (const auto& [share, place] : moved) append(place, share);
+  if (!reaches(1)) append(mesh.vertices[ends.lower], 1);
+  if (tips[1] != nullptr) append(tips[1]->at, 1);
+}
+
+/// How far a side has moved at that share of its edge.
+double Exaggeration::moved_by(std::span<const Moved> places, double share) {
+  const auto next = std::ranges::upper_bound(places, share, {}, &Moved::share);
+  if (next == places.begin() || places.empty()) return 0;
+  const Moved& last = *(next - 1);
+  if (next == places.end()) return last.share == share ? last.by : 0;
+  return last.by + (next->by - last.by) * (share - last.share) / (next->share - last.share);
+}
+
+void Exaggeration::append(const Triangle& triangle, std::vector<Point>& vertices,
+                          std::vector<MeshEdge>& edges, std::vector<MeshTrapezoid>& trapezoids) {
+  const auto v = static_cast<std::uint32_t>(vertices.size());
+  const auto e = static_cast<std::uint32_t>(edges.size());
+  const auto& [top, middle, bottom] = triangle.corners;
+  vertices.insert(vertices.end(), {top, middle, bottom});
+  edges.insert(edges.end(), {{v, v + 2}, {v, v + 1}, {v + 1, v + 2}});
+  const bool is_middle_east = orientation(top, bottom, middle) < 0;
+  const auto add = [&](std::uint32_t from, std::uint32_t to, std::uint32_t side) {
+    if (vertices[from].y == vertices[to].y) return;
+    trapezoids.push_back({from, to, is_middle_east ? e : side, is_middle_east ? side : e});
+  };
+  add(v, v + 1, e + 1);
+  add(v + 1, v + 2, e + 2);
+}
+
+void Exaggeration::append_common(const MeshView& mesh, const MeshTrapezoid& trapezoid,
+                                 std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
+                                 std::vector<MeshTrapezoid>& trapezoids) const {
+  const auto ends_of = [&mesh](std::uint32_t edge) {
+    return Ends{mesh.vertices[mesh.edges[edge].upper], mesh.vertices[mesh.edges[edge].lower]};
+  };
+  const Ends west = ends_of(trapezoid.left);
+  const Ends east = ends_of(trapezoid.right);
+  const std::int32_t top = mesh.vertices[trapezoid.top].y;
+  const std::int32_t bottom = mesh.vertices[trapezoid.bottom].y;
+  if (top >= bottom) return;
+  const auto from = std::min({west.upper.x, west.lower.x});
+  const auto to = std::max({east.upper.x, east.lower.x});
+  const auto first =
+      std::ranges::lower_bound(triangles_, std::int64_t{top} - highest_, {},
+                               [](const Triangle& t) { return std::int64_t{t.corners[0].y}; });
+  for (auto it = first; it != triangles_.end() && it->corners[0].y < bottom; ++it) {
+    const auto& [a, b, c] = it->corners;
+    if (c.y <= top || std::max({a.x, b.x, c.x}) <= from || std::min({a.x, b.x, c.x}) >= to) {
+      continue;
+    }
+    const bool is_middle_east = orientation(a, c, b) < 0;
+    const Ends through{a, c};
+    for (const Ends& other : {Ends{a, b}, Ends{b, c}}) {
+      const std::array<Ends, 2> wests{west, is_middle_east ? through : other};
+      const std::array<Ends, 2> easts{east, is_middle_east ? other : through};
+      append_cut(wests, easts, std::max(top, other.upper.y), std::min(bottom, other.lower.y),
+                 vertices, edges, trapezoids);
+    }
+  }
+}
+
+}  // namespace trapeze
