@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr FaceId kNoPiece = kOutside;
-// Distances are not told apart from there on: more than what is compared with a bridge.
-constexpr double kTooWide = 1.5 * kWidestBridge;
 
 /// The face on the side of a wall that is not void. A piece of an edge may lead up where the edge
 /// leads down, as its ends are rounded.
@@ -89,11 +87,36 @@ std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
   return bridges;
 }
 
+/// Whether what lies beyond a side is filled at a distance with what lies on this side of it,
+/// whatever there is farther away than so many triangles.
+bool is_filled_beyond(const VoidMesh& mesh, VoidMesh::HalfEdge side, double distance, int others) {
+  const VoidMesh::HalfEdge first = mesh.twin(side);
+  const std::uint32_t triangle = VoidMesh::triangle_of(first);
+  if (mesh.is_beyond(triangle) || own_distance(mesh, triangle) > distance) return false;
+  for (const VoidMesh::HalfEdge h : {VoidMesh::next(first), VoidMesh::before(first)}) {
+    if (mesh.is_wall(h) || mesh.length(h) <= distance) continue;
+    if (others == 0 || !is_filled_beyond(mesh, h, distance, others - 1)) return false;
+  }
+  return true;
+}
+
+bool is_filled_near(const VoidMesh& mesh, std::uint32_t triangle, double distance) {
+  constexpr int kOthers = 3;
+  if (mesh.is_beyond(triangle) || own_distance(mesh, triangle) > distance) return false;
+  for (VoidMesh::HalfEdge h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+    if (mesh.is_wall(h) || mesh.length(h) <= distance) continue;
+    if (!is_filled_beyond(mesh, h, distance, kOthers)) return false;
+  }
+  return true;
+}
+
 /// Whether what is filled when the bridge is hardly longer than the distance reaches walls at both
 /// of its ends.
-bool is_built(const VoidMesh& mesh, const std::vector<double>& distances, VoidMesh::HalfEdge h) {
+bool is_built(const VoidMesh& mesh, VoidMesh::HalfEdge h) {
   const double distance = VoidMesh::kSlack * mesh.length(h) + 1;  // ends are rounded
-  const auto is_filled = [&](std::uint32_t triangle) { return distances[triangle] <= distance; };
+  const auto is_filled = [&](std::uint32_t triangle) {
+    return is_filled_near(mesh, triangle, distance);
+  };
   const auto reaches_wall = [&](VoidMesh::HalfEdge from) {
     return mesh.wall_before(from, is_filled) || mesh.wall_after(from, is_filled);
   };
@@ -173,7 +196,7 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
     const bool is_between_equals = !mesh.is_beyond(t) && class_at(0) != kMixedClass &&
                                    class_at(0) == class_at(1) && class_at(0) == class_at(2);
     distances[t] = is_between_equals ? own_distance(mesh, t) : kNever;
-    if (distances[t] > kTooWide) {
+    if (distances[t] > kWidestBridge) {
       beyond_all.push_back(t);
     } else {
       order.emplace_back(distances[t], t);
@@ -185,11 +208,11 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
       const VoidMesh::HalfEdge h = 3 * t + side;
       if (mesh.is_wall(h)) continue;
       const std::uint32_t next = VoidMesh::triangle_of(mesh.twin(h));
-      if (is_known[next] || distances[next] > kTooWide) continue;
+      if (is_known[next] || distances[next] > kWidestBridge) continue;
       const double at_least = std::min(distances[t], mesh.length(h));
       if (at_least <= distances[next]) continue;
       distances[next] = at_least;
-      if (at_least > kTooWide) {
+      if (at_least > kWidestBridge) {
         beyond_all.push_back(next);
       } else {
         raised.emplace(at_least, next);
@@ -219,9 +242,8 @@ void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
                               std::span<const std::uint32_t> class_of_face) {
   mesh.divide_walls(kWidestBridge);
   if (mesh.has_failed()) return;
-  const std::vector<double> distances = distances_to_fill(mesh, graph, class_of_face);
   std::vector<VoidMesh::HalfEdge> bridges = shortest_bridges(mesh, graph, class_of_face);
-  std::erase_if(bridges, [&](VoidMesh::HalfEdge h) { return is_built(mesh, distances, h); });
+  std::erase_if(bridges, [&](VoidMesh::HalfEdge h) { return is_built(mesh, h); });
   mesh.divide_walls_beside(bridges);
 }
 
