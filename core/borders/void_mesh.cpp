@@ -282,10 +282,9 @@ bool VoidMesh::divide_at_foot(std::uint32_t wall, double reach) {
   return divide_wall(h, a.x + share * x, a.y + share * y).has_value();
 }
 
-//      p ---- q        On one side of it, x is as near to q as p is but for half of the slack, and
-//     / \.    |\       y to x as q is to p but for all of it. So there is a strip from wall to
-//     wall.
-//    x   `.. .| y
+//      p -- q        On either side, x is about as far from q as p is, and y from x: longer by half
+//     /|    |.       of the slack and by all of it. So there is a strip from wall to wall.
+//    / x -- y .
 bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
   struct Bridge {
     HalfEdge side;
