@@ -134,6 +134,15 @@ PriorityStack::Candidate PriorityStack::pop() {
 
 void PriorityStack::fetch_candidates() const {
   const auto ahead = [this](std::size_t distance) { return order_[position_ + distance]; };
+  using FetchStep = RegionBorders::FetchStep;
+  const auto fetch_region = [&](std::size_t distance, FetchStep step) {
+    const CornerId corner = ahead(distance).corner;
+    if (is_region(corner)) borders_.fetch(step, region_of(corner));
+  };
+  fetch_region(kCornerAhead, FetchStep::region);
+  fetch_region(kEdgesAhead, FetchStep::seeds);
+  fetch_region(kNodesAhead, FetchStep::edges);
+  fetch_region(kNeighboursAhead, FetchStep::corners);
   const auto fetch_for = [&](std::size_t distance, const auto& fetch_step) {
     if (!is_region(ahead(distance).corner)) fetch_step(*graph_, ahead(distance).corner);
   };

@@ -56,6 +56,14 @@ class Measuring {
 
   void measure(Table<EdgeId, LoopSize>& sizes) {
     const auto count = graph_.corners().size();
+    const auto begins = [](const Corner& corner) {
+      return corner.is_alive() && corner.prev.is_none();
+    };
+    const auto arcs = static_cast<std::size_t>(
+        std::count_if(graph_.corners().begin(), graph_.corners().end(), begins));
+    pieces_.reserve(arcs);
+    boundaries_.reserve(arcs);
+    ends_.reserve(2 * arcs);
     for (std::size_t i = 0; i < count; ++i) {
       const Corner& corner = graph_.corner(CornerId(i));
       if (corner.is_alive() && corner.prev.is_none()) add_piece(CornerId(i));

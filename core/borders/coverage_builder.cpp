@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/borders/border_lengths.h"
+#include "core/borders/merging.h"
 #include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
 
@@ -476,21 +477,6 @@ std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t e
   }
   if (squares <= kAlways + kMostPerEdge * edges) return {};
   return "up to " + std::to_string(most) + " borders meet at one vertex";
-}
-
-/// By face, 0 being outside.
-std::vector<std::uint32_t> classes_of_faces(const FaceFeatures& faces, const Merging& merging) {
-  std::vector<std::uint32_t> classes(faces.face_count() + 1, 0);
-  classes[kOutside] = kMixedClass;
-  if (merging.classes.empty()) return classes;
-  for (FaceId face = 1; face < classes.size(); ++face) {
-    const auto features = faces.of(face);
-    const std::uint32_t first = merging.classes[features.front()];
-    const bool are_equal = std::ranges::all_of(
-        features, [&](std::uint32_t feature) { return merging.classes[feature] == first; });
-    classes[face] = are_equal ? first : kMixedClass;
-  }
-  return classes;
 }
 
 }  // namespace

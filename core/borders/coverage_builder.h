@@ -17,7 +17,7 @@
 
 #include "core/borders/border_arcs.h"
 #include "core/borders/face_features.h"
-#include "core/borders/merging.h"
+#include "core/borders/merge_plan.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"

@@ -4,10 +4,14 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "core/borders/box_ties.h"
+#include "core/borders/merge_plan.h"
 #include "core/grid/disjoint_sets.h"
+#include "core/grid/ring_box.h"
 #include "core/sweep/owned_segments.h"
 
 namespace trapeze {
@@ -178,6 +182,37 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
     for (const std::uint32_t i : group) ties.tie(open[group.front()], open[i]);
   }
   tie_known(known, ties);
+  return groups_of(ties);
+}
+
+std::vector<std::vector<std::uint32_t>> group_for_blocks(std::span<const Rings* const> features) {
+  std::vector<Box> boxes;
+  std::vector<std::uint32_t> owners;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    for (std::size_t r = 0; r < features[i]->size(); ++r) {
+      const Box box = widened_for_blocks(box_of((*features[i])[r]));
+      // A hole mostly follows its shell.
+      if (r > 0 && holds(boxes.back(), box)) continue;
+      boxes.push_back(box);
+      owners.push_back(i);
+    }
+  }
+  DisjointSets ties(features.size());
+  tie_meeting(boxes, owners, ties);
+  std::vector<std::uint32_t> members(features.size());
+  for (std::uint32_t i = 0; i < features.size(); ++i) ++members[ties.find(i)];
+  std::optional<std::uint32_t> lonely;
+  std::uint32_t lonely_ones = 0;
+  for (std::uint32_t i = 0; i < features.size(); ++i) {
+    if (members[ties.find(i)] > 1) continue;
+    ++lonely_ones;
+    if (!lonely) {
+      lonely = i;
+    } else {
+      ties.tie(*lonely, i);
+    }
+  }
+  if (lonely_ones == 1) ties.tie(*lonely, *lonely == 0 ? std::uint32_t(features.size() - 1) : 0);
   return groups_of(ties);
 }
 

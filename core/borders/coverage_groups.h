@@ -44,6 +44,12 @@ std::vector<std::vector<std::uint32_t>> group_features(std::span<const Rings* co
                                                        CoverageMode coverage, unsigned threads = 1,
                                                        std::span<const std::uint32_t> known = {});
 
+/// Groups of features, as above, such that those of two groups never become one block (see
+/// merging.h): beyond kWidestBridge of each other. Those that are near no other are one group, so
+/// that courtyards of theirs are filled as well. There is no group of one if there are several
+/// features.
+std::vector<std::vector<std::uint32_t>> group_for_blocks(std::span<const Rings* const> features);
+
 /// A group, split into the features that share a graph and those that do not; by their positions,
 /// in ascending order.
 struct Assembly {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <queue>
 
 #include "core/grid/disjoint_sets.h"
@@ -88,6 +87,42 @@ std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
   return bridges;
 }
 
+/// Whether what lies beyond a side is filled at a distance with what lies on this side of it,
+/// whatever there is farther away than so many triangles.
+bool is_filled_beyond(const VoidMesh& mesh, VoidMesh::HalfEdge side, double distance, int others) {
+  const VoidMesh::HalfEdge first = mesh.twin(side);
+  const std::uint32_t triangle = VoidMesh::triangle_of(first);
+  if (mesh.is_beyond(triangle) || own_distance(mesh, triangle) > distance) return false;
+  for (const VoidMesh::HalfEdge h : {VoidMesh::next(first), VoidMesh::before(first)}) {
+    if (mesh.is_wall(h) || mesh.length(h) <= distance) continue;
+    if (others == 0 || !is_filled_beyond(mesh, h, distance, others - 1)) return false;
+  }
+  return true;
+}
+
+bool is_filled_near(const VoidMesh& mesh, std::uint32_t triangle, double distance) {
+  constexpr int kOthers = 3;
+  if (mesh.is_beyond(triangle) || own_distance(mesh, triangle) > distance) return false;
+  for (VoidMesh::HalfEdge h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+    if (mesh.is_wall(h) || mesh.length(h) <= distance) continue;
+    if (!is_filled_beyond(mesh, h, distance, kOthers)) return false;
+  }
+  return true;
+}
+
+/// Whether what is filled when the bridge is hardly longer than the distance reaches walls at both
+/// of its ends.
+bool is_built(const VoidMesh& mesh, VoidMesh::HalfEdge h) {
+  const double distance = VoidMesh::kSlack * mesh.length(h) + 1;  // ends are rounded
+  const auto is_filled = [&](std::uint32_t triangle) {
+    return is_filled_near(mesh, triangle, distance);
+  };
+  const auto reaches_wall = [&](VoidMesh::HalfEdge from) {
+    return mesh.wall_before(from, is_filled) || mesh.wall_after(from, is_filled);
+  };
+  return reaches_wall(h) && reaches_wall(mesh.twin(h));
+}
+
 /// Numbers the pieces from first_void on.
 class Pieces {
  public:
@@ -143,21 +178,9 @@ void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, Divide
 
 }  // namespace
 
-Box widened_for_blocks(const Box& box) {
-  constexpr auto kHalf = static_cast<std::int32_t>(kWidestBridge / 2) + 1;
-  if (box.is_empty()) return box;
-  return {
-      std::max(box.min_x, kGridMin + kHalf) - kHalf, std::max(box.min_y, kGridMin + kHalf) - kHalf,
-      std::min(box.max_x, kGridMax - kHalf) + kHalf, std::min(box.max_y, kGridMax - kHalf) + kHalf};
-}
-
-bool MergePlan::are_of_one_class(FaceId a, FaceId b) const {
-  return classes[a - 1] == classes[b - 1] && classes[a - 1] != kMixedClass;
-}
-
 // The largest set is what is left when everything else is taken away, from the greatest distance
 // down: a triangle goes at its own distance, or where a neighbour has gone and the side between
-// them is longer, at the smaller of the two.
+// them is longer, at the smaller of the two. What is too wide goes first, in any order.
 std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGraph& graph,
                                       std::span<const std::uint32_t> class_of_face) {
   const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
@@ -165,54 +188,63 @@ std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGra
   std::vector<double> distances(count);
   std::vector<bool> is_known(count, false);
   // What is not raised stays in order; what is waits apart, as it is little.
-  std::vector<std::pair<double, std::uint32_t>> order(count);
+  std::vector<std::pair<double, std::uint32_t>> order;
   std::priority_queue<std::pair<double, std::uint32_t>> raised;
+  std::vector<std::uint32_t> beyond_all;
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto class_at = [&](std::uint32_t i) { return classes[mesh.vertex(3 * t + i).value]; };
     const bool is_between_equals = !mesh.is_beyond(t) && class_at(0) != kMixedClass &&
                                    class_at(0) == class_at(1) && class_at(0) == class_at(2);
     distances[t] = is_between_equals ? own_distance(mesh, t) : kNever;
-    order[t] = {distances[t], t};
+    if (distances[t] > kWidestBridge) {
+      beyond_all.push_back(t);
+    } else {
+      order.emplace_back(distances[t], t);
+    }
+  }
+  const auto take_away = [&](std::uint32_t t) {
+    is_known[t] = true;
+    for (std::uint32_t side = 0; side < 3; ++side) {
+      const VoidMesh::HalfEdge h = 3 * t + side;
+      if (mesh.is_wall(h)) continue;
+      const std::uint32_t next = VoidMesh::triangle_of(mesh.twin(h));
+      if (is_known[next] || distances[next] > kWidestBridge) continue;
+      const double at_least = std::min(distances[t], mesh.length(h));
+      if (at_least <= distances[next]) continue;
+      distances[next] = at_least;
+      if (at_least > kWidestBridge) {
+        beyond_all.push_back(next);
+      } else {
+        raised.emplace(at_least, next);
+      }
+    }
+  };
+  while (!beyond_all.empty()) {
+    const std::uint32_t t = beyond_all.back();
+    beyond_all.pop_back();
+    take_away(t);
   }
   std::sort(order.begin(), order.end(), std::greater<>());
   for (std::size_t i = 0; i < order.size() || !raised.empty();) {
     const bool is_raised = !raised.empty() && (i == order.size() || order[i] < raised.top());
-    const auto [distance, t] = is_raised ? raised.top() : order[i];
+    const std::uint32_t t = is_raised ? raised.top().second : order[i].second;
     if (is_raised) {
       raised.pop();
     } else {
       ++i;
     }
-    if (is_known[t]) continue;
-    is_known[t] = true;
-    for (std::uint32_t side = 0; side < 3; ++side) {
-      const VoidMesh::HalfEdge h = 3 * t + side;
-      if (mesh.is_wall(h)) continue;
-      const std::uint32_t beyond = VoidMesh::triangle_of(mesh.twin(h));
-      if (is_known[beyond]) continue;
-      const double at_least = std::min(distance, mesh.length(h));
-      if (at_least <= distances[beyond]) continue;
-      distances[beyond] = at_least;
-      raised.emplace(at_least, beyond);
-    }
+    if (!is_known[t]) take_away(t);
   }
   return distances;
 }
 
 void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
                               std::span<const std::uint32_t> class_of_face) {
-  constexpr int kMostPasses = 1;
   mesh.divide_walls(kWidestBridge);
-  for (int pass = 0; pass < kMostPasses && !mesh.has_failed(); ++pass) {
-    const std::vector<double> distances = distances_to_fill(mesh, graph, class_of_face);
-    std::vector<VoidMesh::HalfEdge> bridges = shortest_bridges(mesh, graph, class_of_face);
-    std::erase_if(bridges, [&](VoidMesh::HalfEdge h) {
-      const double distance = std::min(distances[VoidMesh::triangle_of(h)],
-                                       distances[VoidMesh::triangle_of(mesh.twin(h))]);
-      return distance <= std::numbers::sqrt2 * mesh.length(h);
-    });
-    if (bridges.empty() || !mesh.divide_walls_beside(bridges)) return;
-  }
+  if (mesh.has_failed()) return;
+  std::vector<VoidMesh::HalfEdge> bridges = shortest_bridges(mesh, graph, class_of_face);
+  std::erase_if(bridges, [&](VoidMesh::HalfEdge h) { return is_built(mesh, h); });
+  mesh.divide_walls_beside(bridges);
 }
 
 std::optional<DividedVoid> divide_void(const TrapezoidalGraph& graph, double ratio,

@@ -18,51 +18,22 @@
 #include <utility>
 #include <vector>
 
+#include "core/borders/merge_plan.h"
 #include "core/borders/void_mesh.h"
 #include "core/graph/trapezoidal_graph.h"
 #include "core/grid/grid.h"
 
 namespace trapeze {
 
-/// Nothing is bridged that is wider, in cells: four pixels at zoom 11, 306 m at the equator. Towns
-/// are areas by then, and each bridge takes memory.
-constexpr double kWidestBridge = 16384;
-
-/// Two boxes of polygons that may become one block meet if they are widened so.
-Box widened_for_blocks(const Box& box);
-
-/// What becomes a block.
-struct Merging {
-  /// The distance that is bridged, as a multiple of the tolerance; 0: none is.
-  double ratio = 0;
-  /// Only features of one class become one block: the class of each, or empty if all are of one.
-  std::vector<std::uint32_t> classes = {};
-};
-
-/// The faces of a coverage that become one, and when.
-struct MergePlan {
-  double ratio = 0;
-  FaceId first_void = 0;  // faces from this one on are pieces of the void, by feature those before
-  /// The tolerance at which each piece is filled, in cells.
-  std::vector<double> due;
-  /// By face, less 1; of the pieces as well. kMixedClass is that of no other.
-  std::vector<std::uint32_t> classes;
-
-  bool is_void(FaceId face) const { return face == kOutside || face >= first_void; }
-  bool is_piece(FaceId face) const { return face >= first_void; }
-  bool are_of_one_class(FaceId a, FaceId b) const;
-};
-
-constexpr std::uint32_t kMixedClass = 0xffffffff;
-
 /// Divides the edges of polygons beside the void so that it can be filled between any two of them
-/// that are near each other: where they are nearest, at no more than the root of two times their
-/// distance, as a rule.
+/// that are near each other: where they are nearest, at hardly more than their distance (see
+/// VoidMesh::kSlack), as a rule.
 void divide_walls_for_bridges(VoidMesh& mesh, const TrapezoidalGraph& graph,
                               std::span<const std::uint32_t> class_of_face);
 
-/// The distance of every triangle, in cells; infinite beyond the hull and where it is not between
-/// polygons of one class. `class_of_face` is by face, 0 being outside.
+/// The distance of every triangle, in cells; any that is more than kWidestBridge where more is
+/// bridged, beyond the hull, and where it is not between polygons of one class. `class_of_face` is
+/// by face, 0 being outside.
 std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGraph& graph,
                                       std::span<const std::uint32_t> class_of_face);
 

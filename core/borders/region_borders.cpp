@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/borders/border_lengths.h"
+#include "core/graph/fetch_ahead.h"
 #include "core/graph/generalization.h"
 #include "core/mesh/trapezoid_mesh.h"
 
@@ -56,42 +57,64 @@ void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan)
   plan_ = plan;
   Regions regions(graph);
   measure_regions(regions);
-  beside_ = std::move(regions.beside);
   unbounded_ = regions.unbounded;
+  faces_ = std::move(regions.face);
   const std::size_t edges = graph.edges().size();
   parent_.clear();
+  parent_.reserve(moments_.size());
   for (std::size_t r = 0; r < moments_.size(); ++r) parent_.push_back(RegionId(r));
-  replaced_by_.clear();
-  for (std::size_t e = 0; e < edges; ++e) replaced_by_.push_back(EdgeId(e));
-  corner_of_.assign(edges, CornerId());
-  seen_.assign(edges, 0);
+  borders_.clear();
+  borders_.reserve(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    borders_.push_back({regions.beside[EdgeId(e)], EdgeId(e), CornerId(), 0});
+  }
   stamp_ = 0;
-  lists_.assign(moments_.size(), List());
   may_have_junction_.assign(moments_.size(), 0);
-  seeds_.clear();
-  ends_.clear();
+  first_end_.assign(graph.vertices().size() + 1, 0);
   for (std::size_t i = 0; i < graph.corners().size(); ++i) {
     const Corner& corner = graph.corner(CornerId(i));
     if (!corner.is_alive()) continue;
-    if (!corner.edge.is_none()) corner_of_[corner.edge] = CornerId(i);
-    if (corner.is_end()) ends_.emplace_back(corner.vertex, CornerId(i));
+    if (!corner.edge.is_none()) borders_[corner.edge].corner = CornerId(i);
+    if (corner.is_end()) ++first_end_[VertexId(corner.vertex.value + 1)];
   }
-  std::sort(ends_.begin(), ends_.end());
-  first_end_.assign(graph.vertices().size() + 1, 0);
-  for (const auto& [vertex, corner] : ends_) ++first_end_[VertexId(vertex.value + 1)];
   for (std::size_t v = 1; v < first_end_.size(); ++v) {
     first_end_[VertexId(v)] += first_end_[VertexId(v - 1)];
   }
-  // Each arc once, by the first of its edges that is met.
+  ends_.assign(first_end_[VertexId(graph.vertices().size())], CornerId());
+  std::vector<std::uint32_t> next_end(first_end_.begin(), first_end_.end());
+  for (std::size_t i = 0; i < graph.corners().size(); ++i) {
+    const Corner& corner = graph.corner(CornerId(i));
+    if (corner.is_alive() && corner.is_end()) ends_[next_end[corner.vertex.value]++] = CornerId(i);
+  }
+  collect_seeds();
+}
+
+/// Each arc once, by the first of its edges that is met. Those of a region lie together.
+void RegionBorders::collect_seeds() {
+  std::vector<EdgeId> firsts;
+  lists_.assign(moments_.size(), List());
+  std::vector<std::uint32_t> next_seed(moments_.size() + 1, 0);
   stamp_ = 1;
-  for (std::size_t i = 0; i < edges; ++i) {
+  for (std::size_t i = 0; i < borders_.size(); ++i) {
     const EdgeId e(i);
-    if (corner_of_[e].is_none() || seen_[e] == stamp_) continue;
+    if (borders_[e].corner.is_none() || borders_[e].seen == stamp_) continue;
     edges_.clear();
     const bool has_ends = !walk_arc(e).is_closed;
-    for (const RegionId region : beside_[e]) {
-      add_seed(region, e);
+    firsts.push_back(e);
+    for (const RegionId region : borders_[e].beside) {
+      ++next_seed[region.value + 1];
       if (has_ends) may_have_junction_[region] = 1;
+    }
+  }
+  for (std::size_t r = 1; r < next_seed.size(); ++r) next_seed[r] += next_seed[r - 1];
+  seeds_.assign(2 * firsts.size(), Seed{});
+  for (const EdgeId e : firsts) {
+    for (const RegionId region : borders_[e].beside) {
+      const std::uint32_t seed = next_seed[region.value]++;
+      seeds_[seed].edge = e;
+      List& list = lists_[region];
+      (list.first == kNobody ? list.first : seeds_[list.last].next) = seed;
+      list.last = seed;
     }
   }
 }
@@ -120,14 +143,6 @@ void RegionBorders::measure_regions(const Regions& regions) {
   }
 }
 
-void RegionBorders::add_seed(RegionId region, EdgeId edge) {
-  const auto seed = static_cast<std::uint32_t>(seeds_.size());
-  seeds_.push_back({edge, kNobody});
-  List& list = lists_[region];
-  (list.first == kNobody ? list.first : seeds_[list.last].next) = seed;
-  list.last = seed;
-}
-
 RegionId RegionBorders::find(RegionId region) {
   while (parent_[region] != region) {
     parent_[region] = parent_[parent_[region]];
@@ -137,11 +152,12 @@ RegionId RegionBorders::find(RegionId region) {
 }
 
 EdgeId RegionBorders::find(EdgeId edge) {
-  while (replaced_by_[edge] != edge) {
-    replaced_by_[edge] = replaced_by_[replaced_by_[edge]];
-    edge = replaced_by_[edge];
+  for (;;) {
+    EdgeId& next = borders_[edge].replaced_by;
+    if (next == edge) return edge;
+    next = borders_[next].replaced_by;
+    edge = next;
   }
-  return edge;
 }
 
 void RegionBorders::unite(RegionId a, RegionId b) {
@@ -160,24 +176,24 @@ void RegionBorders::unite(RegionId a, RegionId b) {
 }
 
 void RegionBorders::note_joined(EdgeId gone, EdgeId kept, CornerId corner) {
-  replaced_by_[gone] = kept;
-  corner_of_[kept] = corner;
+  borders_[gone].replaced_by = kept;
+  borders_[kept].corner = corner;
 }
 
 void RegionBorders::note_lost_loop(EdgeId edge, Side side) {
   const Edge& border = graph_->edge(edge);
-  const RegionId inside = find(beside_[edge][side]);
+  const RegionId inside = find(borders_[edge].beside[side]);
   const AreaMoments& lost = moments_[inside];
   taken_.assign(1, {lost.axis(), lost.area, border.face[side], border.face[opposite(side)]});
-  unite(beside_[edge][opposite(side)], inside);
+  unite(borders_[edge].beside[opposite(side)], inside);
 }
 
 double RegionBorders::weight(RegionId region) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const bool may_go = plan_ != nullptr || may_have_junction_[region] != 0;
   if (find(region) != region || region == unbounded_ || !may_go) return kNever;
-  const FaceId face = plan_ != nullptr ? face_of(region) : kOutside;
-  if (plan_ != nullptr && plan_->is_piece(face)) return plan_->due[face - plan_->first_void];
+  const FaceId face = faces_[region];
+  if (plan_ != nullptr && plan_->is_piece(face)) return plan_->due_of(face);
   collect_arcs(region);
   if (!has_junction_) return kNever;
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
@@ -199,7 +215,7 @@ void RegionBorders::collect_arcs(RegionId region) {
   std::uint32_t before = kNobody;
   for (std::uint32_t i = list.first; i != kNobody; i = seeds_[i].next) {
     const EdgeId e = find(seeds_[i].edge);
-    const bool is_new = graph_->edge(e).is_alive() && seen_[e] != stamp_;
+    const bool is_new = graph_->edge(e).is_alive() && borders_[e].seen != stamp_;
     if (!is_new) continue;
     (before == kNobody ? list.first : seeds_[before].next) = i;
     before = i;
@@ -218,10 +234,10 @@ void RegionBorders::collect_arcs(RegionId region) {
 
 RegionBorders::Arc RegionBorders::walk_arc(EdgeId edge) {
   Arc arc;
-  arc.first = corner_of_[edge];
+  arc.first = borders_[edge].corner;
   while (!graph_->corner(arc.first).prev.is_none()) {
     arc.first = graph_->corner(arc.first).prev;
-    if (arc.first == corner_of_[edge]) break;
+    if (arc.first == borders_[edge].corner) break;
   }
   arc.is_closed = !graph_->corner(arc.first).prev.is_none();
   arc.begin = edges_.size();
@@ -231,7 +247,7 @@ RegionBorders::Arc RegionBorders::walk_arc(EdgeId edge) {
     box_.include(graph_->point(corner.vertex));
     if (corner.edge.is_none()) break;
     edges_.push_back(corner.edge);
-    seen_[corner.edge] = stamp_;
+    borders_[corner.edge].seen = stamp_;
     c = corner.next;
   } while (c != arc.first);
   arc.end = edges_.size();
@@ -239,7 +255,7 @@ RegionBorders::Arc RegionBorders::walk_arc(EdgeId edge) {
 }
 
 Side RegionBorders::side_of(EdgeId edge, RegionId region) {
-  return find(beside_[edge][kLeft]) == region ? kLeft : kRight;
+  return find(borders_[edge].beside[kLeft]) == region ? kLeft : kRight;
 }
 
 /// The face with the longest border; the void only if there is no other, so that a coverage does
@@ -263,20 +279,27 @@ FaceId RegionBorders::choose_taker(FaceId face) const {
   return is_open ? kOutside : pieces.longest();
 }
 
+/// Of a piece of the void that bridges nothing by itself: a piece beside it, that is to be filled
+/// with it, and later; the first of these. kOutside if there is none.
+FaceId RegionBorders::find_later_piece(FaceId face) const {
+  FaceId later = kOutside;
+  for (const Arc& arc : arcs_) {
+    if (arc.beyond == face || !plan_->is_piece(arc.beyond)) continue;
+    const double due = plan_->due_of(arc.beyond);
+    if (due < plan_->due_of(face)) continue;
+    const bool is_first =
+        later == kOutside || std::pair(due, arc.beyond) < std::pair(plan_->due_of(later), later);
+    if (is_first) later = arc.beyond;
+  }
+  return later;
+}
+
 double RegionBorders::length_of_arc(const Arc& arc) const {
   double length = 0;
   for (std::size_t i = arc.begin; i < arc.end; ++i) {
     length += length_of(*graph_, graph_->edge(edges_[i]));
   }
   return length;
-}
-
-FaceId RegionBorders::face_of(RegionId region) {
-  for (std::uint32_t i = lists_[region].first; i != kNobody; i = seeds_[i].next) {
-    const EdgeId e = find(seeds_[i].edge);
-    if (graph_->edge(e).is_alive()) return graph_->edge(e).face[side_of(e, region)];
-  }
-  return kOutside;
 }
 
 /// Of the current region, in order of the arcs.
@@ -286,7 +309,7 @@ std::vector<RegionBorders::Mate> RegionBorders::mates_of(RegionId region, FaceId
     const bool is_void = plan_->is_void(arc.beyond) || face == kOutside;
     if (is_void || !plan_->are_of_one_class(face, arc.beyond)) continue;
     const EdgeId any = edges_[arc.begin];
-    const RegionId beyond = find(beside_[any][opposite(side_of(any, region))]);
+    const RegionId beyond = find(borders_[any].beside[opposite(side_of(any, region))]);
     auto known = std::ranges::find(mates, beyond, &Mate::region);
     if (known == mates.end()) known = mates.insert(known, Mate{beyond, arc.beyond});
     known->border += length_of_arc(arc);
@@ -313,7 +336,7 @@ bool RegionBorders::is_smaller(RegionId a, RegionId b) const {
 
 RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   collect_arcs(region);
-  const FaceId face = face_of(region);
+  const FaceId face = faces_[region];
   std::vector<Mate> mates;
   if (plan_ != nullptr) mates = mates_of(region, face);
   const bool is_piece = plan_ != nullptr && plan_->is_piece(face);
@@ -335,8 +358,9 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
     const auto nearest = std::ranges::max_element(mates, {}, &Mate::border);
     join(region, face, *nearest, log, united);
   } else {
-    note_taken(region, face, taker);
-    dissolve(region, taker, log, united);
+    const FaceId later = is_piece ? find_later_piece(face) : kOutside;
+    note_taken(region, face, later != kOutside ? later : taker);
+    dissolve(region, later != kOutside ? later : taker, log, united);
     return united;
   }
   block_area_ = moments_[united.front()].area;
@@ -356,11 +380,13 @@ void RegionBorders::join(RegionId region, FaceId face, const Mate& mate, EditLog
 
 /// Makes the current region a part of those beside it that have the face of the taker.
 void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United& united) {
-  std::vector<VertexId> junctions;
+  std::vector<VertexId>& junctions = junctions_;
+  junctions.clear();
   Generalization generalization(*graph_, log);
   std::vector<RegionId> takers;
   for (const Arc& arc : arcs_) {
-    std::vector<CornerId> corners;
+    std::vector<CornerId>& corners = gone_corners_;
+    corners.clear();
     for (CornerId c = arc.first; !c.is_none(); c = graph_->corner(c).next) {
       corners.push_back(c);
       changed_.push_back(graph_->corner(c).vertex);
@@ -371,7 +397,7 @@ void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United
       const EdgeId e = edges_[i];
       const Side s = side_of(e, region);
       if (arc.beyond == taker) {
-        takers.push_back(find(beside_[e][opposite(s)]));
+        takers.push_back(find(borders_[e].beside[opposite(s)]));
         generalization.remove_edge(e);
       } else {
         log.edit(e).face[s] = taker;
@@ -383,8 +409,10 @@ void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United
   std::sort(takers.begin(), takers.end());
   takers.erase(std::unique(takers.begin(), takers.end()), takers.end());
   for (const RegionId other : takers) unite(region, other);
+  faces_[region] = taker;
   std::sort(junctions.begin(), junctions.end());
   junctions.erase(std::unique(junctions.begin(), junctions.end()), junctions.end());
+  fetch_ends(junctions);
   for (const VertexId v : junctions) repair_junction(v, log);
   united.insert(united.end(), takers.begin(), takers.end());
   std::erase(united, region);
@@ -417,15 +445,73 @@ void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
   for (Taken& taken : taken_) taken.area *= moments_[region].area / sum;
 }
 
+std::span<const CornerId> RegionBorders::ends_at(VertexId v) const {
+  return std::span(ends_).subspan(first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
+}
+
+/// What repair_junction() reads of all of them, each step for all before the next one.
+void RegionBorders::fetch_ends(std::span<const VertexId> junctions) const {
+  for (const VertexId v : junctions) trapeze::fetch(first_end_, v);
+  for (const VertexId v : junctions) __builtin_prefetch(ends_at(v).data());
+  for (const VertexId v : junctions) {
+    for (const CornerId end : ends_at(v)) trapeze::fetch(graph_->corners(), end);
+  }
+  for (const VertexId v : junctions) {
+    for (const CornerId end : ends_at(v)) {
+      const Corner& corner = graph_->corner(end);
+      if (!corner.is_end()) continue;
+      trapeze::fetch(borders_, corner.edge);
+      trapeze::fetch(graph_->edges(), corner.edge);
+      trapeze::fetch(graph_->corners(), corner.prev);
+    }
+  }
+}
+
+void RegionBorders::fetch(FetchStep step, RegionId region) const {
+  if (step == FetchStep::region) {
+    trapeze::fetch(parent_, region);
+    trapeze::fetch(faces_, region);
+    trapeze::fetch(lists_, region);
+    trapeze::fetch(moments_, region);
+    return;
+  }
+  if (parent_[region] != region) return;
+  const List& list = lists_[region];
+  if (step == FetchStep::seeds) {
+    if (list.first != kNobody) __builtin_prefetch(&seeds_[list.first]);
+    return;
+  }
+  // Of a large region, what is enough to begin with.
+  constexpr int kMostSeeds = 8;
+  std::uint32_t i = list.first;
+  for (int count = 0; i != kNobody && count < kMostSeeds; i = seeds_[i].next, ++count) {
+    const EdgeId e = seeds_[i].edge;
+    if (step == FetchStep::edges) {
+      trapeze::fetch(borders_, e);
+      trapeze::fetch(graph_->edges(), e);
+      continue;
+    }
+    const Edge& edge = graph_->edge(e);
+    if (!edge.is_alive()) continue;
+    trapeze::fetch(graph_->corners(), borders_[e].corner);
+    for (const VertexId v : edge.end) {
+      trapeze::fetch(graph_->vertices(), v);
+      trapeze::fetch(first_end_, v);
+    }
+    for (const auto& along : edge.extreme) {
+      for (const NodeId n : along) trapeze::fetch(graph_->nodes(), n);
+    }
+  }
+}
+
 void RegionBorders::repair_junction(VertexId v, EditLog& log) {
   spokes_.clear();
-  const auto ends =
-      std::span(ends_).subspan(first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
-  for (const auto& [vertex, end] : ends) {
+  for (const CornerId end : ends_at(v)) {
     const Corner& corner = graph_->corner(end);
     if (!corner.is_end()) continue;
     const EdgeId e = corner.edge.is_none() ? graph_->corner(corner.prev).edge : corner.edge;
-    spokes_.push_back(spoke_of(*graph_, v, e, find(beside_[e][kLeft]), find(beside_[e][kRight])));
+    spokes_.push_back(
+        spoke_of(*graph_, v, e, find(borders_[e].beside[kLeft]), find(borders_[e].beside[kRight])));
   }
   sort_around(graph_->point(v), spokes_);
   for (const auto& [a, b] : pair_spokes(spokes_)) join_ends(end_at(v, a), end_at(v, b), log);
@@ -433,7 +519,7 @@ void RegionBorders::repair_junction(VertexId v, EditLog& log) {
 
 /// The end, at `v`, of the arc that leads from there by `edge`.
 CornerId RegionBorders::end_at(VertexId v, EdgeId edge) const {
-  const CornerId c = corner_of_[edge];
+  const CornerId c = borders_[edge].corner;
   return graph_->corner(c).vertex == v && graph_->corner(c).is_end() ? c : graph_->corner(c).next;
 }
 
@@ -461,7 +547,7 @@ void RegionBorders::join_ends(CornerId a, CornerId b, EditLog& log) {
   log.edit(last).next = begin.next;
   log.edit(begin.next).prev = last;
   log.edit(first) = Corner{begin.vertex, {}, {}, {}};
-  corner_of_[begin.edge] = last;
+  borders_[begin.edge].corner = last;
   dissolved_.push_back(last);
 }
 
@@ -476,7 +562,7 @@ void RegionBorders::reverse(CornerId end, EditLog& log) {
     turned.prev = corner.next;
     turned.next = corner.prev;
     turned.edge = before;
-    if (!before.is_none()) corner_of_[before] = c;
+    if (!before.is_none()) borders_[before].corner = c;
     before = corner.edge;
     c = corner.next;
   }

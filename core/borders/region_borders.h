@@ -14,8 +14,9 @@
 //     |  A  : void:  B  |           |        A        |    the larger of the two gives its face
 //     +-----+.....+-----+           +-----------------+
 //
-// If what it bridged has become too small to see, it is void like all around. Polygons that touch
-// become one region when the narrower one is narrower than the distance that is bridged.
+// If it bridges nothing by itself, it waits for the next piece beside it; if there is none, as what
+// it bridged has become too small to see, it is void like all around. Polygons that touch become
+// one region when the narrower one is narrower than the distance that is bridged.
 //
 // Must be told of every removal from the graph, and follows them forward only. Thread-safety: none.
 #pragma once
@@ -26,7 +27,7 @@
 #include <vector>
 
 #include "core/borders/border_arcs.h"
-#include "core/borders/merging.h"
+#include "core/borders/merge_plan.h"
 #include "core/borders/regions.h"
 #include "core/graph/edit_log.h"
 #include "core/graph/trapezoidal_graph.h"
@@ -73,6 +74,11 @@ class RegionBorders {
   /// lies on `side` of that edge: the region inside becomes a part of the one outside.
   void note_lost_loop(EdgeId edge, Side side);
 
+  /// Prefetches, step by step, what weight() and remove() will read of a region (see
+  /// fetch_ahead.h). They change nothing.
+  enum class FetchStep { region, seeds, edges, corners };
+  void fetch(FetchStep step, RegionId region) const;
+
   // What the last removal did.
   /// Areas that went from one face to another.
   std::span<const Taken> taken() const { return taken_; }
@@ -95,6 +101,13 @@ class RegionBorders {
     std::uint32_t first = kNobody;
     std::uint32_t last = kNobody;
   };
+  // Of an edge: together, as whoever needs one of them needs the others.
+  struct Border {
+    std::array<RegionId, 2> beside;
+    EdgeId replaced_by;
+    CornerId corner;  // that the edge leaves
+    std::uint32_t seen = 0;
+  };
 
   // An arc of the current region, as edges_[begin .. end).
   struct Arc {
@@ -108,7 +121,7 @@ class RegionBorders {
   RegionId find(RegionId region);
   EdgeId find(EdgeId edge);
   void unite(RegionId a, RegionId b);
-  void add_seed(RegionId region, EdgeId edge);
+  void collect_seeds();
 
   void collect_arcs(RegionId region);
   Arc walk_arc(EdgeId edge);
@@ -120,8 +133,8 @@ class RegionBorders {
   };
 
   FaceId choose_taker(FaceId face) const;
+  FaceId find_later_piece(FaceId face) const;
   double length_of_arc(const Arc& arc) const;
-  FaceId face_of(RegionId region);
   std::vector<Mate> mates_of(RegionId region, FaceId face);
   bool bridges(std::size_t mates) const;
   bool is_smaller(RegionId a, RegionId b) const;
@@ -131,6 +144,8 @@ class RegionBorders {
   void measure_regions(const Regions& regions);
   void note_taken(RegionId region, FaceId face, FaceId taker);
   void note_pieces(RegionId region, FaceId face, FaceId taker);
+  void fetch_ends(std::span<const VertexId> junctions) const;
+  std::span<const CornerId> ends_at(VertexId v) const;
   void repair_junction(VertexId v, EditLog& log);
   void join_ends(CornerId a, CornerId b, EditLog& log);
   void reverse(CornerId end, EditLog& log);
@@ -138,26 +153,26 @@ class RegionBorders {
 
   const TrapezoidalGraph* graph_ = nullptr;
   const MergePlan* plan_ = nullptr;
-  Table<EdgeId, std::array<RegionId, 2>> beside_;
-  Table<EdgeId, EdgeId> replaced_by_;
-  Table<EdgeId, CornerId> corner_of_;  // that the edge leaves
+  Table<EdgeId, Border> borders_;
   Table<RegionId, RegionId> parent_;
+  Table<RegionId, FaceId> faces_;
   Table<RegionId, AreaMoments> moments_;  // as they were at first
   Table<RegionId, List> lists_;
   Table<RegionId, std::uint8_t> may_have_junction_;
   std::vector<Seed> seeds_;
   RegionId unbounded_;
-  std::vector<std::pair<VertexId, CornerId>> ends_;  // of arcs, in order
-  Table<VertexId, std::uint32_t> first_end_;         // by vertex, in ends_
+  std::vector<CornerId> ends_;                // of arcs, in order of their vertices
+  Table<VertexId, std::uint32_t> first_end_;  // by vertex, in ends_
 
   // Of the current region.
-  Table<EdgeId, std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;
   std::vector<Arc> arcs_;
   std::vector<EdgeId> edges_;
   Box box_;
   bool has_junction_ = false;
   std::vector<Spoke> spokes_;
+  std::vector<VertexId> junctions_;
+  std::vector<CornerId> gone_corners_;
   std::vector<Taken> taken_;
   std::optional<double> block_area_;
   std::vector<VertexId> changed_;

@@ -279,51 +279,62 @@ bool VoidMesh::divide_at_foot(std::uint32_t wall, double reach) {
       (x * x + y * y);
   const bool is_obtuse = to_a * to_a + to_b * to_b < x * x + y * y;
   if (!is_obtuse || distance_across(h) > reach) return false;
-  return divide_wall(h, a.x + share * x, a.y + share * y);
+  return divide_wall(h, a.x + share * x, a.y + share * y).has_value();
 }
 
+//      p -- q        On either side, x is about as far from q as p is, and y from x: longer by half
+//     /|    |.       of the slack and by all of it. So there is a strip from wall to wall.
+//    / x -- y .
 bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
+  struct Bridge {
+    HalfEdge side;
+    HalfEdge beyond;
+    VertexId from;
+    VertexId to;
+  };
+  std::vector<Bridge> bridges;
+  for (const HalfEdge h : sides) bridges.push_back({h, twins_[h], corners_[h], corners_[next(h)]});
+  const auto is_within = [this](std::uint32_t triangle) { return !is_beyond(triangle); };
   bool has_divided = false;
-  for (const HalfEdge side : sides) {
-    // It may have got another place meanwhile.
-    if (is_wall(side) || corners_[side] == kInfinity || corners_[next(side)] == kInfinity) continue;
-    const double reach = std::numbers::sqrt2 * length(side);
-    const Point p = corner(side);
-    const Point q = corner(next(side));
-    // To the right of the side as seen from p, then to the left.
-    has_divided = divide_near(wall_after(side), p, q, reach) ||
-                  divide_near(wall_before(twins_[side]), q, p, reach) || has_divided;
-    if (is_wall(side) || corner(side) != p || corner(next(side)) != q) continue;
-    has_divided = divide_near(wall_before(side), p, q, reach) ||
-                  divide_near(wall_after(twins_[side]), q, p, reach) || has_divided;
+  for (const auto& [first, beyond, from, to] : bridges) {
+    const Point p = points_[from.value];
+    const Point q = points_[to.value];
+    const double length = length_between(p, q);
+    for (const bool is_right : {true, false}) {
+      const auto divide_at = [&](Point end, Point at, double slack) -> std::optional<Point> {
+        const std::optional<HalfEdge> side = find_side(first, beyond, from, to);
+        if (!side) return std::nullopt;
+        const HalfEdge h = end == p ? *side : twins_[*side];
+        const bool goes_before = (end == p) == is_right;
+        const auto wall = goes_before ? wall_before(h, is_within) : wall_after(h, is_within);
+        return divide_near(wall, end, at, slack * length);
+      };
+      const std::optional<Point> x = divide_at(p, q, (1 + kSlack) / 2);
+      const std::optional<Point> y = divide_at(q, x.value_or(p), kSlack);
+      has_divided = has_divided || x || y;
+    }
   }
   make_delaunay();
   return has_divided;
 }
 
-/// The next wall around the vertex from which the half-edge leads, in the order in which it is in
-/// triangles before itself: it leads to that vertex. None if infinity comes before.
-VoidMesh::HalfEdge VoidMesh::wall_before(HalfEdge h) const {
-  for (HalfEdge at = h;; at = twins_[before(at)]) {
-    if (is_beyond(triangle_of(at))) return kUnknown;
-    if (is_wall(before(at))) return before(at);
+/// The side from one vertex to the other, which was one of these two or their twins before walls
+/// were divided; none if it is at neither place any more.
+std::optional<VoidMesh::HalfEdge> VoidMesh::find_side(HalfEdge side, HalfEdge beyond, VertexId from,
+                                                      VertexId to) const {
+  if (!is_wall(side) && corners_[side] == from && corners_[next(side)] == to) return side;
+  if (!is_wall(beyond) && corners_[beyond] == to && corners_[next(beyond)] == from) {
+    return twins_[beyond];
   }
+  return std::nullopt;
 }
 
-/// The same in the other direction, a wall that leads from that vertex.
-VoidMesh::HalfEdge VoidMesh::wall_after(HalfEdge h) const {
-  for (HalfEdge at = h;;) {
-    at = next(twins_[at]);
-    if (is_beyond(triangle_of(at))) return kUnknown;
-    if (is_wall(at)) return at;
-  }
-}
-
-/// Divides a wall that leads from or to p, where it is `reach` away from q.
-bool VoidMesh::divide_near(HalfEdge wall, Point p, Point q, double reach) {
-  if (wall == kUnknown) return false;
-  const double wall_length = length(wall);
-  const Point r = corner(wall) == p ? corner(next(wall)) : corner(wall);
+/// Divides a wall that leads from or to p, where it is `reach` away from q; returns where.
+std::optional<Point> VoidMesh::divide_near(std::optional<HalfEdge> wall, Point p, Point q,
+                                           double reach) {
+  if (!wall) return std::nullopt;
+  const double wall_length = length(*wall);
+  const Point r = corner(*wall) == p ? corner(next(*wall)) : corner(*wall);
   const double x = (static_cast<double>(r.x) - p.x) / wall_length;
   const double y = (static_cast<double>(r.y) - p.y) / wall_length;
   const double to_q_x = static_cast<double>(q.x) - p.x;
@@ -331,15 +342,15 @@ bool VoidMesh::divide_near(HalfEdge wall, Point p, Point q, double reach) {
   const double along = to_q_x * x + to_q_y * y;
   const double across = to_q_x * y - to_q_y * x;
   const double from_p = along + std::sqrt(std::max(0.0, reach * reach - across * across));
-  if (from_p >= wall_length) return false;
-  return divide_wall(wall, p.x + from_p * x, p.y + from_p * y);
+  if (from_p >= wall_length) return std::nullopt;
+  return divide_wall(*wall, p.x + from_p * x, p.y + from_p * y);
 }
 
 //          c                 c
 //         / \               /|\      f lies on ab or, rounded, above it: the polygon below gets the
 //        /   \      ->     / | \     triangle afb, in which there is no vertex
 //       a-----b           a--f--b
-bool VoidMesh::divide_wall(HalfEdge h, double x, double y) {
+std::optional<Point> VoidMesh::divide_wall(HalfEdge h, double x, double y) {
   const Point a = corner(h);
   const Point b = corner(next(h));
   const Point c = corner(before(h));
@@ -355,7 +366,7 @@ bool VoidMesh::divide_wall(HalfEdge h, double x, double y) {
     foot = p;
     least = off;
   }
-  if (foot == a) return false;
+  if (foot == a) return std::nullopt;
 
   const VertexId f(points_.size());
   points_.push_back(foot);
@@ -369,7 +380,7 @@ bool VoidMesh::divide_wall(HalfEdge h, double x, double y) {
   set_twin(u + 1, beyond);
   set_twin(u + 2, next(h));
   suspects_.insert(suspects_.end(), {before(h), u + 1, u + 2});
-  return true;
+  return foot;
 }
 
 }  // namespace trapeze

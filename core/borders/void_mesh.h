@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/graph/trapezoidal_graph.h"
@@ -42,10 +43,31 @@ class VoidMesh {
   /// that the polygon grows by less than a cell and nothing comes to cross.
   void divide_walls(double reach);
 
-  /// Divides the walls that lead away from either end of a side between two polygons where that
-  /// makes a triangle of the side whose others are at most the root of two times as long. Returns
-  /// whether it has divided any; the sides may be others afterwards.
+  /// How much longer than a side the others of the triangles are that divide_walls_beside() makes.
+  static constexpr double kSlack = 1.05;
+  /// Divides the walls that lead away from both ends of sides between two polygons, so near to them
+  /// that a side of at most kSlack times the length leads from the one to the other. Returns
+  /// whether it has divided any; the sides may be others afterwards, and some may be left as they
+  /// are.
   bool divide_walls_beside(const std::vector<HalfEdge>& sides);
+
+  /// The next wall around the vertex from which the half-edge leads: in the order in which it is in
+  /// triangles before itself, a wall that leads to that vertex; in the other one, a wall that leads
+  /// from there. None if a triangle for which may_pass(triangle) is false comes before.
+  template <typename MayPass>
+  std::optional<HalfEdge> wall_before(HalfEdge h, const MayPass& may_pass) const {
+    for (HalfEdge at = h; may_pass(triangle_of(at)); at = twins_[before(at)]) {
+      if (is_wall(before(at))) return before(at);
+    }
+    return std::nullopt;
+  }
+  template <typename MayPass>
+  std::optional<HalfEdge> wall_after(HalfEdge h, const MayPass& may_pass) const {
+    for (HalfEdge at = twins_[h]; may_pass(triangle_of(at)); at = twins_[next(at)]) {
+      if (is_wall(next(at))) return next(at);
+    }
+    return std::nullopt;
+  }
 
   std::size_t triangle_count() const { return corners_.size() / 3; }
   /// Whether the triangle lies beyond the hull.
@@ -102,10 +124,10 @@ class VoidMesh {
   bool is_to_be_exchanged(HalfEdge h) const;
   void exchange(HalfEdge h);
   bool divide_at_foot(std::uint32_t wall, double reach);
-  HalfEdge wall_before(HalfEdge h) const;
-  HalfEdge wall_after(HalfEdge h) const;
-  bool divide_near(HalfEdge wall, Point p, Point q, double reach);
-  bool divide_wall(HalfEdge h, double x, double y);
+  std::optional<Point> divide_near(std::optional<HalfEdge> wall, Point p, Point q, double reach);
+  std::optional<HalfEdge> find_side(HalfEdge side, HalfEdge beyond, VertexId from,
+                                    VertexId to) const;
+  std::optional<Point> divide_wall(HalfEdge h, double x, double y);
 
   const TrapezoidalGraph& graph_;
   std::vector<Point> points_;

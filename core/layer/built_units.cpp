@@ -14,6 +14,14 @@ Digest digest_of(const Rings& rings) {
   return digester.digest();
 }
 
+Digest digest_of(const Digest& rings, std::uint64_t own_class) {
+  Digester digester;
+  digester.add(rings.low);
+  digester.add(rings.high);
+  digester.add(own_class);
+  return digester.digest();
+}
+
 Digest digest_of(std::span<const Digest> features) {
   Digester digester;
   digester.add(features.size());

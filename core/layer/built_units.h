@@ -98,6 +98,8 @@ struct BuiltUnits {
 
 /// Of the rings of a feature.
 Digest digest_of(const Rings& rings);
+/// Of a feature of a class with rings of that digest.
+Digest digest_of(const Digest& rings, std::uint64_t own_class);
 /// Of a group of features with these digests. Never that of a single feature.
 Digest digest_of(std::span<const Digest> features);
 

@@ -206,11 +206,13 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
 }
 
 Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
-                                    std::span<const Rings* const> features, unsigned threads) {
+                                    std::span<const Rings* const> features, unsigned threads,
+                                    std::span<const std::uint64_t> classes) {
   State& state = *state_;
   std::vector<Digest> digests;
   digests.reserve(features.size());
   for (const Rings* rings : features) digests.push_back(digest_of(*rings));
+  for (std::size_t i = 0; i < classes.size(); ++i) digests[i] = digest_of(digests[i], classes[i]);
   if (state.earlier != nullptr) {
     if (const auto unit = state.earlier->claim_group(digest_of(digests), rows.size())) {
       return state.take_over_group(*unit, digests, rows);
@@ -219,7 +221,7 @@ Assembly LayerBuilder::add_coverage(std::span<const std::uint32_t> rows,
   if (state.share != nullptr) state.share->enter(0, kAssemblyShare);
   Assembly assembly =
       assemble(features, state.options.coverage, state.options.close_gaps, state.coverage_builder,
-               state.graph, state.share, threads, state.options.merging());
+               state.graph, state.share, threads, state.options.merging(classes));
   state.most_tolerance.reset();
   if (!assembly.together.empty()) state.build_group(rows, assembly, threads);
   if (assembly.outcome.failure.empty()) {

@@ -45,9 +45,10 @@ class LayerBuilder {
   /// Builds one graph of those features of a group that can live in one, see assemble(): the
   /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
   /// rings are clean. On up to `threads` threads. Where the group is taken over, the outcome lacks
-  /// the faces, and the areas of features that do not lie under others.
+  /// the faces, and the areas of features that do not lie under others. `classes` are of what may
+  /// become a block, see LayerOptions::merging(); by feature, or empty.
   Assembly add_coverage(std::span<const std::uint32_t> rows, std::span<const Rings* const> features,
-                        unsigned threads = 1);
+                        unsigned threads = 1, std::span<const std::uint64_t> classes = {});
 
   /// The tolerance (cells) from which on what was added last is not simplified any further, since
   /// that would take too long; none as a rule. See HistoryRecorder::record().

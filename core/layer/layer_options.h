@@ -1,6 +1,10 @@
 // How a layer is built.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string>
+
 #include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
 
@@ -16,8 +20,13 @@ struct LayerOptions : GeneralizationOptions {
   /// What lies nearer to each other becomes one block (see merging.h): pixels, where the tolerance
   /// is the usual quarter of one, up to kWidestMerge; 0: nothing does. Where there are coverages.
   double merge = 0;
+  /// Only features with the same value of that attribute become one block; empty: all may.
+  std::string merge_by = {};
 
-  Merging merging() const { return {merge / kUsualTolerance}; }
+  /// What it means for features of these classes; empty: all are of one.
+  Merging merging(std::span<const std::uint64_t> classes = {}) const {
+    return {merge / kUsualTolerance, numbered(classes)};
+  }
 
   friend bool operator==(const LayerOptions&, const LayerOptions&) = default;
 

@@ -158,9 +158,7 @@ void check_arguments(const CheckArguments& arguments) {
 int run_check(const CheckArguments& arguments) {
   check_arguments(arguments);
   OpenOptions how;
-  how.coverage = coverage_or_throw(arguments.coverage);
-  how.close_gaps = arguments.coverage.close_gaps;
-  how.merge = arguments.coverage.merge;
+  apply(arguments.coverage, how);
   bool is_all_good = true;
   for (const std::string& file : arguments.files) {
     is_all_good &= check_file(file, how, arguments.max_skipped);

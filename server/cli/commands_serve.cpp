@@ -68,6 +68,7 @@ void share_borders(const CoverageArguments& coverage, LoadedConfig& loaded) {
     note("coverage", "--coverage", !coverage.mode.empty());
     note("close_gaps", "--close-gaps", coverage.close_gaps.has_value());
     note("merge", "--merge", coverage.merge.has_value());
+    note("merge_by", "--merge-by", !coverage.merge_by.empty());
   }
 }
 

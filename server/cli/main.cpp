@@ -254,6 +254,11 @@ void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage,
              [&coverage](const std::string& option, const std::string& text) {
                coverage.merge = trapeze::number_or_throw(option, text, 0, trapeze::kWidestMerge);
              });
+  command
+      .add_option("--merge-by", coverage.merge_by,
+                  "Only polygons with the same value of this attribute become one block; with "
+                  "--merge")
+      ->type_name("ATTRIBUTE");
 }
 
 std::string usual_coverage() {

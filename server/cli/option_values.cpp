@@ -96,10 +96,20 @@ std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments
   return coverage;
 }
 
+namespace {
+
+void check_classes(const std::string& merge_by, std::optional<double> merge) {
+  if (!merge_by.empty() && merge.value_or(0) == 0) throw UsageError("--merge-by needs --merge");
+}
+
+}  // namespace
+
 void apply(const CoverageArguments& arguments, LayerOptions& options) {
+  check_classes(arguments.merge_by, arguments.merge);
   options.coverage = coverage_or_throw(arguments).value_or(kUsualCoverage);
   options.close_gaps = arguments.close_gaps.value_or(0);
   options.merge = arguments.merge.value_or(0);
+  options.merge_by = arguments.merge_by;
 }
 
 void apply(const CoverageArguments& arguments, LayerConfig& layer) {
@@ -107,6 +117,17 @@ void apply(const CoverageArguments& arguments, LayerConfig& layer) {
   if (coverage) layer.coverage = coverage;
   if (arguments.close_gaps) layer.close_gaps = arguments.close_gaps;
   if (arguments.merge) layer.merge = arguments.merge;
+  if (arguments.merge_by.empty()) return;
+  check_classes(arguments.merge_by, layer.merge);
+  layer.merge_by = arguments.merge_by;
+}
+
+void apply(const CoverageArguments& arguments, OpenOptions& options) {
+  options.coverage = coverage_or_throw(arguments);
+  options.close_gaps = arguments.close_gaps;
+  options.merge = arguments.merge;
+  check_classes(arguments.merge_by, arguments.merge);
+  options.merge_by = arguments.merge_by;
 }
 
 StyleQuery style_or_throw(const std::string& query, const std::vector<std::string>& layers,

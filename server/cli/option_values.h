@@ -13,6 +13,7 @@
 
 #include "core/borders/coverage_groups.h"
 #include "core/grid/name_table.h"
+#include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_options.h"
 #include "server/base/problem.h"
 #include "server/config/config.h"
@@ -56,11 +57,15 @@ struct CoverageArguments {
   std::string mode;
   std::optional<double> close_gaps;  // metres; unset: as the file was prepared, or 0
   std::optional<double> merge;       // pixels; unset: as the file was prepared, or 0
+  std::string merge_by;              // attribute; empty: as the file was prepared, or none
 };
-/// None if the name is empty, which leaves it to the file. Gaps are not closed without a coverage.
+/// None if the name is empty, which leaves it to the file. Gaps are not closed without a coverage,
+/// and nothing becomes a block.
 std::optional<CoverageMode> coverage_or_throw(const CoverageArguments& arguments);
 /// Sets what is to become of a source.
 void apply(const CoverageArguments& arguments, LayerOptions& options);
+/// The same of a file, which may be a prepared one.
+void apply(const CoverageArguments& arguments, OpenOptions& options);
 /// What is not said stays as the layer has it.
 void apply(const CoverageArguments& arguments, LayerConfig& layer);
 

@@ -40,6 +40,7 @@ struct LayerConfig {
   std::optional<CoverageMode> coverage;  // unset: as a file was prepared, else kUsualCoverage
   std::optional<double> close_gaps;      // metres; unset: as a file was prepared, else 0
   std::optional<double> merge;           // pixels; unset: as a file was prepared, else 0
+  std::string merge_by;                  // attribute; empty: as a file was prepared, else none
   bool fast_topology = false;            // requests may ask for topology=fast
   SkipLimit max_skipped;                 // more skipped features are an error
   bool may_shrink = false;               // read again, it may have fewer than half of its features

@@ -722,6 +722,10 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
       coverage_setting(),
       close_gaps_setting(),
       merge_setting(),
+      text<LayerConfig>(
+          "merge_by", [](auto& layer) -> auto& { return layer.merge_by; },
+          "the attribute by which polygons become blocks: only those with the same value of it do; "
+          "not set: as a file was prepared, else whatever they are"),
       boolean<LayerConfig>(
           "fast_topology", [](auto& layer) -> auto& { return layer.fast_topology; },
           "whether requests may ask for topology=fast, polygons apart and without the test of "

@@ -253,6 +253,12 @@ class ConfigReader {
     }
     if (!layer.live_query.empty()) check_live(table, layer);
     check_crs(table, layer);
+    if (!layer.merge_by.empty() && layer.merge.value_or(0) == 0) {
+      fail(*table.get("merge_by"),
+           fmt::format("layer \"{}\": merge_by needs merge, the distance up to which polygons "
+                       "become one block",
+                       layer.name));
+    }
     if (layer.min_zoom > layer.max_zoom) {
       fail(table, fmt::format("layer \"{}\" has a min_zoom above its max_zoom", layer.name));
     }

@@ -170,9 +170,9 @@ bool are_read_the_same(const LayerConfig& a, const LayerConfig& b) {
   const OpenOptions how_b = how_to_open(b);
   return a.file_to_open() == b.file_to_open() && how_a.weights == how_b.weights &&
          how_a.coverage == how_b.coverage && how_a.close_gaps == how_b.close_gaps &&
-         how_a.merge == how_b.merge && how_a.selection == how_b.selection &&
-         how_a.prepared_from == how_b.prepared_from && how_a.grid == how_b.grid &&
-         a.has_fast_topology() == b.has_fast_topology();
+         how_a.merge == how_b.merge && how_a.merge_by == how_b.merge_by &&
+         how_a.selection == how_b.selection && how_a.prepared_from == how_b.prepared_from &&
+         how_a.grid == how_b.grid && a.has_fast_topology() == b.has_fast_topology();
 }
 
 /// The layer as it was read before, if it would be the same now.
@@ -271,6 +271,7 @@ OpenOptions how_to_open(const LayerConfig& layer) {
   options.coverage = layer.coverage;
   options.close_gaps = layer.close_gaps;
   options.merge = layer.merge;
+  options.merge_by = layer.merge_by;
   options.selection = layer.selection;
   options.prepared_from = layer.prepared.empty() ? "" : layer.file;
   options.grid = layer.grid;

@@ -22,6 +22,8 @@ const char* key_of(OpenPart part, const LayerConfig& layer) {
       return "close_gaps";
     case OpenPart::merge:
       return "merge";
+    case OpenPart::merge_by:
+      return "merge_by";
     case OpenPart::file:
       break;
   }

@@ -64,9 +64,9 @@ class Exporter : public FeatureWorker {
   void build_together(std::span<WaitingFeature* const> features, unsigned threads) override {
     std::vector<const Rings*> rings;
     for (const WaitingFeature* feature : features) rings.push_back(&feature->rings);
-    const Assembly assembly =
-        assemble(rings, options_.generalization.coverage, options_.generalization.close_gaps,
-                 coverage_builder_, graph_, nullptr, threads, options_.generalization.merging());
+    const LayerOptions& how = options_.generalization;
+    const Assembly assembly = assemble(rings, how.coverage, how.close_gaps, coverage_builder_,
+                                       graph_, nullptr, threads, how.merging(classes_of(features)));
     if (!assembly.together.empty()) adapt_together(features, assembly);
     for (const std::uint32_t i : assembly.apart)
       build_apart(features[i]->key, features[i]->rings_apart());

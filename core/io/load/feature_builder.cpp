@@ -58,7 +58,7 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features, u
     rows.push_back(feature->key.row);
     rings.push_back(&feature->rings);
   }
-  const Assembly assembly = builder_.add_coverage(rows, rings, threads);
+  const Assembly assembly = builder_.add_coverage(rows, rings, threads, classes_of(features));
   tally_.coverage.apart += assembly.apart.size();
   if (!assembly.together.empty()) remark_on_detail(features[assembly.together.front()]->key);
   if (!assembly.outcome.failure.empty()) {

@@ -48,14 +48,10 @@ std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& 
   rings.reserve(waiting.size());
   for (const WaitingFeature& feature : waiting) rings.push_back(&feature.rings);
   std::vector<std::vector<WaitingFeature*>> tasks;
-  if (options.merge > 0 && !waiting.empty()) {
-    // Any may become a part of a block with any other.
-    auto& all = tasks.emplace_back();
-    for (WaitingFeature& feature : waiting) all.push_back(&feature);
-    return tasks;
-  }
   std::vector<bool> is_grouped(waiting.size(), false);
-  for (const auto& group : group_features(rings, options.coverage, threads, known)) {
+  const auto groups = options.merge > 0 ? group_for_blocks(rings)
+                                        : group_features(rings, options.coverage, threads, known);
+  for (const auto& group : groups) {
     auto& task = tasks.emplace_back();
     for (const std::uint32_t i : group) {
       task.push_back(&waiting[i]);
@@ -79,6 +75,17 @@ std::string with_others(std::size_t others) {
 }
 
 }  // namespace
+
+std::vector<std::uint64_t> classes_of(std::span<WaitingFeature* const> features) {
+  std::vector<std::uint64_t> classes;
+  if (std::ranges::all_of(features,
+                          [](const auto* feature) { return feature->merge_class == 0; })) {
+    return classes;
+  }
+  classes.reserve(features.size());
+  for (const WaitingFeature* feature : features) classes.push_back(feature->merge_class);
+  return classes;
+}
 
 unsigned thread_count(unsigned wanted) {
   return std::clamp(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u, kMaxThreads);
@@ -104,7 +111,7 @@ class FeaturePipeline::Lane {
     if (feature.rings.empty()) {
       ++tally.empty;
     } else if (are_to_wait_) {
-      waiting_.push_back({job.key, feature.rings});
+      waiting_.push_back({job.key, feature.rings, {}, job.merge_class});
     } else {
       begin(static_cast<double>(job.bytes));
       worker_.build_apart(job.key, feature.rings);
@@ -201,7 +208,11 @@ FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& opti
                                  const std::vector<FeatureWorker*>& workers,
                                  std::function<void(double)> progress, const EarlierLayer* earlier,
                                  const std::shared_ptr<const TargetGrid>& grid)
-    : source_(source), options_(options), progress_(std::move(progress)), earlier_(earlier) {
+    : source_(source),
+      options_(options),
+      classes_(source, options.merge_by),
+      progress_(std::move(progress)),
+      earlier_(earlier) {
   for (FeatureWorker* worker : workers) {
     lanes_.push_back(std::make_unique<Lane>(source, options, *worker, grid));
   }
@@ -259,7 +270,9 @@ void FeaturePipeline::accept(SourceFeature& next, const Take& take) {
     const std::size_t bytes = geometry->WkbSize();
     batch_bytes_ += bytes;
     work_read_ += static_cast<double>(bytes);
-    batch_.push_back({{order, take(next), id}, next.layer_index, std::move(geometry), bytes});
+    const std::uint64_t merge_class = classes_.class_of(next);
+    batch_.push_back(
+        {{order, take(next), id}, next.layer_index, std::move(geometry), bytes, merge_class});
   }
 }
 
@@ -320,22 +333,32 @@ void FeaturePipeline::build_waiting() {
   show_progress();
   // What would keep one thread busy when all others have nothing left to do is done by all of them.
   const double much = work_read_ / (2 * threads);
-  const auto others = std::stable_partition(tasks.begin(), tasks.end(), [&](const Task& task) {
+  const auto is_large = [&](const Task& task) {
     return threads > 1 && task.size() > 1 && work_of(task) > much;
-  });
-  build({tasks.begin(), others}, 1, threads);
-  build({others, tasks.end()}, lanes_.size(), 1);
+  };
+  if (options_.merge > 0) {
+    // Of the work on blocks, much is done by one thread however many there are.
+    build(tasks, lanes_.size(), [&](const Task& task) { return is_large(task) ? threads : 1; });
+    return;
+  }
+  const auto others = std::stable_partition(tasks.begin(), tasks.end(), is_large);
+  build({tasks.begin(), others}, 1, [threads](const Task&) { return threads; });
+  build({others, tasks.end()}, lanes_.size(), [](const Task&) { return 1; });
 }
 
-/// Each task on one of the first lanes, which may use so many threads.
-void FeaturePipeline::build(std::span<const Task> tasks, std::size_t lanes, unsigned threads) {
+/// Each task on one of the first lanes, which may use so many threads for it.
+void FeaturePipeline::build(std::span<const Task> tasks, std::size_t lanes,
+                            const std::function<unsigned(const Task&)>& threads_for) {
   std::atomic<std::size_t> next = 0;
   std::vector<std::future<void>> running;
   try {
     for (std::size_t i = 0; i < std::min(lanes, tasks.size()); ++i) {
-      running.push_back(std::async(std::launch::async, [&next, tasks, threads, &lane = lanes_[i]] {
-        for (std::size_t t = next++; t < tasks.size(); t = next++) lane->take(tasks[t], threads);
-      }));
+      running.push_back(
+          std::async(std::launch::async, [&next, tasks, &threads_for, &lane = lanes_[i]] {
+            for (std::size_t t = next++; t < tasks.size(); t = next++) {
+              lane->take(tasks[t], threads_for(tasks[t]));
+            }
+          }));
     }
     wait_for(running);
   } catch (...) {

@@ -18,6 +18,7 @@
 #include "core/grid/work_share.h"
 #include "core/io/load/feature_tally.h"
 #include "core/io/source/feature_source.h"
+#include "core/io/source/merge_classes.h"
 #include "core/io/source/source_ring_reader.h"
 #include "core/layer/earlier_layer.h"
 #include "core/layer/layer_options.h"
@@ -29,10 +30,14 @@ struct WaitingFeature {
   FeatureKey key;
   Rings rings;       // clean, not empty
   Rings drawn = {};  // as they were before gaps were closed; empty if that did not change them
+  std::uint64_t merge_class = 0;  // see MergeClasses; 0 of all if there are no classes
 
   /// What is to be drawn where no border is shared.
   Rings& rings_apart() { return drawn.empty() ? rings : drawn; }
 };
+
+/// The classes of features, by position; empty if there are none.
+std::vector<std::uint64_t> classes_of(std::span<WaitingFeature* const> features);
 
 /// Makes something of features. Each is used by one thread at a time.
 class FeatureWorker {
@@ -70,6 +75,7 @@ class FeaturePipeline {
   /// workers must outlive the pipeline. `progress` is as in LoadOptions, and may be empty: it is
   /// called now and then with the share of the expected time that has gone, as far as it is spent
   /// here.
+  /// Throws SourceError if the source lacks the attribute by which features are merged.
   /// Of `earlier`, if it is not null, is taken which features share borders: it was built with the
   /// same options, and must outlive the pipeline. Features come on the grid, null being that of Web
   /// Mercator.
@@ -102,6 +108,7 @@ class FeaturePipeline {
     std::size_t layer_index = 0;
     std::unique_ptr<OGRGeometry> geometry;
     std::size_t bytes = 0;  // of the geometry, as WKB
+    std::uint64_t merge_class = 0;
   };
   using Batch = std::vector<Job>;
   /// Features that are built together, or one by itself.
@@ -113,13 +120,15 @@ class FeaturePipeline {
   std::vector<std::uint32_t> known_groups(const std::vector<WaitingFeature>& waiting) const;
   void close_gaps_between(std::vector<WaitingFeature>& waiting);
   void build_waiting();
-  void build(std::span<const Task> tasks, std::size_t lanes, unsigned threads);
+  void build(std::span<const Task> tasks, std::size_t lanes,
+             const std::function<unsigned(const Task&)>& threads_for);
   void wait_for(std::vector<std::future<void>>& running);
   void show_progress();
   double share() const;
 
   FeatureSource& source_;
   const LayerOptions options_;
+  MergeClasses classes_;
   const std::function<void(double)> progress_;
   const EarlierLayer* const earlier_;
   std::vector<std::unique_ptr<Lane>> lanes_;

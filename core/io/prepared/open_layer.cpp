@@ -7,6 +7,7 @@
 #include "core/io/prepared/prepared_layer.h"
 #include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/feature_source.h"
+#include "core/io/source/merge_classes.h"
 #include "core/io/source/source_name.h"
 
 namespace trapeze {
@@ -31,8 +32,10 @@ LoadedLayer open_prepared(const std::string& path, const OpenOptions& options) {
                              ": is prepared already; select from its source with the options of "
                              "`trapeze prepare`");
   }
-  const PreparedDemands demands = {options.weights,    options.prepared_from, options.coverage,
-                                   options.close_gaps, options.grid,          options.merge};
+  const auto merge_by = options.merge_by.empty() ? std::nullopt : std::optional(options.merge_by);
+  const PreparedDemands demands = {
+      options.weights, options.prepared_from, options.coverage, options.close_gaps,
+      options.grid,    options.merge,         merge_by};
   if (!is_pattern_of_files(path)) return open_single(path, demands);
   LoadedLayer loaded =
       open_prepared_parts(files_of_pattern(path), demands, options.earlier_parts.get());
@@ -50,6 +53,7 @@ LayerOptions layer_options(const OpenOptions& options) {
   layer.coverage = options.coverage.value_or(kUsualCoverage);
   layer.close_gaps = options.close_gaps.value_or(0);
   layer.merge = options.merge.value_or(0);
+  layer.merge_by = options.merge_by;
   return layer;
 }
 
@@ -65,6 +69,13 @@ std::string find_idle_merge(const std::string& path, const LayerOptions& layer) 
   return name_of_source(path) + ": polygons become blocks only where coverage is auto or on";
 }
 
+/// That there are classes of what becomes no block.
+std::string find_idle_classes(const std::string& path, const LayerOptions& layer) {
+  if (layer.merge_by.empty() || layer.merge > 0) return {};
+  return name_of_source(path) + ": polygons become blocks by \"" + layer.merge_by +
+         "\" only where it is said how near they are to each other, by merge";
+}
+
 OpenPart part_of(SelectionPart part) {
   switch (part) {
     case SelectionPart::layer:
@@ -78,10 +89,15 @@ OpenPart part_of(SelectionPart part) {
 }
 
 /// Throws what is wrong with a source.
-void examine_source(const std::string& path, const SourceSelection& selection,
+void examine_source(const std::string& path, const OpenOptions& options,
                     std::vector<OpenFinding>& findings) {
   const std::string name = name_of_source(path);
-  const FeatureSource source(path, selection);
+  const FeatureSource source(path, options.selection);
+  try {
+    const MergeClasses classes(source, options.merge_by);
+  } catch (const SourceError& error) {
+    findings.push_back({OpenPart::merge_by, 0, name + ": " + error.what()});
+  }
   try {
     source.check_reference_systems();
   } catch (const SourceError& error) {
@@ -107,7 +123,9 @@ std::vector<OpenFinding> examine_layer(const std::string& path, const OpenOption
     if (!idle_gaps.empty()) findings.push_back({OpenPart::close_gaps, 0, idle_gaps});
     const std::string idle_merge = find_idle_merge(path, layer_options(options));
     if (!idle_merge.empty()) findings.push_back({OpenPart::merge, 0, idle_merge});
-    examine_source(path, options.selection, findings);
+    const std::string idle_classes = find_idle_classes(path, layer_options(options));
+    if (!idle_classes.empty()) findings.push_back({OpenPart::merge_by, 0, idle_classes});
+    examine_source(path, options, findings);
   } catch (const SelectionError& error) {
     for (const SelectionProblem& problem : error.problems()) {
       findings.push_back(
@@ -131,6 +149,8 @@ LoadedLayer open_layer(const std::string& path, const OpenOptions& options) {
   if (!idle_gaps.empty()) throw std::runtime_error(idle_gaps);
   const std::string idle_merge = find_idle_merge(path, load.generalization);
   if (!idle_merge.empty()) throw std::runtime_error(idle_merge);
+  const std::string idle_classes = find_idle_classes(path, load.generalization);
+  if (!idle_classes.empty()) throw std::runtime_error(idle_classes);
   load.selection = options.selection;
   load.progress = options.progress;
   load.earlier = options.earlier;

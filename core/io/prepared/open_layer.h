@@ -22,13 +22,14 @@ struct OpenOptions {
       {};                                 // unset: that of a prepared layer, else kUsualCoverage
   std::optional<double> close_gaps = {};  // metres; unset: that of a prepared layer, else 0
   std::optional<double> merge = {};       // pixels; unset: that of a prepared layer, else 0
-  std::string grid = {};                  // see LoadOptions
+  std::string merge_by = {};  // of features by which attribute; empty: as a layer was prepared
+  std::string grid = {};      // see LoadOptions
   std::shared_ptr<const Layer> earlier = {};  // see LoadOptions; of no use to a prepared layer
   std::shared_ptr<const PreparedParts> earlier_parts = {};  // see open_prepared_parts()
 };
 
 /// What of the options a finding is about, or the file itself.
-enum class OpenPart { file, layer, where, attributes, close_gaps, merge };
+enum class OpenPart { file, layer, where, attributes, close_gaps, merge, merge_by };
 
 /// What is found out about a layer before it is read.
 struct OpenFinding {

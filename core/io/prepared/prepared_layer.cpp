@@ -120,6 +120,8 @@ void write_fields(const std::vector<Field>& fields, ByteWriter& out) {
 
 // In the byte of the coverage: that there are blocks, and their distance follows.
 constexpr std::uint8_t kBlocksBit = 0x80;
+// That they are of classes, and the attribute follows that.
+constexpr std::uint8_t kClassesBit = 0x40;
 
 /// A value of an enumeration whose last is `last`.
 template <typename Enum>
@@ -148,10 +150,13 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.weights));
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
   const bool has_blocks = numbers.options.merge > 0;
+  const bool has_classes = !numbers.options.merge_by.empty();
   out.add(static_cast<std::uint8_t>(static_cast<std::uint8_t>(numbers.options.coverage) |
-                                    (has_blocks ? kBlocksBit : 0)));
+                                    (has_blocks ? kBlocksBit : 0) |
+                                    (has_classes ? kClassesBit : 0)));
   out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
   if (has_blocks) out.add(std::bit_cast<std::uint64_t>(numbers.options.merge));
+  if (has_classes) out.add_text(numbers.options.merge_by);
   const Box& box = numbers.bounds;
   for (const std::int32_t side : {box.min_x, box.min_y, box.max_x, box.max_y}) out.add(side);
   const LayerSize& size = numbers.size;
@@ -170,9 +175,10 @@ LayerArrays read_numbers(ByteReader& in) {
   const auto coverage = in.take<std::uint8_t>();
   const bool has_blocks = (coverage & kBlocksBit) != 0;
   numbers.options.coverage =
-      enum_of(static_cast<std::uint8_t>(coverage & ~kBlocksBit), CoverageMode::on);
+      enum_of(static_cast<std::uint8_t>(coverage & ~(kBlocksBit | kClassesBit)), CoverageMode::on);
   numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());
   if (has_blocks) numbers.options.merge = std::bit_cast<double>(in.take<std::uint64_t>());
+  if ((coverage & kClassesBit) != 0) numbers.options.merge_by = in.take_text();
   Box& box = numbers.bounds;
   for (auto* side : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     *side = in.take<std::int32_t>();
@@ -362,6 +368,13 @@ void check_options(const LayerOptions& options, const PreparedDemands& demands) 
     throw UnfitError("was prepared with blocks of what is up to " + text_of(options.merge) +
                      " pixels apart, and " + text_of(*demands.merge) + " are configured");
   }
+  if (demands.merge_by && *demands.merge_by != options.merge_by) {
+    const auto words = [](const std::string& name) {
+      return name.empty() ? std::string("no attribute") : "\"" + name + "\"";
+    };
+    throw UnfitError("was prepared with blocks by " + words(options.merge_by) + ", and " +
+                     words(*demands.merge_by) + " is configured");
+  }
 }
 
 /// Of how layers are built, and on which grid.
@@ -525,7 +538,8 @@ EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& 
     SectionReader sections(file->bytes());
     Description description = take_description(sections);
     check_options(description.numbers.options,
-                  {options.weights, "", options.coverage, options.close_gaps, "", options.merge});
+                  {options.weights, "", options.coverage, options.close_gaps, "", options.merge,
+                   options.merge_by});
     check_fingerprint(options, grid, sections.fingerprint());
     earlier.layer = layer_from_sections(sections, std::move(description), file).layer;
     earlier.file = file;

@@ -31,6 +31,7 @@ struct PreparedDemands {
   std::optional<double> close_gaps = {};      // unset: any
   std::string grid = {};                      // see LoadOptions
   std::optional<double> merge = {};           // unset: any
+  std::optional<std::string> merge_by = {};   // unset: any
 };
 
 /// Maps a prepared file. The layer draws and answers as the one that was saved, and its large

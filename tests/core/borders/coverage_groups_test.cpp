@@ -35,6 +35,9 @@ class Features {
   std::vector<std::vector<std::uint32_t>> groups(CoverageMode coverage) const {
     return group_features(pointers_, coverage);
   }
+  std::vector<std::vector<std::uint32_t>> groups_for_blocks() const {
+    return group_for_blocks(pointers_);
+  }
   Assembly assembly(CoverageMode coverage) {
     CoverageBuilder builder;
     return assemble(pointers_, coverage, 0, builder, graph);
@@ -74,6 +77,22 @@ TEST(CoverageGroups, AnEdgeInCommonTiesWhateverItsDirection) {
               ElementsAre(ElementsAre(0, 1)));
   EXPECT_THAT(Features({kLeft10, "20 10, 20 0, 10 0, 10 10"}).groups(CoverageMode::automatic),
               ElementsAre(ElementsAre(0, 1)));
+}
+
+TEST(CoverageGroups, WhatMayBecomeOneBlockIsInOneGroup) {
+  const auto house = [](int x) { return rectangle(x, 0, 100, 100); };
+  const int far = 100'000;
+  EXPECT_THAT(
+      Features({house(0), house(far), house(10'000), house(far + 16'000)}).groups_for_blocks(),
+      ElementsAre(ElementsAre(0, 2), ElementsAre(1, 3)));
+  EXPECT_THAT(Features({house(0), house(far), house(1000), house(2 * far)}).groups_for_blocks(),
+              ElementsAre(ElementsAre(0, 2), ElementsAre(1, 3)))
+      << "those that are near no other are together";
+  EXPECT_THAT(Features({house(far), house(0), house(1000)}).groups_for_blocks(),
+              ElementsAre(ElementsAre(0, 1, 2)))
+      << "none is by itself";
+  EXPECT_THAT(Features({house(0)}).groups_for_blocks(), IsEmpty());
+  EXPECT_THAT(Features(std::vector<std::string>{}).groups_for_blocks(), IsEmpty());
 }
 
 TEST(CoverageGroups, WhatOnlyTouchesIsTiedIfAskedFor) {

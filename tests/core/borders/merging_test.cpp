@@ -17,6 +17,7 @@
 #include "core/adapt/adaptable_graph.h"
 #include "core/adapt/history.h"
 #include "core/borders/coverage_builder.h"
+#include "core/borders/coverage_groups.h"
 #include "core/borders/void_mesh.h"
 #include "core/graph/check_graph.h"
 #include "core/grid/disjoint_sets.h"
@@ -247,6 +248,8 @@ double distance_between(const Rings& a, const Rings& b) {
 
 TEST(Merging, WhatIsNearerIsInOneBlockAndWhatIsFartherIsNot) {
   std::size_t pairs = 0;
+  std::size_t near_pairs = 0;
+  std::size_t apart_all_the_same = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     const std::vector<Rings> features = town(seed, 25);
@@ -266,6 +269,10 @@ TEST(Merging, WhatIsNearerIsInOneBlockAndWhatIsFartherIsNot) {
       }
       for (const auto& [least, i, k] : apart) {
         const bool is_one = blocks[i] == blocks[k];
+        if (1.1 * least + 2 < distance) {
+          ++near_pairs;
+          apart_all_the_same += !is_one;
+        }
         if (2 * least < distance) {
           ++pairs;
           EXPECT_TRUE(is_one) << i << " and " << k << ", " << least << " apart, at " << distance;
@@ -277,6 +284,7 @@ TEST(Merging, WhatIsNearerIsInOneBlockAndWhatIsFartherIsNot) {
     }
   }
   EXPECT_GT(pairs, 1000u);
+  EXPECT_LT(static_cast<double>(apart_all_the_same), 0.003 * static_cast<double>(near_pairs));
 }
 
 TEST(Merging, AreaThatIsAddedGrowsWithTheDistance) {
@@ -399,6 +407,54 @@ TEST(Merging, TwoHousesBecomeOneRectangleWhenTheDistanceIsReached) {
 TEST(Merging, OfTwoClassesNothingIsBridged) {
   const BuiltTown built(two_houses(160), {.ratio = 16, .classes = {7, 8}});
   EXPECT_FALSE(built.outcome.plan);
+}
+
+TEST(Merging, FeaturesOfSeveralClassesAreNumberedByThem) {
+  const std::vector<std::uint64_t> classes = {1ull << 60, 3, 1ull << 60, 0};
+  EXPECT_EQ(numbered(classes), (std::vector<std::uint32_t>{2, 1, 2, 0}));
+  EXPECT_TRUE(numbered({}).empty());
+}
+
+/// What each feature covers, cells squared.
+std::vector<double> areas_at(const std::vector<Rings>& features, double epsilon) {
+  const BuiltTown built(features, {.ratio = 16});
+  AdaptableGraph adaptable(built.graph, {}, built.outcome.plan ? &*built.outcome.plan : nullptr);
+  adaptable.adapt_to(epsilon);
+  std::vector<double> areas;
+  for (const Int128 doubled : adaptable.graph().doubled_areas()) {
+    areas.push_back(static_cast<double>(doubled) / 2);
+  }
+  return {areas.begin() + 1, areas.begin() + 1 + static_cast<std::ptrdiff_t>(features.size())};
+}
+
+TEST(Merging, GroupsBecomeTheSameBlocksAsAllFeaturesTogether) {
+  std::size_t blocks = 0;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    std::vector<Rings> features = town(seed, 12);
+    for (Rings rings : town(seed + 1, 9)) {
+      for (Point& p : rings.points) p = {p.x + 40'000, p.y - 3'000};
+      features.push_back(std::move(rings));
+    }
+    std::vector<const Rings*> pointers;
+    for (const Rings& rings : features) pointers.push_back(&rings);
+    const auto groups = group_for_blocks(pointers);
+    ASSERT_EQ(groups.size(), 2u);
+    for (const double epsilon : {3.0, 20.0, 64.0, 150.0}) {
+      const std::vector<double> together = areas_at(features, epsilon);
+      for (const auto& group : groups) {
+        std::vector<Rings> members;
+        for (const std::uint32_t i : group) members.push_back(features[i]);
+        const std::vector<double> apart = areas_at(members, epsilon);
+        for (std::size_t i = 0; i < group.size(); ++i) {
+          const double area = together[group[i]];
+          EXPECT_NEAR(apart[i], area, 0.02 * area) << i << " at " << epsilon;
+          blocks += area > 1.5e6;  // larger than any house
+        }
+      }
+    }
+  }
+  EXPECT_GT(blocks, 10u);
 }
 
 TEST(Merging, ACourtyardIsFilledWhenItIsNarrowerThanTheDistance) {

@@ -54,6 +54,7 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
     coverage = "on"
     close_gaps = 2.5
     merge = 4
+    merge_by = "type"
     [[layer]]
     name = "c"
     prepared = "c.trapeze")");
@@ -69,6 +70,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
   EXPECT_EQ(config.layers[1].close_gaps, 2.5);
   EXPECT_EQ(config.layers[0].merge, std::nullopt);
   EXPECT_EQ(config.layers[1].merge, 4);
+  EXPECT_EQ(config.layers[0].merge_by, "");
+  EXPECT_EQ(config.layers[1].merge_by, "type");
   EXPECT_EQ(config.layers[2].file, "");
   EXPECT_THAT(config.layers[2].file_to_open(), ::testing::EndsWith("/c.trapeze"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\""), HasSubstr("needs a file"));
@@ -80,6 +83,8 @@ TEST_F(ConfigTest, ALayerIsAFileOrAPreparedOneOrBoth) {
               HasSubstr("a number from 0 to 1000"));
   EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nmerge = 65"),
               HasSubstr("a number from 0 to 64"));
+  EXPECT_THAT(error_of("[[layer]]\nname = \"d\"\nfile = \"d.fgb\"\nmerge_by = \"type\""),
+              HasSubstr("merge_by needs merge"));
 }
 
 TEST_F(ConfigTest, ALayerMaySelectFromItsSource) {
@@ -462,7 +467,8 @@ std::string example_text() {
 /// What not to say is another thing than any value.
 bool is_comment_in_example(const std::string& key) {
   return key == "prepared" || key == "source_layer" || key == "where" || key == "attributes" ||
-         key == "live_query" || key == "detail_zoom" || key == "group" || key == "title_attribute";
+         key == "live_query" || key == "detail_zoom" || key == "group" ||
+         key == "title_attribute" || key == "merge_by";
 }
 
 TEST(ConfigExampleTest, NamesEverySettingWithItsDefault) {

@@ -412,6 +412,25 @@ TEST_F(PreparedLayerTest, WithOtherBlocksThanDemandedIsRefused) {
             options.generalization);
 }
 
+TEST_F(PreparedLayerTest, WithBlocksByAnotherAttributeThanDemandedIsRefused) {
+  LoadOptions options;
+  options.generalization.merge = 2.5;
+  options.generalization.merge_by = "name";
+  prepare(kMixed, prepared_, options);
+  PreparedDemands demands;
+  EXPECT_EQ(arrays_of(*open_prepared_layer(prepared_, demands).layer).options,
+            options.generalization);
+  demands.merge_by = "kind";
+  EXPECT_THAT(failure_of(prepared_, demands),
+              AllOf(HasSubstr("blocks by \"name\""), HasSubstr("\"kind\" is configured")));
+  demands.merge_by = "name";
+  EXPECT_NO_THROW(open_prepared_layer(prepared_, demands));
+  LayerOptions whatever = options.generalization;
+  whatever.merge_by.clear();
+  EXPECT_THAT(open_earlier_layer(prepared_, whatever).unfit, HasSubstr("no attribute"));
+  EXPECT_THAT(open_earlier_layer(prepared_, options.generalization).unfit, IsEmpty());
+}
+
 TEST_F(PreparedLayerTest, IsServedWithoutItsSource) {
   const std::string file = source("source.geojson", "a");
   prepare(file, prepared_);

@@ -1,0 +1,52 @@
+// What of a coverage becomes a block, and at which tolerance (see merging.h).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/borders/face_features.h"
+#include "core/grid/grid.h"
+#include "core/grid/ids.h"
+
+namespace trapeze {
+
+/// Nothing is bridged that is wider, in cells: four pixels at zoom 11, 306 m at the equator. Towns
+/// are areas by then, and each bridge takes memory.
+constexpr double kWidestBridge = 16384;
+
+/// Two boxes of polygons that may become one block meet if they are widened so.
+Box widened_for_blocks(const Box& box);
+
+constexpr std::uint32_t kMixedClass = 0xffffffff;
+
+/// What becomes a block.
+struct Merging {
+  /// The distance that is bridged, as a multiple of the tolerance; 0: none is.
+  double ratio = 0;
+  /// Only features of one class become one block: the class of each, or empty if all are of one.
+  std::vector<std::uint32_t> classes = {};
+};
+
+/// Numbers for classes that are given by what they are known by.
+std::vector<std::uint32_t> numbered(std::span<const std::uint64_t> classes);
+
+/// The faces of a coverage that become one, and when.
+struct MergePlan {
+  double ratio = 0;
+  FaceId first_void = 0;  // faces from this one on are pieces of the void, by feature those before
+  /// The tolerance at which each piece is filled, in cells.
+  std::vector<double> due;
+  /// By face, less 1; of the pieces as well. kMixedClass is that of no other.
+  std::vector<std::uint32_t> classes;
+
+  bool is_void(FaceId face) const { return face == kOutside || face >= first_void; }
+  bool is_piece(FaceId face) const { return face >= first_void; }
+  double due_of(FaceId piece) const { return due[piece - first_void]; }
+  bool are_of_one_class(FaceId a, FaceId b) const;
+};
+
+/// By face, 0 being outside; of faces that features of several classes cover, kMixedClass.
+std::vector<std::uint32_t> classes_of_faces(const FaceFeatures& faces, const Merging& merging);
+
+}  // namespace trapeze
