@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace trapeze {
@@ -593,6 +594,7 @@ Point Exaggeration::place_of(std::uint32_t side, const Moved& moved) const {
 
 void Exaggeration::append_strip(const MovedSide& moved) {
   const BoundaryMap::Face face = boundary_.face_of(moved.side);
+  const bool is_beside = is_beside_others(moved.side);
   const std::span<const Moved> places = std::span(moved_).subspan(moved.first, moved.count);
   for (std::size_t i = 1; i < places.size(); ++i) {
     const Moved& one = places[i - 1];
@@ -602,8 +604,8 @@ void Exaggeration::append_strip(const MovedSide& moved) {
     const Point b = place_of(moved.side, {other.share, 0});
     const Point moved_a = place_of(moved.side, one);
     const Point moved_b = place_of(moved.side, other);
-    append_triangle(face, a, b, moved_b);
-    append_triangle(face, a, moved_b, moved_a);
+    append_triangle(face, is_beside, {a, b, moved_b});
+    append_triangle(face, is_beside, {a, moved_b, moved_a});
   }
 }
 
@@ -620,17 +622,18 @@ void Exaggeration::append_corner(std::uint32_t side, std::uint32_t next) {
   const Point begin = end_place(side, true);
   const Point end = to_point(at - inward(next) * other);
   const double turn = turn_between(side, next);
+  const bool is_beside = is_beside_others(side) || is_beside_others(next);
   std::optional<Vector> tip;
   if (turn > kStraight) tip = tip_between(side, next, one, other);
   if (tip) {
     const Point middle = to_point(at + *tip);
-    append_triangle(face, corner, begin, middle);
-    append_triangle(face, corner, middle, end);
+    append_triangle(face, is_beside, {corner, begin, middle});
+    append_triangle(face, is_beside, {corner, middle, end});
     tips_.push_back({side, middle});
     return;
   }
   if (turn > -kStraight && orientation(corner, begin, end) > 0) {
-    append_triangle(face, corner, begin, end);
+    append_triangle(face, is_beside, {corner, begin, end});
   }
   if (begin != end_place(next, false)) tips_.push_back({side, begin});
 }
@@ -687,20 +690,28 @@ double Exaggeration::moved_end(std::uint32_t side, bool is_at_head) const {
   return end.share == (is_lower ? 1 : 0) ? end.by : 0;
 }
 
-void Exaggeration::append_triangle(BoundaryMap::Face face, Point a, Point b, Point c) {
-  if (orientation(a, b, c) == 0) return;
-  Triangle triangle{face, {a, b, c}};
+// Beyond a void nothing is grown over.
+bool Exaggeration::is_beside_others(std::uint32_t side) const {
+  return boundary_.face_of(side ^ 1U) != BoundaryMap::kNoFace;
+}
+
+void Exaggeration::append_triangle(BoundaryMap::Face face, bool is_beside_others,
+                                   const std::array<Point, 3>& corners) {
+  if (orientation(corners[0], corners[1], corners[2]) == 0) return;
+  Triangle triangle{face, corners, is_beside_others};
   std::ranges::sort(triangle.corners, is_above);
   Box around;
-  for (const Point p : triangle.corners) around.include(p);
+  for (const Point p : corners) around.include(p);
   if (around.intersects(box_)) triangles_.push_back(triangle);
 }
 
 void Exaggeration::sort_triangles() {
-  std::ranges::sort(triangles_, is_above, [](const Triangle& t) { return t.corners[0]; });
+  std::ranges::sort(triangles_, {}, [](const Triangle& t) {
+    return std::tuple(t.is_beside_others, t.corners[0].y, t.corners[0].x);
+  });
   highest_ = 0;
   for (const Triangle& t : triangles_) {
-    highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
+    if (t.is_beside_others) highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
   }
 }
 
@@ -784,9 +795,10 @@ void Exaggeration::append_common(const MeshView& mesh, const MeshTrapezoid& trap
   if (top >= bottom) return;
   const auto from = std::min({west.upper.x, west.lower.x});
   const auto to = std::max({east.upper.x, east.lower.x});
-  const auto first =
-      std::ranges::lower_bound(triangles_, std::int64_t{top} - highest_, {},
-                               [](const Triangle& t) { return std::int64_t{t.corners[0].y}; });
+  const auto first = std::ranges::lower_bound(
+      triangles_, std::pair(true, std::int64_t{top} - highest_), {}, [](const Triangle& t) {
+        return std::pair(t.is_beside_others, std::int64_t{t.corners[0].y});
+      });
   for (auto it = first; it != triangles_.end() && it->corners[0].y < bottom; ++it) {
     const auto& [a, b, c] = it->corners;
     if (c.y <= top || std::max({a.x, b.x, c.x}) <= from || std::min({a.x, b.x, c.x}) >= to) {

@@ -55,7 +55,8 @@ class Exaggeration {
   /// Three points around a place that belongs to the face as well.
   struct Triangle {
     BoundaryMap::Face face = BoundaryMap::kNoFace;
-    std::array<Point, 3> corners;
+    std::array<Point, 3> corners;   // the uppermost first
+    bool is_beside_others = false;  // whether it may have places in common with other faces
   };
 
   /// To be filled before find().
@@ -160,7 +161,9 @@ class Exaggeration {
   const Tip* find_tip(std::uint32_t side) const;
   Point place_of(std::uint32_t side, const Moved& moved) const;
   static double moved_by(std::span<const Moved> places, double share);
-  void append_triangle(BoundaryMap::Face face, Point a, Point b, Point c);
+  bool is_beside_others(std::uint32_t side) const;
+  void append_triangle(BoundaryMap::Face face, bool is_beside_others,
+                       const std::array<Point, 3>& corners);
   void sort_triangles();
 
   BoundaryMap boundary_;
@@ -173,8 +176,8 @@ class Exaggeration {
   std::vector<Moved> moved_;
   std::vector<MovedSide> moved_sides_;  // by side
   std::vector<Tip> tips_;               // by side
-  std::vector<Triangle> triangles_;     // by their uppermost corners, which are the first
-  std::int32_t highest_ = 0;            // of a triangle, in cells
+  std::vector<Triangle> triangles_;     // those beside others last, by their uppermost corners
+  std::int32_t highest_ = 0;            // of those beside others, in cells
 };
 
 template <typename IsKept>
