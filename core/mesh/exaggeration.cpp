@@ -204,7 +204,7 @@ void Exaggeration::take_samples(const Box& box) {
     Row row;
     row.normal = turned(way) * (1 / along);
     if (const auto shares = shares_in(box, edge.from(), way)) {
-      row.steps = static_cast<std::int32_t>(std::ceil(along / step));
+      row.steps = std::max(2, static_cast<std::int32_t>(std::ceil(along / step)));
       row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
       const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
       row.count = std::min(last, row.steps) - row.first + 1;
@@ -385,6 +385,10 @@ double Exaggeration::growth(At at) {
   if (!is_still && ray(at) < width_) {
     const double wide = std::max<double>(ray(at), width_beside(at));
     by = std::max(0.0, (width_ - wide) / 2);
+    // Beside a corner that is not quite square, a ray ends soon at its other side.
+    const std::int32_t steps = rows_[at.side / 2].steps;
+    const At inner{at.side, std::clamp(at.step, 1, steps - 1)};
+    if (by > 0 && inner.step != at.step && has_sample(inner)) by = std::min(by, growth(inner));
   }
   sample(at).growth = static_cast<float>(by);
   return sample(at).growth;

@@ -240,6 +240,13 @@ TEST(Exaggeration, ASmallHouseBecomesASquare) {
   }
 }
 
+TEST(Exaggeration, EndsThatAreNotQuiteSquareAreNoNarrowPlaces) {
+  for (const double slant : {-0.3, -0.05, 0.05, 0.3}) {
+    const auto layer = layer_with({{{0, 0}, {20, 0}, {20 + slant, 1}, {slant, 1}}});
+    EXPECT_NEAR(Grown(*layer, 4).area(), 3 * 20, 1.2) << slant;
+  }
+}
+
 TEST(Exaggeration, WhatIsWideStaysAsItIs) {
   const std::vector<Ring> wide = {
       rectangle(0, 0, 9, 9),
