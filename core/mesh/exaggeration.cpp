@@ -34,6 +34,12 @@ constexpr double kThinnerBeyond = 2;
 // Of reserves, for which it counts what is farther than the radius of a disc away from it.
 constexpr double kLessReserve = 0.5;
 
+// What a ray meets is the other side of a face where it is about parallel to the side at hand, and
+// not, as at the ends of strips that are not quite square, where it is about at right angles to it:
+// cosines of the angle between them, of about 60 and 70 degrees.
+constexpr double kOpposite = 0.49;
+constexpr double kBeside = 0.34;
+
 // In widths: how far a ray goes, and how large discs are.
 constexpr double kRay = 2.5;
 constexpr std::array<double, 2> kMostRadii{0.5, 1};
@@ -204,7 +210,7 @@ void Exaggeration::take_samples(const Box& box) {
     Row row;
     row.normal = turned(way) * (1 / along);
     if (const auto shares = shares_in(box, edge.from(), way)) {
-      row.steps = std::max(2, static_cast<std::int32_t>(std::ceil(along / step)));
+      row.steps = static_cast<std::int32_t>(std::ceil(along / step));
       row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
       const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
       row.count = std::min(last, row.steps) - row.first + 1;
@@ -274,20 +280,26 @@ float Exaggeration::ray(At at) {
   const Vector from = place(at);
   const Vector way = inward(at.side) * (kRay * width_);
   double least = 1;
+  double facing = 0;
+  const auto look_at = [&](std::uint32_t i) {
+    const BoundaryMap::Edge& edge = boundary_.edges()[i];
+    if (i == at.side / 2 || edge.is_cut) return;
+    const Vector along = edge.way();
+    const double turn = cross(way, along);
+    if (turn == 0) return;
+    const Vector c = edge.from() - from;
+    const double share = cross(c, along) / turn;
+    const double there = cross(c, way) / turn;
+    if (share <= 0 || share > least || there < 0 || there > 1) return;
+    const double cosine = std::abs(turn) / (kRay * width_ * length(along));
+    facing = share < least ? cosine : std::max(facing, cosine);
+    least = share;
+  };
   const Vector to = from + way;
   boundary_.for_each_near({std::min(from.x, to.x), std::min(from.y, to.y)},
-                          {std::max(from.x, to.x), std::max(from.y, to.y)}, [&](std::uint32_t i) {
-                            const BoundaryMap::Edge& edge = boundary_.edges()[i];
-                            if (i == at.side / 2 || edge.is_cut) return;
-                            const Vector along = edge.way();
-                            const double turn = cross(way, along);
-                            if (turn == 0) return;
-                            const Vector c = edge.from() - from;
-                            const double share = cross(c, along) / turn;
-                            const double there = cross(c, way) / turn;
-                            if (share > 0 && there >= 0 && there <= 1)
-                              least = std::min(least, share);
-                          });
+                          {std::max(from.x, to.x), std::max(from.y, to.y)}, look_at);
+  const double opposite = (facing - kBeside) / (kOpposite - kBeside);
+  sample(at).facing = static_cast<float>(std::clamp(opposite, 0.0, 1.0));
   return sample(at).ray = static_cast<float>(least * kRay * width_);
 }
 
@@ -381,17 +393,24 @@ double Exaggeration::growth(At at) {
   if (const float known = sample(at).growth; known >= 0) return known;
   const bool is_still =
       boundary_.edges()[at.side / 2].is_cut || boundary_.face_of(at.side) == BoundaryMap::kNoFace;
-  double by = 0;
-  if (!is_still && ray(at) < width_) {
-    const double wide = std::max<double>(ray(at), width_beside(at));
-    by = std::max(0.0, (width_ - wide) / 2);
-    // Beside a corner that is not quite square, a ray ends soon at its other side.
-    const std::int32_t steps = rows_[at.side / 2].steps;
-    const At inner{at.side, std::clamp(at.step, 1, steps - 1)};
-    if (by > 0 && inner.step != at.step && has_sample(inner)) by = std::min(by, growth(inner));
+  double by = is_still ? 0 : growth_across(at);
+  // Beside a corner that is not quite square, a ray may end at its other side: what is told of the
+  // next place holds there.
+  const std::int32_t steps = rows_[at.side / 2].steps;
+  const At inner{at.side, at.step == 0 ? 1 : at.step - 1};
+  const bool is_end = at.step == 0 || at.step == steps;
+  if (!is_still && is_end && ray(at) < width_ && sample(at).facing < 1 && has_sample(inner)) {
+    by = std::max(by, (1 - sample(at).facing) * growth_across(inner));
   }
   sample(at).growth = static_cast<float>(by);
   return sample(at).growth;
+}
+
+/// Half of what the width lacks straight across, at the place alone.
+double Exaggeration::growth_across(At at) {
+  if (ray(at) >= width_ || sample(at).facing == 0) return 0;
+  const double wide = std::max<double>(ray(at), width_beside(at));
+  return sample(at).facing * std::max(0.0, (width_ - wide) / 2);
 }
 
 double Exaggeration::reserve(At at) {

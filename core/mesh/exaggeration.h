@@ -93,6 +93,7 @@ class Exaggeration {
   // A place on the boundary of a face. What is not known yet is less than 0.
   struct Sample {
     float ray = -1;
+    float facing = 0;           // from 0 to 1: whether that meets the opposite side of the face
     std::array<Disc, 2> discs;  // within the face, a smaller and a larger one
     float growth = -1;
     float reserve = -1;
@@ -141,6 +142,7 @@ class Exaggeration {
   double width_beside(At at);
   double thickness(At at);
   double growth(At at);
+  double growth_across(At at);
   double reserve(At at);
   double signed_growth(std::uint32_t side, double share);
 
