@@ -3,9 +3,9 @@
 //
 // From places p along the boundary of a face, three lengths are told:
 //
-//   width      how far it is from p, straight into the face, to its boundary; but not less than
-//              the diameter of a disc within the face beside p, so that corners of what is wide
-//              are not taken for narrow;
+//   width      how far it is from p, straight into the face, to its opposite side; but not less
+//              than the diameter of a disc within the face beside p, so that corners of what is
+//              wide are not taken for narrow;
 //   growth     half of what the width lacks. There the boundary moves outwards by that, and
 //              corners remain corners;
 //   reserve    of what is wide enough: half of what a disc within it beside p has more than the
