@@ -175,12 +175,6 @@ class Grown {
   std::vector<std::uint32_t> trapezoids_;
 };
 
-double area_of(const Ring& ring) {
-  double sum = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]);
-  return std::abs(sum) / 2;
-}
-
 /// Houses of all sizes in all directions, and narrow strips between them, that do not overlap.
 std::vector<Ring> town(unsigned seed) {
   std::mt19937 random(seed);
