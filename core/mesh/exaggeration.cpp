@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace trapeze {
@@ -32,6 +33,12 @@ constexpr double kOpening = 0.36;
 constexpr double kThinnerBeyond = 2;
 // Of reserves, for which it counts what is farther than the radius of a disc away from it.
 constexpr double kLessReserve = 0.5;
+
+// What a ray meets is the other side of a face where it is about parallel to the side at hand, and
+// not, as at the ends of strips that are not quite square, where it is about at right angles to it:
+// cosines of the angle between them, of about 60 and 70 degrees.
+constexpr double kOpposite = 0.49;
+constexpr double kBeside = 0.34;
 
 // In widths: how far a ray goes, and how large discs are.
 constexpr double kRay = 2.5;
@@ -273,20 +280,26 @@ float Exaggeration::ray(At at) {
   const Vector from = place(at);
   const Vector way = inward(at.side) * (kRay * width_);
   double least = 1;
+  double facing = 0;
+  const auto look_at = [&](std::uint32_t i) {
+    const BoundaryMap::Edge& edge = boundary_.edges()[i];
+    if (i == at.side / 2 || edge.is_cut) return;
+    const Vector along = edge.way();
+    const double turn = cross(way, along);
+    if (turn == 0) return;
+    const Vector c = edge.from() - from;
+    const double share = cross(c, along) / turn;
+    const double there = cross(c, way) / turn;
+    if (share <= 0 || share > least || there < 0 || there > 1) return;
+    const double cosine = std::abs(turn) / (kRay * width_ * length(along));
+    facing = share < least ? cosine : std::max(facing, cosine);
+    least = share;
+  };
   const Vector to = from + way;
   boundary_.for_each_near({std::min(from.x, to.x), std::min(from.y, to.y)},
-                          {std::max(from.x, to.x), std::max(from.y, to.y)}, [&](std::uint32_t i) {
-                            const BoundaryMap::Edge& edge = boundary_.edges()[i];
-                            if (i == at.side / 2 || edge.is_cut) return;
-                            const Vector along = edge.way();
-                            const double turn = cross(way, along);
-                            if (turn == 0) return;
-                            const Vector c = edge.from() - from;
-                            const double share = cross(c, along) / turn;
-                            const double there = cross(c, way) / turn;
-                            if (share > 0 && there >= 0 && there <= 1)
-                              least = std::min(least, share);
-                          });
+                          {std::max(from.x, to.x), std::max(from.y, to.y)}, look_at);
+  const double opposite = (facing - kBeside) / (kOpposite - kBeside);
+  sample(at).facing = static_cast<float>(std::clamp(opposite, 0.0, 1.0));
   return sample(at).ray = static_cast<float>(least * kRay * width_);
 }
 
@@ -380,13 +393,24 @@ double Exaggeration::growth(At at) {
   if (const float known = sample(at).growth; known >= 0) return known;
   const bool is_still =
       boundary_.edges()[at.side / 2].is_cut || boundary_.face_of(at.side) == BoundaryMap::kNoFace;
-  double by = 0;
-  if (!is_still && ray(at) < width_) {
-    const double wide = std::max<double>(ray(at), width_beside(at));
-    by = std::max(0.0, (width_ - wide) / 2);
+  double by = is_still ? 0 : growth_across(at);
+  // Beside a corner that is not quite square, a ray may end at its other side: what is told of the
+  // next place holds there.
+  const std::int32_t steps = rows_[at.side / 2].steps;
+  const At inner{at.side, at.step == 0 ? 1 : at.step - 1};
+  const bool is_end = at.step == 0 || at.step == steps;
+  if (!is_still && is_end && ray(at) < width_ && sample(at).facing < 1 && has_sample(inner)) {
+    by = std::max(by, (1 - sample(at).facing) * growth_across(inner));
   }
   sample(at).growth = static_cast<float>(by);
   return sample(at).growth;
+}
+
+/// Half of what the width lacks straight across, at the place alone.
+double Exaggeration::growth_across(At at) {
+  if (ray(at) >= width_ || sample(at).facing == 0) return 0;
+  const double wide = std::max<double>(ray(at), width_beside(at));
+  return sample(at).facing * std::max(0.0, (width_ - wide) / 2);
 }
 
 double Exaggeration::reserve(At at) {
@@ -593,6 +617,7 @@ Point Exaggeration::place_of(std::uint32_t side, const Moved& moved) const {
 
 void Exaggeration::append_strip(const MovedSide& moved) {
   const BoundaryMap::Face face = boundary_.face_of(moved.side);
+  const bool is_beside = is_beside_others(moved.side);
   const std::span<const Moved> places = std::span(moved_).subspan(moved.first, moved.count);
   for (std::size_t i = 1; i < places.size(); ++i) {
     const Moved& one = places[i - 1];
@@ -602,8 +627,8 @@ void Exaggeration::append_strip(const MovedSide& moved) {
     const Point b = place_of(moved.side, {other.share, 0});
     const Point moved_a = place_of(moved.side, one);
     const Point moved_b = place_of(moved.side, other);
-    append_triangle(face, a, b, moved_b);
-    append_triangle(face, a, moved_b, moved_a);
+    append_triangle(face, is_beside, {a, b, moved_b});
+    append_triangle(face, is_beside, {a, moved_b, moved_a});
   }
 }
 
@@ -620,17 +645,18 @@ void Exaggeration::append_corner(std::uint32_t side, std::uint32_t next) {
   const Point begin = end_place(side, true);
   const Point end = to_point(at - inward(next) * other);
   const double turn = turn_between(side, next);
+  const bool is_beside = is_beside_others(side) || is_beside_others(next);
   std::optional<Vector> tip;
   if (turn > kStraight) tip = tip_between(side, next, one, other);
   if (tip) {
     const Point middle = to_point(at + *tip);
-    append_triangle(face, corner, begin, middle);
-    append_triangle(face, corner, middle, end);
+    append_triangle(face, is_beside, {corner, begin, middle});
+    append_triangle(face, is_beside, {corner, middle, end});
     tips_.push_back({side, middle});
     return;
   }
   if (turn > -kStraight && orientation(corner, begin, end) > 0) {
-    append_triangle(face, corner, begin, end);
+    append_triangle(face, is_beside, {corner, begin, end});
   }
   if (begin != end_place(next, false)) tips_.push_back({side, begin});
 }
@@ -687,20 +713,28 @@ double Exaggeration::moved_end(std::uint32_t side, bool is_at_head) const {
   return end.share == (is_lower ? 1 : 0) ? end.by : 0;
 }
 
-void Exaggeration::append_triangle(BoundaryMap::Face face, Point a, Point b, Point c) {
-  if (orientation(a, b, c) == 0) return;
-  Triangle triangle{face, {a, b, c}};
+// Beyond a void nothing is grown over.
+bool Exaggeration::is_beside_others(std::uint32_t side) const {
+  return boundary_.face_of(side ^ 1U) != BoundaryMap::kNoFace;
+}
+
+void Exaggeration::append_triangle(BoundaryMap::Face face, bool is_beside_others,
+                                   const std::array<Point, 3>& corners) {
+  if (orientation(corners[0], corners[1], corners[2]) == 0) return;
+  Triangle triangle{face, corners, is_beside_others};
   std::ranges::sort(triangle.corners, is_above);
   Box around;
-  for (const Point p : triangle.corners) around.include(p);
+  for (const Point p : corners) around.include(p);
   if (around.intersects(box_)) triangles_.push_back(triangle);
 }
 
 void Exaggeration::sort_triangles() {
-  std::ranges::sort(triangles_, is_above, [](const Triangle& t) { return t.corners[0]; });
+  std::ranges::sort(triangles_, {}, [](const Triangle& t) {
+    return std::tuple(t.is_beside_others, t.corners[0].y, t.corners[0].x);
+  });
   highest_ = 0;
   for (const Triangle& t : triangles_) {
-    highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
+    if (t.is_beside_others) highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
   }
 }
 
@@ -784,9 +818,10 @@ void Exaggeration::append_common(const MeshView& mesh, const MeshTrapezoid& trap
   if (top >= bottom) return;
   const auto from = std::min({west.upper.x, west.lower.x});
   const auto to = std::max({east.upper.x, east.lower.x});
-  const auto first =
-      std::ranges::lower_bound(triangles_, std::int64_t{top} - highest_, {},
-                               [](const Triangle& t) { return std::int64_t{t.corners[0].y}; });
+  const auto first = std::ranges::lower_bound(
+      triangles_, std::pair(true, std::int64_t{top} - highest_), {}, [](const Triangle& t) {
+        return std::pair(t.is_beside_others, std::int64_t{t.corners[0].y});
+      });
   for (auto it = first; it != triangles_.end() && it->corners[0].y < bottom; ++it) {
     const auto& [a, b, c] = it->corners;
     if (c.y <= top || std::max({a.x, b.x, c.x}) <= from || std::min({a.x, b.x, c.x}) >= to) {

@@ -3,9 +3,9 @@
 //
 // From places p along the boundary of a face, three lengths are told:
 //
-//   width      how far it is from p, straight into the face, to its boundary; but not less than
-//              the diameter of a disc within the face beside p, so that corners of what is wide
-//              are not taken for narrow;
+//   width      how far it is from p, straight into the face, to its opposite side; but not less
+//              than the diameter of a disc within the face beside p, so that corners of what is
+//              wide are not taken for narrow;
 //   growth     half of what the width lacks. There the boundary moves outwards by that, and
 //              corners remain corners;
 //   reserve    of what is wide enough: half of what a disc within it beside p has more than the
@@ -55,7 +55,8 @@ class Exaggeration {
   /// Three points around a place that belongs to the face as well.
   struct Triangle {
     BoundaryMap::Face face = BoundaryMap::kNoFace;
-    std::array<Point, 3> corners;
+    std::array<Point, 3> corners;   // the uppermost first
+    bool is_beside_others = false;  // whether it may have places in common with other faces
   };
 
   /// To be filled before find().
@@ -92,6 +93,7 @@ class Exaggeration {
   // A place on the boundary of a face. What is not known yet is less than 0.
   struct Sample {
     float ray = -1;
+    float facing = 0;           // from 0 to 1: whether that meets the opposite side of the face
     std::array<Disc, 2> discs;  // within the face, a smaller and a larger one
     float growth = -1;
     float reserve = -1;
@@ -140,6 +142,7 @@ class Exaggeration {
   double width_beside(At at);
   double thickness(At at);
   double growth(At at);
+  double growth_across(At at);
   double reserve(At at);
   double signed_growth(std::uint32_t side, double share);
 
@@ -160,7 +163,9 @@ class Exaggeration {
   const Tip* find_tip(std::uint32_t side) const;
   Point place_of(std::uint32_t side, const Moved& moved) const;
   static double moved_by(std::span<const Moved> places, double share);
-  void append_triangle(BoundaryMap::Face face, Point a, Point b, Point c);
+  bool is_beside_others(std::uint32_t side) const;
+  void append_triangle(BoundaryMap::Face face, bool is_beside_others,
+                       const std::array<Point, 3>& corners);
   void sort_triangles();
 
   BoundaryMap boundary_;
@@ -173,8 +178,8 @@ class Exaggeration {
   std::vector<Moved> moved_;
   std::vector<MovedSide> moved_sides_;  // by side
   std::vector<Tip> tips_;               // by side
-  std::vector<Triangle> triangles_;     // by their uppermost corners, which are the first
-  std::int32_t highest_ = 0;            // of a triangle, in cells
+  std::vector<Triangle> triangles_;     // those beside others last, by their uppermost corners
+  std::int32_t highest_ = 0;            // of those beside others, in cells
 };
 
 template <typename IsKept>

@@ -175,12 +175,6 @@ class Grown {
   std::vector<std::uint32_t> trapezoids_;
 };
 
-double area_of(const Ring& ring) {
-  double sum = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]);
-  return std::abs(sum) / 2;
-}
-
 /// Houses of all sizes in all directions, and narrow strips between them, that do not overlap.
 std::vector<Ring> town(unsigned seed) {
   std::mt19937 random(seed);
@@ -237,6 +231,13 @@ TEST(Exaggeration, ASmallHouseBecomesASquare) {
     EXPECT_NEAR(Grown(*layer, 6).area(), 36 - 0.5, 0.1) << degrees;
     EXPECT_NEAR(Grown(*layer, 0.8).area(), 0.8 - 0.5, 0.01) << degrees;
     EXPECT_EQ(Grown(*layer, 0.4).area(), 0) << degrees;
+  }
+}
+
+TEST(Exaggeration, EndsThatAreNotQuiteSquareAreNoNarrowPlaces) {
+  for (const double slant : {-0.3, -0.05, 0.05, 0.3}) {
+    const auto layer = layer_with({{{0, 0}, {20, 0}, {20 + slant, 1}, {slant, 1}}});
+    EXPECT_NEAR(Grown(*layer, 4).area(), 3 * 20, 1.2) << slant;
   }
 }
 
