@@ -296,13 +296,13 @@ bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
   for (const HalfEdge h : sides) bridges.push_back({h, twins_[h], corners_[h], corners_[next(h)]});
   const auto is_within = [this](std::uint32_t triangle) { return !is_beyond(triangle); };
   bool has_divided = false;
-  for (const auto& [first, beyond, from, to] : bridges) {
-    const Point p = points_[from.value];
-    const Point q = points_[to.value];
+  for (const Bridge& bridge : bridges) {
+    const Point p = points_[bridge.from.value];
+    const Point q = points_[bridge.to.value];
     const double length = length_between(p, q);
     for (const bool is_right : {true, false}) {
       const auto divide_at = [&](Point end, Point at, double slack) -> std::optional<Point> {
-        const std::optional<HalfEdge> side = find_side(first, beyond, from, to);
+        const auto side = find_side(bridge.side, bridge.beyond, bridge.from, bridge.to);
         if (!side) return std::nullopt;
         const HalfEdge h = end == p ? *side : twins_[*side];
         const bool goes_before = (end == p) == is_right;
