@@ -110,8 +110,8 @@ the usual tolerance, so that there is something to be seen of what they do.
 
 ${table(['scale', ...WAYS.map(([, title]) => title)], rows)}
 
-[Blocks](../docs/coverage.md#blocks), [exaggeration](../docs/styling.md#exaggeration),
-[smooth corners](../docs/styling.md#smooth-corners) and [weights](../docs/configuration.md) are described where they are set; what
+[Blocks](../docs/coverage.md#blocks), [growth](../docs/styling.md#what-is-narrow),
+[smooth corners](../docs/styling.md#smooth-corners) and [weights](../docs/data.md) are described where they are set; what
 they keep to, with proofs, in [core/README.md](../core/README.md).
 `
   } finally {
