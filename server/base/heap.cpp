@@ -6,11 +6,8 @@ namespace trapeze {
 namespace {
 
 // The C library would raise this to the size of what was freed last, up to 32 MB: arrays of layers
-// would then lie among all else, and leave holes that stay. What is drawn is mostly smaller, and so
-// are arrays that come and go while layers are built: for those of a megabyte, too, the kernel
-// would find and clear pages again and again, a twentieth of the time. From here on they are in
-// huge pages.
-constexpr int kLargeArray = 4 << 20;  // bytes
+// would then lie among all else, and leave holes that stay. What is drawn is mostly smaller.
+constexpr int kLargeArray = 1 << 20;  // bytes
 // Once the above is set, this is no longer adapted either. It is room for what is drawn, which is
 // needed again at once: of a map that fills a screen, too, for which the kernel would otherwise
 // find and clear the same pages anew at every band.

@@ -4,8 +4,8 @@
 
 namespace trapeze {
 
-/// Has arrays of more than four megabytes go back to the system as soon as they are freed, whatever
-/// was freed before. Call it first thing in main: it holds for all threads.
+/// Has arrays of more than a megabyte go back to the system as soon as they are freed, whatever was
+/// freed before. Call it first thing in main: it holds for all threads.
 void return_large_arrays();
 
 /// Gives back what is free between smaller items. Takes milliseconds, in which other threads may
