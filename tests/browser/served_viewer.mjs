@@ -63,7 +63,6 @@ file = "${join(HERE, "land.geojson")}"
 title = "Land"
 attribution = 'Drawn by <a href="https://example.org/">hand</a>'
 fast_topology = true
-merge = 4
 style = { fill = "#d8c99b" }
 
 [[layer]]

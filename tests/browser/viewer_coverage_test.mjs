@@ -17,6 +17,12 @@ title = "Fields"
 coverage = "auto"
 fast_topology = true
 style = { fill = "#d8c99b", fill_opacity = 1.0 }
+
+[[layer]]
+name = "houses"
+file = "${join(HERE, "land.geojson")}"
+title = "Houses"
+merge = 4
 `;
 const COLOURS = "&fields.color-by=name&fields.classes=west:cc4444,east:4444cc";
 
@@ -82,6 +88,26 @@ test("compare: one of the two at a time, or none", async () => {
   await page.waitForFunction(() => !location.hash.includes("compare"));
   await page.waitForFunction(() => !document.querySelector("img[src*='topology=fast']"));
   assert.ok(!(await hash_of(page)).includes("against"));
+  assert_nothing_went_wrong(server, seen);
+  await page.context().close();
+});
+
+test("a layer that is merged to blocks has a slider for the distance, and no other one has", async () => {
+  const { page, seen } = await new_page(browser);
+  await page.goto(`${server.base}#5/46/10&on=land,houses`);
+  await tiles_drawn(page);
+  for (const layer of ["Land", "Houses"]) {
+    await page.locator("summary").and(page.getByLabel(`Style of ${layer}`)).click();
+  }
+  const panel_of = (layer) =>
+    page.locator("#layers li").filter({ has: page.getByLabel(`Style of ${layer}`) });
+  assert.equal(await panel_of("Land").getByLabel("Merge").count(), 0);
+  const slider = panel_of("Houses").getByLabel("Merge");
+  assert.equal(await slider.inputValue(), "4");
+  await slider.fill("8");
+  await page.waitForSelector("img[src*='merge=8']");
+  await tiles_drawn(page);
+  assert.match(await hash_of(page), /houses\.merge=8/);
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });

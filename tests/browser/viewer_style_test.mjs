@@ -77,10 +77,7 @@ const STYLE_CONTROLS = [
     await slide(land.getByLabel("Size"), 16);
     await slide(land.getByLabel("Angle"), 0);
   }, { pattern: "hatch", "pattern-color": "00ff00", "pattern-size": "16", "pattern-angle": "0" }],
-  ["the shape", async (land) => {
-    await slide(land.getByLabel("Merge"), 8);
-    await slide(land.getByLabel("Grow"), 2);
-  }, { merge: "8", grow: "2" }],
+  ["what is narrow", (land) => slide(land.getByLabel("Grow"), 2), { grow: "2" }],
   ["the corners", (land) => slide(land.getByLabel("Smooth"), 6), { smooth: "6" }],
   ["the names", async (land) => {
     await land.getByRole("combobox", { name: "Names" }).selectOption("name");
