@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/grid/for_each_in_parallel.h"
 #include "core/layer/layer_changes.h"
@@ -18,6 +20,18 @@ namespace {
 
 /// Dust is gathered from that far away, in pixels, and small polygons are drawn as large as one.
 constexpr double kReachOfDust = 3;
+
+/// The same for a style that draws a feature otherwise all over if another lies over it, or under
+/// it: rounds no corner of it, and lets nothing of it grow.
+LayerChanges with_all_of_pairs(LayerChanges changes) {
+  std::vector<LayerChanges::Place> others;
+  for (LayerChanges::Place& place : changes.places) {
+    if (place.other.is_empty()) continue;
+    others.push_back({std::exchange(place.other, {}), place.lifespan, place.is_dust});
+  }
+  changes.places.insert(changes.places.end(), others.begin(), others.end());
+  return changes;
+}
 
 /// The states of one layer of the request, and what may look different between them.
 struct ComparedLayer {
@@ -176,11 +190,18 @@ class Comparison {
   std::vector<TileId> candidates(int zoom, const TilePlan& before, const TilePlan& after) const {
     std::vector<std::pair<const LayerChanges*, TileDrawing>> drawings;  // mostly alike in both
     const LayerChanges everywhere = all_of_reclassed(before, after);
+    std::map<const LayerChanges*, LayerChanges> of_pairs;
     for (const TilePlan* plan : {&before, &after}) {
       for (const LayerPaint& paint : plan->layers) {
         const bool is_reclassed = has_other_classes(name_of(*plan, paint), before, after);
         const LayerChanges* changes = is_reclassed ? &everywhere : changes_of(*plan, paint);
         if (changes == nullptr) continue;
+        if (paint.style.smooth > 0 || paint.style.grow > 0) {
+          const auto found = of_pairs.find(changes);
+          changes = found != of_pairs.end()
+                        ? &found->second
+                        : &of_pairs.emplace(changes, with_all_of_pairs(*changes)).first->second;
+        }
         const double reach = paint.style.reach(plan->scale) + kReachOfDust;
         const TileDrawing drawing{zoom, paint.level, plan->pixel_level(),
                                   reach * plan->view.cells_per_pixel};

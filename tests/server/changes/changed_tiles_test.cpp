@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
                                            "filter=kind='wood'&simplify=0",
                                            "highlight=3,50,60&pattern=dots",
                                            "smooth=40&stroke=black&simplify=2",
-                                           "grow=8&stroke=black"));
+                                           "grow=2&stroke=black"));
 
 TEST(ChangedTiles, OfTheSameDataAreNone) {
   EditedLand land(3);
