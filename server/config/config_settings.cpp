@@ -631,7 +631,7 @@ const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
           "what maps must say about where they are from; may hold links in HTML"),
       list<ValueTableConfig>(
           "values.languages", [](auto& table) -> auto& { return table.languages; },
-          "a list of tags of languages such as [\"de\", \"zh-Hans\"]",
+          R"(a list of tags of languages such as ["de", "zh-Hans"])",
           [](const std::string& tag) {
             return is_language_tag(tag) ? std::optional(tag) : std::nullopt;
           },
