@@ -613,7 +613,7 @@ void LayerDrawing::add_shapes(DrawingTools& tools) {
 }
 
 // One that fills the box does so whatever others add, but for dust, which may take area away.
-bool LayerDrawing::fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) const {
+bool LayerDrawing::fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) {
   const std::span pieces(drawing.pieces.data(), drawing.piece_count);
   const auto have_dust = [](const auto& piece) { return piece.layer->have_dust(piece.ranges); };
   if (pieces.size() > 1 && std::ranges::any_of(pieces, have_dust)) return false;

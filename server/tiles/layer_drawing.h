@@ -237,7 +237,7 @@ class LayerDrawing {
   void add_places(const Layer::Selection& selection, const FeatureClasses* classes,
                   DrawingTools& tools);
   void finish_class(const Layer::Selection& selection, ClassDrawing& drawing);
-  bool fills_box(const Layer::Selection& selection, const ClassDrawing& drawing) const;
+  static bool fills_box(const Layer::Selection& selection, const ClassDrawing& drawing);
   void leave_out_empty_lines();
   template <typename Visit>
   void for_each_painted(const Visit& visit) const;
