@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core/grid/box_margin.h"
 #include "core/grid/item_count.h"
 #include "core/grid/shared_array.h"
 #include "core/layer/dust.h"
@@ -34,16 +35,6 @@ Box box_of_feature(const LayerContents& layer, std::uint32_t row) {
     }
   }
   return box;
-}
-
-/// The box and so many cells around it, as far as there is a grid.
-Box with_margin(const Box& box, double margin) {
-  const auto cell = [](double v) {
-    return static_cast<std::int32_t>(
-        std::clamp(v, static_cast<double>(kGridMin), static_cast<double>(kGridMax)));
-  };
-  return {cell(box.min_x - margin), cell(box.min_y - margin), cell(box.max_x + margin),
-          cell(box.max_y + margin)};
 }
 
 void leave_one_of_each(std::vector<std::uint32_t>& items) {

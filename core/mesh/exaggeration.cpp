@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/grid/box_margin.h"
+
 namespace trapeze {
 namespace {
 
@@ -114,14 +116,6 @@ std::optional<std::pair<double, double>> shares_in(const Box& box, Vector from, 
   if (!clip(from.x, way.x, box.min_x, box.max_x)) return std::nullopt;
   if (!clip(from.y, way.y, box.min_y, box.max_y)) return std::nullopt;
   return std::pair(first, last);
-}
-
-Box with_margin(const Box& box, double margin) {
-  const auto cell = [](double v) {
-    return static_cast<std::int32_t>(std::clamp<double>(v, kGridMin, kGridMax));
-  };
-  return {cell(box.min_x - margin), cell(box.min_y - margin), cell(box.max_x + margin),
-          cell(box.max_y + margin)};
 }
 
 bool is_forward(std::uint32_t side) {

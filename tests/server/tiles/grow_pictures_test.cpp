@@ -11,15 +11,11 @@
 #include <vector>
 
 #include "core/layer/layer_builder.h"
-#include "render/make_renderer.h"
-#include "render/picture/png.h"
-#include "render/software/software_renderer.h"
 #include "server/service/site.h"
-#include "server/tiles/tile_painter.h"
-#include "server/tiles/tile_request.h"
 #include "tests/core/shapes/layers.h"
 #include "tests/server/service/sample_picture.h"
 #include "tests/server/service/sample_site.h"
+#include "tests/server/tiles/same_by_gl.h"
 
 namespace trapeze {
 namespace {
@@ -261,23 +257,9 @@ TEST_F(GrowPicturesTest, MapsInDegreesHaveIt) {
 }
 
 TEST_F(GrowPicturesTest, AreTheSameByGl) {
-  TilePainter software(std::make_unique<SoftwareRenderer>());
-  TilePainter gl(make_renderer({RendererKind::egl, {}}).renderer);
   for (const char* target : {"village/0/0/0.png?quality=exact&grow=5&simplify=0",
                              "land/1/0/0.png?quality=exact&grow=9&simplify=0"}) {
-    const auto parsed =
-        parse_tiles_target(split_target(std::string("/tiles/") + target).value(), StyleBook());
-    const TilePlan plan = *plan_tile(std::get<TileRequest>(*parsed), dataset_);
-    const auto paint = [&plan](TilePainter& painter) {
-      const TilePainter::Job job{&plan};
-      return decode_png(*painter.paint({&job, 1}).front()->bytes);
-    };
-    const Picture one = paint(software);
-    const Picture other = paint(gl);
-    ASSERT_EQ(one.pixels.size(), other.pixels.size());
-    for (std::size_t i = 0; i < one.pixels.size(); ++i) {
-      ASSERT_NEAR(one.pixels[i].a, other.pixels[i].a, 2) << target;
-    }
+    testing::expect_same_by_gl(target, dataset_);
   }
 }
 

@@ -1,0 +1,37 @@
+// Whether a tile is the same whoever draws it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "render/make_renderer.h"
+#include "render/picture/png.h"
+#include "render/software/software_renderer.h"
+#include "server/tiles/tile_painter.h"
+#include "server/tiles/tile_request.h"
+
+namespace trapeze::testing {
+
+/// Draws a tile, given by its address behind /tiles/, in plain C++ and by EGL: opacities are at
+/// most 2 apart.
+inline void expect_same_by_gl(const std::string& target,
+                              const std::shared_ptr<const Dataset>& dataset) {
+  const auto parsed = parse_tiles_target(split_target("/tiles/" + target).value(), StyleBook());
+  const TilePlan plan = *plan_tile(std::get<TileRequest>(*parsed), dataset);
+  const auto draw = [&plan](std::unique_ptr<MaskRenderer> renderer) {
+    TilePainter painter(std::move(renderer));
+    const TilePainter::Job job{&plan};
+    return decode_png(*painter.paint({&job, 1}).front()->bytes);
+  };
+  const Picture one = draw(std::make_unique<SoftwareRenderer>());
+  const Picture other = draw(make_renderer({RendererKind::egl, {}}).renderer);
+  ASSERT_EQ(one.pixels.size(), other.pixels.size());
+  for (std::size_t i = 0; i < one.pixels.size(); ++i) {
+    ASSERT_NEAR(one.pixels[i].a, other.pixels[i].a, 2) << target;
+  }
+}
+
+}  // namespace trapeze::testing
