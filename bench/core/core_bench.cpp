@@ -8,6 +8,9 @@
 // Sweep: sorting the vertices and the plane sweep. Build: the same from rings as they are read,
 // with cleaning, noding where it is needed, and the loops. Weights: Douglas-Peucker. History: Build
 // and all versions for all tolerances, which is all that is done for a polygon before it is drawn.
+// Cores, of large polygons: History by as many threads as the name says, what share of the removals
+// is carried out in batches, and how many times as fast removals would be if every thread had a
+// core, counted by the trapezoids that they walk and touch.
 //
 // Every figure is measured three times; "min" is the one to read on a machine that does other
 // things too. The table at the end compares the families at their smallest and their largest.
@@ -27,7 +30,7 @@
 
 #include "bench/core/polygon_families.h"
 #include "bench/core/source_rings.h"
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/adapt/vertex_weight.h"
 #include "core/sweep/boundary.h"
 #include "core/sweep/graph_builder.h"
@@ -39,6 +42,7 @@ namespace {
 using Polygons = std::vector<Rings>;
 
 constexpr const char* kPerVertex = "ns_per_vertex";
+constexpr std::size_t kLargePolygon = 50000;  // vertices
 
 std::size_t vertices_of(const Polygons& polygons) {
   std::size_t count = 0;
@@ -110,6 +114,31 @@ void record_history(benchmark::State& state, Polygons& polygons) {
       static_cast<double>(history.trapezoids.size()) / static_cast<double>(vertices);
 }
 
+void record_on_cores(benchmark::State& state, Polygons& polygons, unsigned threads) {
+  GraphBuilder builder;
+  TrapezoidalGraph graph;
+  HistoryRecorder recorder;
+  PriorityStack::Counts counts;
+  for (auto _ : state) {
+    counts = {};
+    for (Rings& rings : polygons) {
+      if (!builder.build(rings, graph, threads).built) continue;
+      History history;
+      recorder.record(graph, FaceFeatures({0}), {}, history, nullptr, threads);
+      const PriorityStack::Counts& of_one = recorder.stack().counts();
+      counts.removals += of_one.removals;
+      counts.at_once += of_one.at_once;
+      counts.walked += of_one.walked + of_one.touched;
+      counts.beside += of_one.beside;
+    }
+  }
+  count_vertices(state, vertices_of(polygons));
+  state.counters["at_once"] =
+      static_cast<double>(counts.at_once) / static_cast<double>(counts.removals);
+  state.counters["removals_times_as_fast"] =
+      static_cast<double>(counts.walked) / static_cast<double>(counts.walked - counts.beside);
+}
+
 /// The polygons that were asked for last: repetitions follow each other.
 Polygons& remembered(const std::string& name, const std::function<Polygons()>& make) {
   static std::string last;
@@ -126,10 +155,13 @@ double smallest(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-void add(const std::string& stage, void (*run)(benchmark::State&, Polygons&),
-         const std::string& name, const std::function<Polygons()>& make) {
-  benchmark::RegisterBenchmark((stage + "/" + name).c_str(),
-                               [=](benchmark::State& state) { run(state, remembered(name, make)); })
+benchmark::internal::Benchmark* add(const std::string& stage,
+                                    const std::function<void(benchmark::State&, Polygons&)>& run,
+                                    const std::string& name,
+                                    const std::function<Polygons()>& make) {
+  return benchmark::RegisterBenchmark(
+             (stage + "/" + name).c_str(),
+             [=](benchmark::State& state) { run(state, remembered(name, make)); })
       ->Unit(benchmark::kMillisecond)
       ->MinTime(0.1)
       ->Repetitions(3)
@@ -144,6 +176,15 @@ void add_stages(const std::string& name, const std::function<Polygons()>& make) 
   add(
       "Weights", [](benchmark::State& s, Polygons& p) { weigh(s, p); }, name, make);
   add("History", record_history, name, make);
+}
+
+void add_cores(const std::string& name, const std::function<Polygons()>& make) {
+  for (const unsigned threads : {1u, 2u, 4u, 8u, 16u}) {
+    add(
+        "Cores" + std::to_string(threads),
+        [threads](benchmark::State& s, Polygons& p) { record_on_cores(s, p, threads); }, name,
+        make);
+  }
 }
 
 Polygons buildings() {
@@ -178,6 +219,10 @@ void add_files() {
     const auto make = [path] { return read_source_rings(path); };
     add("Build", build, name, make);
     add("History", record_history, name, make);
+    if (std::ranges::any_of(
+            make(), [](const Rings& rings) { return rings.points.size() >= kLargePolygon; })) {
+      add_cores(name, make);
+    }
   }
 }
 

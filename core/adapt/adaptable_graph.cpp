@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/adapt/batch_removal.h"
 #include "core/graph/fetch_ahead.h"
 #include "core/grid/for_each_in_parallel.h"
 
@@ -14,13 +15,6 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffff;
-
-// How far ahead, in candidates, each step is prefetched: its memory arrives after some hundred
-// nanoseconds, and is then still in the first-level cache.
-constexpr std::size_t kCornerAhead = 24;
-constexpr std::size_t kEdgesAhead = 16;
-constexpr std::size_t kNodesAhead = 8;
-constexpr std::size_t kNeighboursAhead = 4;
 
 }  // namespace
 
@@ -44,13 +38,13 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
     weigh_corners();
   }
   position_ = 0;
-  epsilon_ = 0;
-  retries_.clear();
+  main_ = {};
+  put_off_.clear();
+  next_put_off_ = 0;
+  to_report_.reset();
   state_.assign(count, State::ahead);
   waiting_first_.assign(graph.vertices().size(), kNobody);
   waiting_.clear();
-  has_blocked_ = false;
-  counts_ = {};
 }
 
 void PriorityStack::weigh_corners() {
@@ -105,29 +99,67 @@ void PriorityStack::weigh_regions(const MergePlan* plan, std::vector<Candidate>&
     if (std::isfinite(weight)) candidates.push_back({weight, {}, corner_for(RegionId(i))});
   }
   std::sort(candidates.begin(), candidates.end());
-  is_in_place_.assign(weights_.size(), false);
+  is_in_place_.assign(weights_.size(), 0);
   gone_from_.assign(graph_->edges().size(), CornerId());
   next_gone_.assign(weights_.size(), CornerId());
 }
 
 std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
   // A candidate that is due already precedes those still to come.
+  const auto retry_is_next = [this](const Candidate& ahead) {
+    const Candidate& retry = main_.retries.front();
+    return retry.weight <= main_.epsilon || retry < ahead;
+  };
+  while (next_put_off_ < put_off_.size()) {
+    if (!main_.retries.empty() && is_before_put_off(main_.retries.front())) return pop_retry(main_);
+    if (const auto next = next_put_off()) return next;
+  }
+  if (position_ > 0) main_.epsilon = std::max(main_.epsilon, order_[position_ - 1].weight);
   const bool has_more = position_ < order_.size();
-  if (!retries_.empty() &&
-      (retries_.front().weight <= epsilon_ || !has_more || retries_.front() < order_[position_])) {
-    std::pop_heap(retries_.begin(), retries_.end(), std::greater<>());
-    const Candidate next = retries_.back();
-    retries_.pop_back();
-    epsilon_ = std::max(epsilon_, next.weight);
-    return next;
+  if (!main_.retries.empty() && (!has_more || retry_is_next(order_[position_]))) {
+    return pop_retry(main_);
   }
   if (!has_more) return std::nullopt;
   return pop();
 }
 
+bool PriorityStack::is_before_put_off(const Candidate& retry) const {
+  const PutOff& next = put_off_[next_put_off_];
+  const bool has_begun = next_put_off_ > 0 && put_off_[next_put_off_ - 1].key == next.key;
+  if (has_begun) return retry < next.at;
+  return retry.weight <= main_.epsilon || retry < next.key;
+}
+
+/// What is to be tried, if it is.
+std::optional<PriorityStack::Candidate> PriorityStack::next_put_off() {
+  const PutOff next = put_off_[next_put_off_++];
+  main_.epsilon = std::max(main_.epsilon, next.key.weight);
+  if (next.what == PutOff::What::to_retry) {
+    retry_if_blocked(main_, next.corner);
+    return std::nullopt;
+  }
+  if (next.what == PutOff::What::to_report) to_report_ = next;
+  return Candidate{next.key.weight, {}, next.corner};
+}
+
+/// One of the edges of a triangular loop, and the side on which its inside lies.
+LostLoop PriorityStack::lost_loop_at(CornerId c) const {
+  const TriangleLoop loop = triangle_loop_at(*graph_, c);
+  const Edge& edge = graph_->edge(loop.long_edge);
+  return {loop.long_edge, loop.side, edge.face[loop.side], edge.face[opposite(loop.side)]};
+}
+
+PriorityStack::Candidate PriorityStack::pop_retry(Lane& lane) {
+  std::pop_heap(lane.retries.begin(), lane.retries.end(), std::greater<>());
+  const Candidate next = lane.retries.back();
+  lane.retries.pop_back();
+  lane.epsilon = std::max(lane.epsilon, next.weight);
+  return next;
+}
+
 PriorityStack::Candidate PriorityStack::pop() {
   const Candidate next = order_[position_++];
-  epsilon_ = std::max(epsilon_, next.weight);
+  main_.epsilon = std::max(main_.epsilon, next.weight);
   if (position_ + kCornerAhead < order_.size()) fetch_candidates();
   return next;
 }
@@ -156,9 +188,9 @@ void PriorityStack::fetch_candidates() const {
   fetch_for(kNeighboursAhead, fetch_neighbours);
 }
 
-void PriorityStack::enqueue(const Candidate& candidate) {
-  retries_.push_back(candidate);
-  std::push_heap(retries_.begin(), retries_.end(), std::greater<>());
+void PriorityStack::enqueue(Lane& lane, const Candidate& candidate) {
+  lane.retries.push_back(candidate);
+  std::push_heap(lane.retries.begin(), lane.retries.end(), std::greater<>());
 }
 
 std::optional<double> PriorityStack::remove_next([[maybe_unused]] const TrapezoidalGraph& graph,
@@ -166,50 +198,65 @@ std::optional<double> PriorityStack::remove_next([[maybe_unused]] const Trapezoi
   assert(&graph == graph_);
   do {
     while (const auto candidate = next_candidate()) {
+      if (to_report_) {
+        report(*std::exchange(to_report_, std::nullopt), log);
+        return main_.epsilon;
+      }
       const bool has_gone = is_region(candidate->corner)
                                 ? remove_region(region_of(candidate->corner), log)
-                                : remove_corner(candidate->corner, log);
+                                : remove_corner(main_, candidate->corner, log);
       if (!has_gone) continue;
-      ++counts_.removals;
-      counts_.touched += log.touched_nodes().size();
-      return epsilon_;
+      ++main_.counts.removals;
+      main_.counts.touched += log.touched_nodes().size();
+      return main_.epsilon;
     }
-  } while (has_blocked_ && enqueue_anchors());
+  } while (main_.has_blocked && enqueue_anchors());
   return std::nullopt;
 }
 
-bool PriorityStack::remove_corner(CornerId c, EditLog& log) {
+/// A loop that has gone in a batch.
+void PriorityStack::report(const PutOff& lost, EditLog& log) {
+  if (graph_->is_coverage()) borders_.note_lost_loop(lost.loop);
+  last_corner_ = lost.corner;
+  last_removal_ = Removal::loop;
+  log.begin();  // nothing is left to be changed
+}
+
+bool PriorityStack::remove_corner(Lane& lane, CornerId c, EditLog& log) {
   const TrapezoidalGraph& graph = *graph_;
   if (!graph.corner(c).is_alive()) return false;  // went with its loop
-  if (is_to_wait(c)) return false;
+  if (lane.batch != nullptr && !lane.batch->may_try(c)) return false;
+  if (is_to_wait(lane, c)) return false;
   const Decision decision = decide_removal(graph, c, options_.topology);
-  ++counts_.tests;
-  counts_.walked += decision.walked;
-  if (decision.removal == Removal::blocked) {
-    has_blocked_ = true;
-    wait_for(c, decision.blocker);
-    return false;
-  }
   const Corner gone = graph.corner(c);
   const VertexId prev = graph.corner(gone.prev).vertex;
   const VertexId next = graph.corner(gone.next).vertex;
   const EdgeId edge_before = graph.corner(gone.prev).edge;
-  if (decision.removal == Removal::loop && graph.is_coverage()) {
-    const TriangleLoop loop = triangle_loop_at(graph, c);
-    borders_.note_lost_loop(loop.long_edge, loop.side);
+  if (lane.batch != nullptr && !lane.batch->carry_out(c, decision, log)) return false;
+  ++lane.counts.tests;
+  lane.counts.walked += decision.walked;
+  if (decision.removal == Removal::blocked) {
+    lane.has_blocked = true;
+    wait_for(lane, c, decision.blocker);
+    return false;
   }
-  Generalization(graph, log).remove(c, decision.removal);
-  last_corner_ = c;
-  last_removal_ = decision.removal;
-  retry_waiting(gone.vertex);
+  if (lane.batch == nullptr) {
+    if (decision.removal == Removal::loop && graph.is_coverage()) {
+      borders_.note_lost_loop(lost_loop_at(c));
+    }
+    Generalization(graph, log).remove(c, decision.removal);
+    last_corner_ = c;
+    last_removal_ = decision.removal;
+  }
+  retry_waiting(lane, gone.vertex);
   if (decision.removal == Removal::loop) {
-    retry_waiting(prev);
-    retry_waiting(next);
+    retry_waiting(lane, prev);
+    retry_waiting(lane, next);
     return true;
   }
   if (graph.is_coverage()) note_joined(gone, c, edge_before);
-  retry_if_blocked(gone.prev);
-  retry_if_blocked(gone.next);
+  retry_if_blocked(lane, gone.prev);
+  retry_if_blocked(lane, gone.next);
   return true;
 }
 
@@ -226,18 +273,18 @@ void PriorityStack::note_joined(const Corner& gone, CornerId corner, EdgeId edge
     }
   }
   gone_from_[joined] = corner;
-  if (!is_in_place_[corner.value]) return;
-  is_in_place_[gone.prev.value] = true;
-  is_in_place_[gone.next.value] = true;
+  if (is_in_place_[corner] == 0) return;
+  is_in_place_[gone.prev] = 1;
+  is_in_place_[gone.next] = 1;
 }
 
 /// A corner that is weighed where it stands is weighed whenever it is popped.
-bool PriorityStack::is_to_wait(CornerId c) {
-  if (!graph_->is_coverage() || !is_in_place_[c.value]) return false;
+bool PriorityStack::is_to_wait(Lane& lane, CornerId c) {
+  if (!graph_->is_coverage() || is_in_place_[c] == 0) return false;
   weights_[c] = weight_in_place(c);
-  if (weights_[c] <= epsilon_) return false;
+  if (weights_[c] <= lane.epsilon) return false;
   state_[c] = State::queued;
-  enqueue({weights_[c], graph_->corner(c).vertex, c});
+  enqueue(lane, {weights_[c], graph_->corner(c).vertex, c});
   return true;
 }
 
@@ -268,7 +315,7 @@ bool PriorityStack::enqueue_anchors() {
     if (!corner.is_alive() || corner.is_end() || std::isfinite(weights_[c])) continue;
     weights_[c] = weight_in_place(c);
     state_[c] = State::queued;
-    enqueue({weights_[c], corner.vertex, c});
+    enqueue(main_, {weights_[c], corner.vertex, c});
     has_any = true;
   }
   return has_any;
@@ -277,21 +324,21 @@ bool PriorityStack::enqueue_anchors() {
 bool PriorityStack::remove_region(RegionId region, EditLog& log) {
   const double weight = borders_.weight(region);
   if (!std::isfinite(weight)) return false;
-  if (weight > epsilon_) {
+  if (weight > main_.epsilon) {
     requeue_region(region, weight);
     return false;
   }
   const RegionBorders::United united = borders_.remove(region, log);
   if (united.empty()) return false;
   last_removal_ = Removal::region;
-  for (const VertexId v : borders_.changed()) retry_waiting(v);
+  for (const VertexId v : borders_.changed()) retry_waiting(main_, v);
   for (const CornerId c : borders_.dissolved()) {
     if (!graph_->corner(c).is_alive()) continue;  // went with a region that was united later
-    is_in_place_[c.value] = true;
-    is_to_wait(c);
+    is_in_place_[c] = 1;
+    is_to_wait(main_, c);
     if (state_[c] != State::queued) {
       state_[c] = State::queued;
-      enqueue({weights_[c], graph_->corner(c).vertex, c});
+      enqueue(main_, {weights_[c], graph_->corner(c).vertex, c});
     }
   }
   requeue_united(united);
@@ -319,24 +366,26 @@ void PriorityStack::requeue_united(const RegionBorders::United& united) {
 
 void PriorityStack::requeue_region(RegionId region, double weight) {
   region_weights_[region] = weight;
-  enqueue({weight, {}, corner_for(region)});
+  enqueue(main_, {weight, {}, corner_for(region)});
 }
 
-void PriorityStack::wait_for(CornerId corner, VertexId blocker) {
+void PriorityStack::wait_for(Lane& lane, CornerId corner, VertexId blocker) {
   state_[corner] = State::blocked;
+  if (lane.batch != nullptr) return lane.batch->wait_for(corner, blocker);
   waiting_.push_back({corner, waiting_first_[blocker]});
   waiting_first_[blocker] = static_cast<std::uint32_t>(waiting_.size() - 1);
 }
 
-void PriorityStack::retry_waiting(VertexId gone) {
+void PriorityStack::retry_waiting(Lane& lane, VertexId gone) {
+  if (lane.batch != nullptr) return lane.batch->retry_waiting(gone);
   std::uint32_t i = std::exchange(waiting_first_[gone], kNobody);
-  for (; i != kNobody; i = waiting_[i].next) retry_if_blocked(waiting_[i].corner);
+  for (; i != kNobody; i = waiting_[i].next) retry_if_blocked(main_, waiting_[i].corner);
 }
 
-void PriorityStack::retry_if_blocked(CornerId corner) {
+void PriorityStack::retry_if_blocked(Lane& lane, CornerId corner) {
   if (state_[corner] != State::blocked || !graph_->corner(corner).is_alive()) return;
   state_[corner] = State::queued;
-  enqueue({weights_[corner], graph_->corner(corner).vertex, corner});
+  enqueue(lane, {weights_[corner], graph_->corner(corner).vertex, corner});
 }
 
 AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options,

@@ -28,6 +28,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/adapt/generalization_options.h"
 #include "core/adapt/vertex_weight.h"
 #include "core/borders/region_borders.h"
 #include "core/graph/edit_log.h"
@@ -37,12 +38,8 @@
 
 namespace trapeze {
 
-struct GeneralizationOptions {
-  WeightRule weights = WeightRule::douglas_peucker;
-  Topology topology = Topology::strict;
-
-  friend bool operator==(const GeneralizationOptions&, const GeneralizationOptions&) = default;
-};
+class BatchLane;
+class BatchRemoval;
 
 /// The corners of a graph in the order in which they are to be removed, and those that are blocked.
 class PriorityStack {
@@ -63,11 +60,15 @@ class PriorityStack {
     std::uint64_t tests = 0;    // decisions made
     std::uint64_t walked = 0;   // trapezoids examined for them
     std::uint64_t touched = 0;  // trapezoids changed by removals
+    std::uint64_t at_once = 0;  // removals carried out in batches
+    /// Of the trapezoids walked and touched: those at the same time as others, if every thread of
+    /// a batch has a core.
+    std::uint64_t beside = 0;
   };
-  const Counts& counts() const { return counts_; }
+  const Counts& counts() const { return main_.counts; }
 
   /// Whether any vertex has been blocked so far.
-  bool has_blocked() const { return has_blocked_; }
+  bool has_blocked() const { return main_.has_blocked; }
 
   /// The corner that went last, and how it went.
   CornerId last_corner() const { return last_corner_; }
@@ -88,61 +89,91 @@ class PriorityStack {
     friend auto operator<=>(const Candidate&, const Candidate&) = default;
   };
 
+  enum class State : std::uint8_t { ahead, blocked, queued };
+  // Of corners blocked by one vertex, one and the next of them.
+  struct Waiting {
+    CornerId corner;
+    std::uint32_t next;
+  };
+  /// Removals that go one after another: all of them as a rule, and those of one part of the graph
+  /// while a batch is carried out.
+  struct Lane {
+    double epsilon = 0;              // greatest weight popped
+    std::vector<Candidate> retries;  // to be tried again, smallest first (a heap)
+    bool has_blocked = false;
+    Counts counts;
+    BatchLane* batch = nullptr;
+  };
+  /// Less than any other.
+  static constexpr Candidate kFirst = {-1, VertexId(0), CornerId(0)};
+  /// What a batch has left to be done in its place in the sequence: when `key` is due, and after
+  /// what is tried before `at` then.
+  struct PutOff {
+    enum class What : std::uint8_t { to_try, to_retry, to_report };
+
+    Candidate key;
+    Candidate at;
+    CornerId corner;
+    What what = What::to_try;
+    LostLoop loop = {};  // to be reported
+  };
+  friend class BatchLane;
+  friend class BatchRemoval;
+
   void weigh_corners();
   void weigh_regions(const MergePlan* plan, std::vector<Candidate>& candidates);
   void weigh_loop(CornerId first);
   void weigh_arc(CornerId first);
   void add_candidates(std::span<const double> weights);
   std::optional<Candidate> next_candidate();
+  bool is_before_put_off(const Candidate& retry) const;
+  std::optional<Candidate> next_put_off();
+  LostLoop lost_loop_at(CornerId c) const;
+  void report(const PutOff& lost, EditLog& log);
   Candidate pop();
   void fetch_candidates() const;
-  void enqueue(const Candidate& candidate);
+  static void enqueue(Lane& lane, const Candidate& candidate);
+  static Candidate pop_retry(Lane& lane);
   bool is_region(CornerId c) const { return c.value >= weights_.size(); }
   CornerId corner_for(RegionId region) const { return CornerId(weights_.size() + region.value); }
   RegionId region_of(CornerId c) const { return RegionId(c.value - weights_.size()); }
   bool remove_region(RegionId region, EditLog& log);
   void note_joined(const Corner& gone, CornerId corner, EdgeId edge_before);
-  bool is_to_wait(CornerId corner);
-  bool remove_corner(CornerId corner, EditLog& log);
+  bool is_to_wait(Lane& lane, CornerId corner);
+  bool remove_corner(Lane& lane, CornerId corner, EditLog& log);
   void requeue_united(const RegionBorders::United& united);
   void requeue_region(RegionId region, double weight);
   double weight_in_place(CornerId c) const;
   bool enqueue_anchors();
-  void wait_for(CornerId corner, VertexId blocker);
-  void retry_waiting(VertexId gone);
-  void retry_if_blocked(CornerId corner);
+  void wait_for(Lane& lane, CornerId corner, VertexId blocker);
+  void retry_waiting(Lane& lane, VertexId gone);
+  void retry_if_blocked(Lane& lane, CornerId corner);
 
   const TrapezoidalGraph* graph_ = nullptr;
   GeneralizationOptions options_;
   Table<CornerId, double> weights_;
   LargeArray<Candidate> order_;
   std::size_t position_ = 0;
-  double epsilon_ = 0;  // greatest weight popped
+  Lane main_;
+  std::vector<PutOff> put_off_;  // by the last batch, in the sequence
+  std::size_t next_put_off_ = 0;
+  std::optional<PutOff> to_report_;
 
-  // Candidates to try again, smallest first (a heap), and corners blocked by each vertex.
-  enum class State : std::uint8_t { ahead, blocked, queued };
-  struct Waiting {
-    CornerId corner;
-    std::uint32_t next;
-  };
-  std::vector<Candidate> retries_;
   Table<CornerId, State> state_;
-  Table<VertexId, std::uint32_t> waiting_first_;
+  Table<VertexId, std::uint32_t> waiting_first_;  // by blocker
   std::vector<Waiting> waiting_;
   VertexWeights ring_weights_;
   std::vector<Point> ring_;
   std::vector<CornerId> ring_corners_;
   // Of a coverage.
   RegionBorders borders_;
-  Table<RegionId, double> region_weights_;  // as they were queued last
-  std::vector<bool> is_in_place_;           // by corner: is weighed where it stands
+  Table<RegionId, double> region_weights_;     // as they were queued last
+  Table<CornerId, std::uint8_t> is_in_place_;  // is weighed where it stands
   // Corners that went from an edge: one of them, and from each of them to the next, around.
   Table<EdgeId, CornerId> gone_from_;
   Table<CornerId, CornerId> next_gone_;
-  bool has_blocked_ = false;
   CornerId last_corner_;
   Removal last_removal_ = Removal::blocked;
-  Counts counts_;
 };
 
 class AdaptableGraph {

@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "core/adapt/adaptable_graph.h"
+#include "core/adapt/milestone_note.h"
 #include "core/mesh/outline.h"
 
 namespace trapeze {
-
-/// The milestone of a vertex from that level on, see OutlineView.
-struct MilestoneNote {
-  std::uint32_t vertex = 0;
-  Milestone milestone = 0;
-  Level level = 0;
-};
 
 class Milestones {
  public:

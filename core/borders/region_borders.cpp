@@ -180,12 +180,12 @@ void RegionBorders::note_joined(EdgeId gone, EdgeId kept, CornerId corner) {
   borders_[kept].corner = corner;
 }
 
-void RegionBorders::note_lost_loop(EdgeId edge, Side side) {
-  const Edge& border = graph_->edge(edge);
-  const RegionId inside = find(borders_[edge].beside[side]);
+void RegionBorders::note_lost_loop(const LostLoop& loop) {
+  const Border& border = borders_[loop.edge];
+  const RegionId inside = find(border.beside[loop.side]);
   const AreaMoments& lost = moments_[inside];
-  taken_.assign(1, {lost.axis(), lost.area, border.face[side], border.face[opposite(side)]});
-  unite(borders_[edge].beside[opposite(side)], inside);
+  taken_.assign(1, {lost.axis(), lost.area, loop.inside, loop.outside});
+  unite(border.beside[opposite(loop.side)], inside);
 }
 
 double RegionBorders::weight(RegionId region) {

@@ -45,6 +45,14 @@ struct Taken {
   FaceId taker = kOutside;  // what covers it now
 };
 
+/// One of the edges of a loop, on which side of it the inside is, and the faces as they were.
+struct LostLoop {
+  EdgeId edge;
+  Side side = kLeft;
+  FaceId inside = kOutside;
+  FaceId outside = kOutside;
+};
+
 class RegionBorders {
  public:
   /// `graph`, a coverage, must outlive the use of this object; so must `plan`, if it is not null.
@@ -70,9 +78,9 @@ class RegionBorders {
   /// To be called after a corner has been removed other than with its loop: of its two edges,
   /// `gone` no longer exists, and `kept` leaves `corner`.
   void note_joined(EdgeId gone, EdgeId kept, CornerId corner);
-  /// To be called before a triangular loop is removed. `edge` is one of its edges, and its inside
-  /// lies on `side` of that edge: the region inside becomes a part of the one outside.
-  void note_lost_loop(EdgeId edge, Side side);
+  /// To be called when a triangular loop is removed: the region inside becomes a part of the one
+  /// outside.
+  void note_lost_loop(const LostLoop& loop);
 
   /// Prefetches, step by step, what weight() and remove() will read of a region (see
   /// fetch_ahead.h). They change nothing.

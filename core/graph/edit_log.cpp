@@ -37,6 +37,16 @@ EditLog::Start EditLog::end_of(std::size_t edit) const {
 
 // A record may be kept twice in one edit; swapping in reverse order ends at its first value, and
 // swapping forwards again at its last.
+void EditLog::take_back() {
+  assert(applied_ == edits_.size());
+  revert();
+  const Start begin = edits_.back();
+  nodes_.resize(begin.nodes);
+  edges_.resize(begin.edges);
+  corners_.resize(begin.corners);
+  edits_.pop_back();
+}
+
 void EditLog::revert() {
   assert(applied_ > 0);
   --applied_;

@@ -18,6 +18,21 @@
 
 namespace trapeze {
 
+/// A part of a graph: the edges and nodes that begin and end at vertices from `first` to `last`, in
+/// sweep order, but for those that are held, or touch what is.
+struct EditReach {
+  VertexId first;
+  VertexId last;
+  const Table<VertexId, std::uint8_t>* held_vertices = nullptr;
+  const Table<EdgeId, std::uint8_t>* held_edges = nullptr;
+
+  bool covers(VertexId v) const { return first <= v && v <= last && (*held_vertices)[v] == 0; }
+  bool covers(const Node& node) const {
+    return covers(node.end[kUp]) && covers(node.end[kDown]) &&
+           (*held_edges)[node.edge[kLeft]] == 0 && (*held_edges)[node.edge[kRight]] == 0;
+  }
+};
+
 class EditLog {
  public:
   template <class IdType, class Record>
@@ -29,17 +44,33 @@ class EditLog {
   /// All changes to `graph`, which must outlive the log, are made through the log from now on.
   explicit EditLog(TrapezoidalGraph& graph) : graph_(&graph) {}
 
+  /// Thrown by an edit that would change what is out of reach.
+  struct OutOfReach {};
+  /// From now on, edits change nothing that is out of `reach`, which must outlive the log. Those of
+  /// other logs of the graph may be made at the same time, on other threads, where the reaches have
+  /// no vertex in common.
+  void confine_to(const EditReach& reach) { reach_ = &reach; }
+
   /// Starts a new edit; every edit before it must be applied.
   void begin();
 
   /// The record to change; its present value is kept. Valid until the graph is rebuilt.
-  Node& edit(NodeId n) { return keep(n, graph_->nodes_, nodes_); }
-  Edge& edit(EdgeId e) { return keep(e, graph_->edges_, edges_); }
+  Node& edit(NodeId n) {
+    if (reach_ != nullptr && !reach_->covers(graph_->node(n))) throw OutOfReach();
+    return keep(n, graph_->nodes_, nodes_);
+  }
+  Edge& edit(EdgeId e) {
+    if (reach_ != nullptr && !covers(e)) throw OutOfReach();
+    return keep(e, graph_->edges_, edges_);
+  }
   Corner& edit(CornerId c) { return keep(c, graph_->corners_, corners_); }
 
   /// Number of edits recorded, and of those applied at present (from the first on).
   std::size_t size() const { return edits_.size(); }
   std::size_t applied() const { return applied_; }
+
+  /// Takes the last recorded edit back, which is applied, and forgets it.
+  void take_back();
 
   /// Reverts the last applied edit; there is one.
   void revert();
@@ -70,8 +101,14 @@ class EditLog {
   }
 
   Start end_of(std::size_t edit) const;
+  bool covers(EdgeId e) const {
+    const Edge& edge = graph_->edge(e);
+    return reach_->covers(edge.end[kUp]) && reach_->covers(edge.end[kDown]) &&
+           (*reach_->held_edges)[e] == 0;
+  }
 
   TrapezoidalGraph* graph_;
+  const EditReach* reach_ = nullptr;
   std::vector<Start> edits_;
   std::size_t applied_ = 0;
   std::vector<Kept<NodeId, Node>> nodes_;

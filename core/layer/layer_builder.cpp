@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/layer/join_stocks.h"
 #include "core/layer/stock.h"
 
@@ -186,7 +186,7 @@ std::size_t LayerBuilder::taken_over() const {
   return state_->stock.taken.size() + state_->stock.doubles.size();
 }
 
-BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
+BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings, unsigned threads) {
   State& state = *state_;
   const Digest digest = digest_of(rings);
   if (state.earlier != nullptr) {
@@ -194,13 +194,13 @@ BuildOutcome LayerBuilder::add(std::uint32_t row, Rings& rings) {
       return state.take_over(*unit, digest, row, rings);
     }
   }
-  BuildOutcome outcome = state.graph_builder.build(rings, state.graph);
+  BuildOutcome outcome = state.graph_builder.build(rings, state.graph, threads);
   if (!outcome.built) return outcome;
   if (state.share != nullptr) state.share->enter(kGraphShare, 1);
   state.begin_part(row);
   state.add_outline(row, rings_of(state.graph));
   state.most_tolerance = state.recorder.record(state.graph, FaceFeatures({row}), state.options,
-                                               state.stock.history, state.share);
+                                               state.stock.history, state.share, threads);
   state.stock.units.features.push_back(unit_of(digest, row, outcome, state.most_tolerance));
   return outcome;
 }

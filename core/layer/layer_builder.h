@@ -39,8 +39,9 @@ class LayerBuilder {
 
   /// Builds the graph of feature `row` from its rings, whatever their state: duplicates, spikes and
   /// collapsed rings are dropped, crossings and touches noded on the grid, inside is even-odd.
-  /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
-  BuildOutcome add(std::uint32_t row, Rings& rings);
+  /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome. On up to
+  /// `threads` threads, on which nothing depends.
+  BuildOutcome add(std::uint32_t row, Rings& rings, unsigned threads = 1);
 
   /// Builds one graph of those features of a group that can live in one, see assemble(): the
   /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/adapt/adaptable_graph.h"
+#include "core/adapt/generalization_options.h"
 #include "core/borders/coverage_groups.h"
 
 namespace trapeze {

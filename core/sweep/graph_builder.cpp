@@ -10,7 +10,15 @@
 
 namespace trapeze {
 
-BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
+bool GraphBuilder::sweep(TrapezoidalGraph& graph, unsigned threads) {
+  if (threads == 1) return trapezoidation_.build(boundary_, graph);
+  const FaceBeyond by_even_odd = [](EdgeId, FaceId left) {
+    return left == kOutside ? 1 : kOutside;
+  };
+  return trapezoidation_.build(boundary_, by_even_odd, graph, threads);
+}
+
+BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph, unsigned threads) {
   BuildOutcome outcome;
   outcome.rings = rings.size();
   outcome.collapsed_rings = clean_rings(rings);
@@ -21,7 +29,7 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
   }
 
   boundary_.assign(rings);
-  if (trapezoidation_.build(boundary_, graph)) {
+  if (sweep(graph, threads)) {
     if (boundary_.has_touches) {
       loops_.trace(boundary_, graph);
     } else {
@@ -30,13 +38,14 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph) {
     outcome.built = true;
   } else {
     outcome.noded = true;
-    outcome.built = build_noded(rings, graph, outcome);
+    outcome.built = build_noded(rings, graph, threads, outcome);
   }
   outcome.vertices = outcome.built ? graph.vertex_count() : 0;
   return outcome;
 }
 
-bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome) {
+bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, unsigned threads,
+                               BuildOutcome& outcome) {
   // Noding at crossings only is fast and is repeated while it may help. Noding at all vertices
   // always suffices at once; it is repeated only for safety.
   constexpr int kQuickPasses = 3;
@@ -58,7 +67,7 @@ bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, Buil
       return false;
     }
     boundary_.assign(segments);
-    if (trapezoidation_.build(boundary_, graph)) {
+    if (sweep(graph, threads)) {
       loops_.trace(boundary_, graph);
       return true;
     }

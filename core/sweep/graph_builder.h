@@ -28,11 +28,14 @@ class GraphBuilder {
   /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed
   /// rings; nodes crossings, touches and overlaps on the grid, as long as there are not too many
   /// (see most_meetings() in noding.h). `rings` are cleaned in place. Never throws for bad
-  /// geometry: `graph` is meaningful only if the outcome says built.
-  BuildOutcome build(Rings& rings, TrapezoidalGraph& graph);
+  /// geometry: `graph` is meaningful only if the outcome says built. On up to `threads` threads;
+  /// the graph does not depend on their number.
+  BuildOutcome build(Rings& rings, TrapezoidalGraph& graph, unsigned threads = 1);
 
  private:
-  bool build_noded(const Rings& rings, TrapezoidalGraph& graph, BuildOutcome& outcome);
+  bool sweep(TrapezoidalGraph& graph, unsigned threads);
+  bool build_noded(const Rings& rings, TrapezoidalGraph& graph, unsigned threads,
+                   BuildOutcome& outcome);
 
   Boundary boundary_;
   Trapezoidation trapezoidation_;

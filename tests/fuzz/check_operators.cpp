@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/graph/check_graph.h"
 #include "core/graph/edit_log.h"
 #include "core/graph/generalization.h"

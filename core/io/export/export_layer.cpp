@@ -46,9 +46,9 @@ class Exporter : public FeatureWorker {
  public:
   explicit Exporter(const ExportOptions& options) : options_(options) {}
 
-  void build_apart(const FeatureKey& feature, Rings& rings) override {
+  void build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) override {
     Adapted& adapted = begin(feature);
-    const BuildOutcome built = builder_.build(rings, graph_);
+    const BuildOutcome built = builder_.build(rings, graph_, threads);
     if (!built.failure.empty()) return skip(adapted, built.failure);
     if (!built.built) return;
     adapted.all_vertices = graph_.corners().size();
@@ -68,8 +68,9 @@ class Exporter : public FeatureWorker {
     const Assembly assembly = assemble(rings, how.coverage, how.close_gaps, coverage_builder_,
                                        graph_, nullptr, threads, how.merging(classes_of(features)));
     if (!assembly.together.empty()) adapt_together(features, assembly);
-    for (const std::uint32_t i : assembly.apart)
-      build_apart(features[i]->key, features[i]->rings_apart());
+    for (const std::uint32_t i : assembly.apart) {
+      build_apart(features[i]->key, features[i]->rings_apart(), threads);
+    }
   }
 
   /// What became of features since the last call, in any order.

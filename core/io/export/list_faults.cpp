@@ -28,7 +28,7 @@ struct Found {
 /// Looks for faults among features whose boxes meet.
 class FaultFinder : public FeatureWorker {
  public:
-  void build_apart(const FeatureKey&, Rings&) override {}
+  void build_apart(const FeatureKey&, Rings&, unsigned /*threads*/) override {}
 
   void build_together(std::span<WaitingFeature* const> features, unsigned /*threads*/) override {
     std::vector<const Rings*> rings;

@@ -27,8 +27,8 @@ std::string metres_text(double cells) {
 
 }  // namespace
 
-void FeatureBuilder::build_apart(const FeatureKey& feature, Rings& rings) {
-  const BuildOutcome outcome = builder_.add(feature.row, rings);
+void FeatureBuilder::build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) {
+  const BuildOutcome outcome = builder_.add(feature.row, rings, threads);
   tally_.collapsed_rings += outcome.collapsed_rings;
   if (!outcome.failure.empty()) return tally_.skip(feature, outcome.failure);
   if (!outcome.built) {
@@ -70,8 +70,9 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features, u
                       std::to_string(assembly.apart.size()) +
                       " that overlap are built apart: too many lie over each other");
   }
-  for (const std::uint32_t i : assembly.apart)
-    build_apart(features[i]->key, features[i]->rings_apart());
+  for (const std::uint32_t i : assembly.apart) {
+    build_apart(features[i]->key, features[i]->rings_apart(), threads);
+  }
   if (!assembly.together.empty()) count(features, assembly);
 }
 

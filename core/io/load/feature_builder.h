@@ -17,7 +17,7 @@ class FeatureBuilder : public FeatureWorker {
   FeatureBuilder(const LayerOptions& generalization, EarlierLayer* earlier)
       : builder_(generalization, &share_, earlier) {}
 
-  void build_apart(const FeatureKey& feature, Rings& rings) override;
+  void build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) override;
   /// Builds one graph of the features, but for those that have to be built apart (see assemble()).
   void build_together(std::span<WaitingFeature* const> features, unsigned threads) override;
 

@@ -114,7 +114,7 @@ class FeaturePipeline::Lane {
       waiting_.push_back({job.key, feature.rings, {}, job.merge_class});
     } else {
       begin(static_cast<double>(job.bytes));
-      worker_.build_apart(job.key, feature.rings);
+      worker_.build_apart(job.key, feature.rings, 1);
       end();
     }
   }
@@ -122,7 +122,7 @@ class FeaturePipeline::Lane {
   void take(const Task& task, unsigned threads) {
     begin(work_of(task));
     if (task.size() == 1) {
-      worker_.build_apart(task.front()->key, task.front()->rings_apart());
+      worker_.build_apart(task.front()->key, task.front()->rings_apart(), threads);
     } else {
       worker_.build_together(task, threads);
     }
@@ -333,17 +333,18 @@ void FeaturePipeline::build_waiting() {
   show_progress();
   // What would keep one thread busy when all others have nothing left to do is done by all of them.
   const double much = work_read_ / (2 * threads);
-  const auto is_large = [&](const Task& task) {
-    return threads > 1 && task.size() > 1 && work_of(task) > much;
-  };
+  const auto is_large = [&](const Task& task) { return threads > 1 && work_of(task) > much; };
+  const auto threads_for = [&](const Task& task) { return is_large(task) ? threads : 1; };
   if (options_.merge > 0) {
     // Of the work on blocks, much is done by one thread however many there are.
-    build(tasks, lanes_.size(), [&](const Task& task) { return is_large(task) ? threads : 1; });
+    build(tasks, lanes_.size(), threads_for);
     return;
   }
-  const auto others = std::stable_partition(tasks.begin(), tasks.end(), is_large);
-  build({tasks.begin(), others}, 1, [threads](const Task&) { return threads; });
-  build({others, tasks.end()}, lanes_.size(), [](const Task&) { return 1; });
+  const auto is_large_group = [&](const Task& task) { return task.size() > 1 && is_large(task); };
+  const auto others = std::stable_partition(tasks.begin(), tasks.end(), is_large_group);
+  build({tasks.begin(), others}, 1, threads_for);
+  std::stable_partition(others, tasks.end(), is_large);  // come first
+  build({others, tasks.end()}, lanes_.size(), threads_for);
 }
 
 /// Each task on one of the first lanes, which may use so many threads for it.

@@ -44,8 +44,8 @@ class FeatureWorker {
  public:
   virtual ~FeatureWorker() = default;
 
-  /// Takes a feature by itself. `rings` may be used as scratch memory.
-  virtual void build_apart(const FeatureKey& feature, Rings& rings) = 0;
+  /// Takes a feature by itself; may use so many threads. `rings` may be used as scratch memory.
+  virtual void build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) = 0;
   /// Takes two or more that share borders, in ascending order of rows; may use so many threads.
   virtual void build_together(std::span<WaitingFeature* const> features, unsigned threads) = 0;
 

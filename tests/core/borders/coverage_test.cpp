@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "core/adapt/adaptable_graph.h"
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/borders/coverage_builder.h"
 #include "core/graph/check_graph.h"
 #include "tests/core/borders/coverage_shapes.h"

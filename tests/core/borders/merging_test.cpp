@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/adapt/adaptable_graph.h"
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/borders/coverage_builder.h"
 #include "core/borders/coverage_groups.h"
 #include "core/borders/void_mesh.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/adapt/adaptable_graph.h"
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 #include "core/graph/check_graph.h"
 #include "core/io/source/feature_source.h"
 #include "core/io/source/source_ring_reader.h"

@@ -1,4 +1,4 @@
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 
 #include <gtest/gtest.h>
 

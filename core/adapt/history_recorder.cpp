@@ -1,9 +1,11 @@
-#include "core/adapt/history.h"
+#include "core/adapt/history_recorder.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
 
+#include "core/adapt/batch_removal.h"
 #include "core/adapt/loop_sizes.h"
 #include "core/grid/for_each_in_parallel.h"
 #include "core/grid/item_count.h"
@@ -47,13 +49,15 @@ bool reaches_tolerance_of_zoom(int level, int next) {
   return level % kLevelsPerOctave == 1 || next - level >= kLevelsPerOctave;
 }
 
-/// Puts the flagged ids in ascending order if they are many: neighbours lie side by side in memory,
-/// while the order in which they were touched is that of weights, all over the map.
+/// Puts the flagged ids in ascending order: neighbours lie side by side in memory, while the order
+/// in which they were touched is that of weights, all over the map, and of threads.
 template <class IdType>
-void order_if_many(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& flags) {
-  constexpr std::size_t kFitsTheCache = 4096;
+void put_in_order(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& flags) {
   constexpr std::size_t kSparse = 16;
-  if (ids.size() < kFitsTheCache || ids.size() < flags.size() / kSparse) return;
+  if (ids.size() < flags.size() / kSparse) {
+    std::sort(ids.begin(), ids.end());
+    return;
+  }
   ids.clear();
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if (flags[IdType(i)] != 0) ids.push_back(IdType(i));
@@ -81,11 +85,13 @@ std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph, const Fac
   milestones_.begin(graph, stack_);
   milestones_.note(0, vertex_base_, history.milestones);
   EditLog log(graph);
+  BatchRemoval batch(stack_, graph, threads);
   const auto vertices = static_cast<double>(graph.vertex_count());
   const std::uint64_t most = most_work(graph.vertex_count());
   int level = 0;
   double reached = 0;
   for (;;) {
+    if (level > 0) remove_batch(batch, static_cast<Level>(level));
     const bool is_spent = stack_.counts().touched + stack_.counts().walked > most;
     const std::optional<double> epsilon = is_spent ? std::nullopt : stack_.remove_next(graph, log);
     const int next = epsilon ? level_above(*epsilon) : kLastLevel + 1;
@@ -102,7 +108,7 @@ std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph, const Fac
       level = next;
     }
     reached = epsilon.value_or(reached);
-    note_touched(log);
+    note_touched(log, touched_);
     if (stack_.last_removal() == Removal::region) touch_along(graph, log);
     note_lost_area(graph, static_cast<Level>(level));
     log.forget();
@@ -128,8 +134,8 @@ void HistoryRecorder::begin(const TrapezoidalGraph& graph, History& history) {
   require_countable(history.vertices.size(), "vertices");
   edge_version_.assign(graph.edges().size(), kNoVersion);
   node_version_.assign(graph.nodes().size(), kNoVersion);
-  touched_edges_.clear();
-  touched_nodes_.clear();
+  touched_.edges.clear();
+  touched_.nodes.clear();
   edge_is_touched_.assign(graph.edges().size(), 0);
   node_is_touched_.assign(graph.nodes().size(), 0);
   measure_loop_sizes(graph, *rows_, loop_sizes_);
@@ -170,18 +176,27 @@ void HistoryRecorder::measure_loops(const TrapezoidalGraph& graph) {
   }
 }
 
-void HistoryRecorder::touch(NodeId n) {
+void HistoryRecorder::touch(NodeId n, Touched& touched) {
   if (node_is_touched_[n] != 0) return;
   node_is_touched_[n] = 1;
-  touched_nodes_.push_back(n);
+  touched.nodes.push_back(n);
 }
 
-void HistoryRecorder::note_touched(const EditLog& log) {
-  for (const auto& kept : log.touched_nodes()) touch(kept.id);
+void HistoryRecorder::remove_batch(BatchRemoval& batch, Level level) {
+  std::vector<Touched> touched(batch.lanes());
+  batch.run(level, [&](std::size_t lane, const EditLog& log) { note_touched(log, touched[lane]); });
+  for (const Touched& by_lane : touched) {
+    touched_.edges.insert(touched_.edges.end(), by_lane.edges.begin(), by_lane.edges.end());
+    touched_.nodes.insert(touched_.nodes.end(), by_lane.nodes.begin(), by_lane.nodes.end());
+  }
+}
+
+void HistoryRecorder::note_touched(const EditLog& log, Touched& touched) {
+  for (const auto& kept : log.touched_nodes()) touch(kept.id, touched);
   for (const auto& kept : log.touched_edges()) {
     if (edge_is_touched_[kept.id] != 0) continue;
     edge_is_touched_[kept.id] = 1;
-    touched_edges_.push_back(kept.id);
+    touched.edges.push_back(kept.id);
   }
 }
 
@@ -201,7 +216,7 @@ void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& 
     for (const Side s : {kLeft, kRight}) {
       for (NodeId n = edge.extreme[s][kUp]; !n.is_none();
            n = graph.node(n).link[opposite(s)][kDown])
-        touch(n);
+        touch(n, touched_);
     }
   }
 }
@@ -235,18 +250,18 @@ void HistoryRecorder::note_lost_loop(Level level) {
 }
 
 void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
-  order_if_many(touched_edges_, edge_is_touched_);
-  for (const EdgeId e : touched_edges_) {
+  put_in_order(touched_.edges, edge_is_touched_);
+  for (const EdgeId e : touched_.edges) {
     edge_is_touched_[e] = 0;
     renew_edge(graph, e);
   }
-  touched_edges_.clear();
-  order_if_many(touched_nodes_, node_is_touched_);
-  for (const NodeId n : touched_nodes_) {
+  touched_.edges.clear();
+  put_in_order(touched_.nodes, node_is_touched_);
+  for (const NodeId n : touched_.nodes) {
     node_is_touched_[n] = 0;
     renew_node(graph, n, level);
   }
-  touched_nodes_.clear();
+  touched_.nodes.clear();
 }
 
 /// Others lie between pieces of the void and are not seen.
@@ -274,7 +289,7 @@ void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
   for (const Side s : {kLeft, kRight}) {
     if (rows_->of(edge.face[s]).empty()) continue;
     for (NodeId n = edge.extreme[s][kUp]; !n.is_none(); n = graph.node(n).link[opposite(s)][kDown])
-      touch(n);
+      touch(n, touched_);
   }
 }
 

@@ -1,0 +1,16 @@
+// By which rules a graph is generalized.
+#pragma once
+
+#include "core/adapt/vertex_weight.h"
+#include "core/graph/topological_consistency.h"
+
+namespace trapeze {
+
+struct GeneralizationOptions {
+  WeightRule weights = WeightRule::douglas_peucker;
+  Topology topology = Topology::strict;
+
+  friend bool operator==(const GeneralizationOptions&, const GeneralizationOptions&) = default;
+};
+
+}  // namespace trapeze
