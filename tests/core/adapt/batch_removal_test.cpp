@@ -9,9 +9,12 @@
 #include "core/adapt/history_recorder.h"
 #include "core/borders/coverage_builder.h"
 #include "core/sweep/graph_builder.h"
+#include "tests/sanitized.h"
 
 namespace trapeze {
 namespace {
+
+constexpr unsigned kSeeds = ::trapeze::testing::kIsSanitized ? 1 : 3;
 
 /// The points from a to b, without b: the middle is moved sideways, and so on in both halves.
 void add_coast(std::mt19937& random, Point a, Point b, int halvings, std::vector<Point>& points) {
@@ -142,7 +145,7 @@ TEST(BatchRemoval, ResultIsThatOfOneAfterAnother) {
       {WeightRule::douglas_peucker, Topology::fast},
       {WeightRule::shape, Topology::strict},
   };
-  for (unsigned seed = 0; seed < 3; ++seed) {
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
     for (const GeneralizationOptions& options : kOptions) {
       const Recorded one = record_archipelago(seed, options, 1);
       EXPECT_EQ(one.counts.at_once, 0u);
@@ -172,7 +175,7 @@ Recorded record_lands(unsigned seed, unsigned threads) {
 }
 
 TEST(BatchRemoval, ResultIsThatOfOneAfterAnotherWhereBordersAreShared) {
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < 2 * kSeeds; ++seed) {
     const Recorded one = record_lands(seed, 1);
     for (const unsigned threads : {2u, 5u}) {
       SCOPED_TRACE("seed " + std::to_string(seed) + " by " + std::to_string(threads));
