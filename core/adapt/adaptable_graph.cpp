@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/adapt/batch_removal.h"
 #include "core/graph/fetch_ahead.h"
 #include "core/grid/for_each_in_parallel.h"
 

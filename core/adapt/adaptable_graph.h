@@ -95,6 +95,17 @@ class PriorityStack {
     CornerId corner;
     std::uint32_t next;
   };
+  /// What is done otherwise while a batch is carried out; see batch_removal.h.
+  class Batch {
+   public:
+    virtual ~Batch() = default;
+    /// False if it has been put off.
+    virtual bool may_try(CornerId c) = 0;
+    /// Removes the corner if it is not blocked; false if it has been put off.
+    virtual bool carry_out(CornerId c, const Decision& decision, EditLog& log) = 0;
+    virtual void wait_for(CornerId corner, VertexId blocker) = 0;
+    virtual void retry_waiting(VertexId gone) = 0;
+  };
   /// Removals that go one after another: all of them as a rule, and those of one part of the graph
   /// while a batch is carried out.
   struct Lane {
@@ -102,7 +113,7 @@ class PriorityStack {
     std::vector<Candidate> retries;  // to be tried again, smallest first (a heap)
     bool has_blocked = false;
     Counts counts;
-    BatchLane* batch = nullptr;
+    Batch* batch = nullptr;
   };
   /// Less than any other.
   static constexpr Candidate kFirst = {-1, VertexId(0), CornerId(0)};

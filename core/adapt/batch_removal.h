@@ -61,7 +61,7 @@ class Held {
 };
 
 /// The removals of a batch in one slab. One thread at a time, and no two for one slab.
-class BatchLane {
+class BatchLane : public PriorityStack::Batch {
  public:
   using Removed = std::function<void(const EditLog&)>;
 
@@ -86,12 +86,10 @@ class BatchLane {
   void run(const PriorityStack::Candidate* end, const Removed& removed);
 
   // Called by the stack.
-  /// False if it has been put off.
-  bool may_try(CornerId c);
-  /// Removes the corner if it is not blocked; false if it has been put off.
-  bool carry_out(CornerId c, const Decision& decision, EditLog& log);
-  void wait_for(CornerId corner, VertexId blocker);
-  void retry_waiting(VertexId gone);
+  bool may_try(CornerId c) override;
+  bool carry_out(CornerId c, const Decision& decision, EditLog& log) override;
+  void wait_for(CornerId corner, VertexId blocker) override;
+  void retry_waiting(VertexId gone) override;
 
   /// Trapezoids walked and touched.
   std::uint64_t work() const { return lane_.counts.walked + lane_.counts.touched; }
