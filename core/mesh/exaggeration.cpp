@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kNone = BoundaryMap::kNone;
 constexpr std::uint32_t kLong = kNone - 1;  // instead of the number of a loop
+constexpr std::uint32_t kSeen = kNone - 1;  // instead of that of a moved side, until all are known
 
 // Instead of how long a ray is: not known at all, and not known but for being long enough.
 constexpr float kUnknown = -1;
@@ -55,7 +56,7 @@ constexpr std::array<double, 2> kMostRadii{0.5, 1};
 
 // In widths: how far along the boundary it is looked for what is thick.
 constexpr double kWalk = 2;
-constexpr double kMostOfLoop = 8;  // how long boundaries are of which all is known at once
+constexpr double kMostOfLoop = 16;  // how long boundaries are of which all is known at once
 
 // Of boundaries of which is known what lies near them: how many sides they have, and how many edges
 // may be near.
@@ -227,12 +228,25 @@ void Exaggeration::find(const Size& size, const Box& box, const Cancellation* ca
   beside_others_.clear();
   CancellationCheck check(cancellation, kStepsBetweenChecks);
   const auto sides = static_cast<std::uint32_t>(2 * boundary_.edges().size());
-  for (std::uint32_t side = 0; side < sides; ++side) {
-    check();
-    move_side(side);
-  }
+  // Face by face, and by where they lie: what one of them looks at has just been looked at.
+  number_of_moved_.assign(sides, kNone);
+  const auto move_around = [&](std::uint32_t side) {
+    for (; side != kNone && number_of_moved_[side] == kNone; side = boundary_.next(side)) {
+      check();
+      number_of_moved_[side] = kSeen;
+      move_side(side);
+    }
+  };
+  const Vector min{static_cast<double>(around.min_x), static_cast<double>(around.min_y)};
+  const Vector max{static_cast<double>(around.max_x), static_cast<double>(around.max_y)};
+  boundary_.for_each_near(min, max, [&](const BoundaryMap::Near& near) {
+    move_around(2 * near.edge);
+    move_around(2 * near.edge + 1);
+  });
   number_moved_sides();
-  for (const MovedSide& moved : moved_sides_) append_strip(moved);
+  for (std::uint32_t side = 0; side < sides; ++side) {
+    if (const MovedSide* moved = find_moved(side)) append_strip(*moved);
+  }
   for (std::uint32_t side = 0; side < sides; ++side) {
     const std::uint32_t next = boundary_.next(side);
     if (next != kNone) append_corner(side, next);
@@ -505,8 +519,10 @@ double Exaggeration::widest_in(const Loop& loop, At at) {
   for (const std::uint32_t other : std::span(loop_order_).subspan(loop.first, loop.count)) {
     LoopPlace& place = places[other];
     if (2 * place.most <= widest || widest >= width_) break;
-    if (other == number || 2 * radius_of(place) <= widest) continue;
+    if (other == number || (place.radius >= 0 && 2 * place.radius <= widest)) continue;
     const double far = length(place.place - from.place);
+    if (seen_from(far, 0, place.most) <= widest) continue;
+    if (2 * radius_of(place) <= widest) continue;
     const double seen = seen_from(far, radius_of(from), place.radius);
     if (seen > widest && is_within_walk(other)) widest = seen;
   }
@@ -771,8 +787,8 @@ Vector Exaggeration::way_of(std::uint32_t side) const {
 Exaggeration::Turn Exaggeration::turn_between(std::uint32_t side, std::uint32_t next) const {
   const Vector one = way_of(side);
   const Vector other = way_of(next);
-  const double lengths = length(one) * length(other);
-  return {cross(one, other) / lengths, dot(one, other) / lengths};
+  const double angle = std::atan2(cross(one, other), dot(one, other));
+  return {std::sin(angle), std::cos(angle)};
 }
 
 /// Where the boundary turns away from the face: how far from the end of the side, and from the
