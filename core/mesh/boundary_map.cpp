@@ -1,15 +1,26 @@
 #include "core/mesh/boundary_map.h"
 
 #include <algorithm>
-#include <tuple>
+#include <utility>
 
 namespace trapeze {
 namespace {
 
-constexpr int kMostCellsAcross = 512;
+constexpr double kCellsPerEdge = 8;  // of the lattice, at most about so many
 
-auto place_of(Point p) {
-  return std::pair(p.y, p.x);
+/// Points in order of their y, then their x.
+std::uint64_t order_of(Point p) {
+  const auto from_least = [](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) ^ 0x80000000U);
+  };
+  return from_least(p.y) << 32 | from_least(p.x);
+}
+
+Point point_of(std::uint64_t order) {
+  const auto part = [](std::uint64_t v) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(v) ^ 0x80000000U);
+  };
+  return {part(order), part(order >> 32)};
 }
 
 /// Of ways from one point: in order of their angles, from x to y.
@@ -37,7 +48,12 @@ BoundaryMap::Side BoundaryMap::side_of(std::uint32_t edge, Face face, std::uint3
   const MeshView& mesh = meshes_.back();
   const MeshEdge& ends = mesh.edges[edge];
   const auto piece = static_cast<std::uint32_t>(meshes_.size() - 1);
-  return {mesh.vertices[ends.upper], mesh.vertices[ends.lower], face, number, piece, edge};
+  return {order_of(mesh.vertices[ends.upper]),
+          order_of(mesh.vertices[ends.lower]),
+          face,
+          number,
+          piece,
+          edge};
 }
 
 void BoundaryMap::add(const MeshTrapezoid& trapezoid, std::uint32_t face) {
@@ -54,24 +70,20 @@ void BoundaryMap::find(const Box& box, double distance) {
 
 // Where several faces lie on one side, that is of none: they lie over each other.
 void BoundaryMap::unite_sides() {
-  const auto key = [](const Side& side) {
-    return std::tuple(place_of(side.upper), place_of(side.lower));
-  };
-  const auto order = [&key](const Side& a, const Side& b) {
-    return std::tuple_cat(key(a), std::tuple(a.piece, a.edge)) <
-           std::tuple_cat(key(b), std::tuple(b.piece, b.edge));
-  };
-  std::ranges::sort(sides_, order);
-  std::ranges::sort(cuts_, order);
+  sort_sides(sides_, side_order_);
+  sort_sides(cuts_, cut_order_);
+  const auto place_of = [](const Side& side) { return std::pair(side.upper, side.lower); };
+  const auto place_of_cut = [&](const KeyedIndex& cut) { return place_of(cuts_[cut.index]); };
   edges_.clear();
   names_.clear();
-  for (std::size_t i = 0; i < sides_.size();) {
-    Edge edge{sides_[i].upper, sides_[i].lower};
-    const auto key_of_edge = key(sides_[i]);
+  for (std::size_t i = 0; i < side_order_.size();) {
+    const auto place = place_of(sides_[side_order_[i].index]);
+    Edge edge{point_of(place.first), point_of(place.second)};
     std::size_t end = i;
     std::array<bool, 2> is_crowded{};
-    for (; end < sides_.size() && key(sides_[end]) == key_of_edge; ++end) {
-      const Side& side = sides_[end];
+    for (; end < side_order_.size(); ++end) {
+      const Side& side = sides_[side_order_[end].index];
+      if (place_of(side) != place) break;
       if (side.face == kNoFace) continue;
       Face& face = edge.faces[side.number];
       if (face != kNoFace && face != side.face) is_crowded[side.number] = true;
@@ -80,47 +92,61 @@ void BoundaryMap::unite_sides() {
     for (std::size_t side = 0; side < 2; ++side) {
       if (is_crowded[side]) edge.faces[side] = kNoFace;
     }
-    const auto cut = std::ranges::lower_bound(cuts_, key_of_edge, {}, key);
-    edge.is_cut = cut != cuts_.end() && key(*cut) == key_of_edge;
+    edge.is_cut = std::ranges::binary_search(cut_order_, place, {}, place_of_cut);
     const bool is_within = edge.faces[0] != kNoFace && edge.faces[0] == edge.faces[1];
     const bool is_level = edge.upper.y == edge.lower.y;
     const bool is_bare = edge.faces[0] == kNoFace && edge.faces[1] == kNoFace && !is_level;
     if (!is_within && !is_bare) {
       const auto number = static_cast<std::uint32_t>(edges_.size());
       for (std::size_t k = i; k < end; ++k) {
-        const auto name = std::uint64_t{sides_[k].piece} << 32 | sides_[k].edge;
-        if (names_.empty() || names_.back().piece_and_edge != name) {
-          names_.push_back({name, number});
-        }
+        const Side& side = sides_[side_order_[k].index];
+        const auto name = std::uint64_t{side.piece} << 32 | side.edge;
+        if (names_.empty() || names_.back().key != name) names_.push_back({name, number});
       }
       edges_.push_back(edge);
     }
     i = end;
   }
-  std::ranges::sort(names_, {}, &Name::piece_and_edge);
+  sort(names_);
+}
+
+void BoundaryMap::sort(std::vector<KeyedIndex>& items) {
+  scratch_.resize(items.size());
+  sort_part_by_key(items, scratch_);
+}
+
+void BoundaryMap::sort_sides(std::span<const Side> sides, std::vector<KeyedIndex>& places) {
+  places.clear();
+  for (std::uint32_t i = 0; i < sides.size(); ++i) places.push_back({sides[i].upper, i});
+  sort(places);
+  for (std::size_t i = 0; i < places.size();) {
+    std::size_t end = i + 1;
+    while (end < places.size() && places[end].key == places[i].key) ++end;
+    std::ranges::sort(std::span(places).subspan(i, end - i), {},
+                      [sides](const KeyedIndex& one) { return sides[one.index].lower; });
+    i = end;
+  }
 }
 
 std::uint32_t BoundaryMap::edge_number(std::uint32_t piece, std::uint32_t edge) const {
   const auto name = std::uint64_t{piece} << 32 | edge;
-  const auto found = std::ranges::lower_bound(names_, name, {}, &Name::piece_and_edge);
-  return found != names_.end() && found->piece_and_edge == name ? found->number : kNone;
+  const auto found = std::ranges::lower_bound(names_, name, {}, &KeyedIndex::key);
+  return found != names_.end() && found->key == name ? found->index : kNone;
 }
 
 // Faces of horizontal edges are those of the edges beside them, around either end; where those are
 // horizontal, too, it takes as many rounds as there are in a row.
 void BoundaryMap::link() {
-  ends_.clear();
-  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    ends_.push_back({edges_[i].upper, edges_[i].lower, i, true});
-    ends_.push_back({edges_[i].lower, edges_[i].upper, i, false});
-  }
-  std::ranges::sort(ends_, [](const End& a, const End& b) {
-    if (a.at != b.at) return place_of(a.at) < place_of(b.at);
-    return is_turned_less(a.at, a.other, b.other);
-  });
+  sort_ends();
   next_.assign(2 * edges_.size(), kNone);
   before_.assign(2 * edges_.size(), kNone);
   constexpr int kMostRounds = 16;
+  for (std::size_t i = 0; i < ends_.size();) {
+    std::size_t end = i + 1;
+    while (end < ends_.size() && ends_[end].at == ends_[i].at) ++end;
+    sort_around(std::span(ends_).subspan(i, end - i));
+    i = end;
+  }
   bool has_more = true;
   for (int round = 0; round < kMostRounds && has_more; ++round) {
     has_more = false;
@@ -131,6 +157,40 @@ void BoundaryMap::link() {
       i = end;
     }
   }
+}
+
+// By where they are. The edges are in order of their upper ends.
+void BoundaryMap::sort_ends() {
+  lower_ends_.clear();
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    lower_ends_.push_back({order_of(edges_[i].lower), i});
+  }
+  sort(lower_ends_);
+  ends_.clear();
+  auto lower = lower_ends_.begin();
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    const std::uint64_t upper = order_of(edges_[i].upper);
+    for (; lower != lower_ends_.end() && lower->key < upper; ++lower) {
+      ends_.push_back({lower->key, lower->index, false});
+    }
+    ends_.push_back({upper, i, true});
+  }
+  for (; lower != lower_ends_.end(); ++lower) {
+    ends_.push_back({lower->key, lower->index, false});
+  }
+}
+
+/// Of ends in one place: by the angles at which the edges go away from it.
+void BoundaryMap::sort_around(std::span<End> ends) const {
+  if (ends.size() < 2) return;
+  const Point at = point_of(ends.front().at);
+  std::ranges::sort(ends, [this, at](const End& a, const End& b) {
+    return is_turned_less(at, other_end(a), other_end(b));
+  });
+}
+
+Point BoundaryMap::other_end(const End& end) const {
+  return end.is_upper ? edges_[end.edge].lower : edges_[end.edge].upper;
 }
 
 // Between one way from the vertex and the next lies a face: on that side of the one to which it is
@@ -148,21 +208,16 @@ bool BoundaryMap::link_around(std::span<const End> ends) {
       to = from;
       has_more = true;
     };
-    if (of_out == kNoFace && of_in != kNoFace && one.at.y == one.other.y) take(of_out, of_in);
-    if (of_in == kNoFace && of_out != kNoFace && other.at.y == other.other.y) take(of_in, of_out);
+    const auto is_level = [this](const End& end) {
+      return edges_[end.edge].upper.y == edges_[end.edge].lower.y;
+    };
+    if (of_out == kNoFace && of_in != kNoFace && is_level(one)) take(of_out, of_in);
+    if (of_in == kNoFace && of_out != kNoFace && is_level(other)) take(of_in, of_out);
     if (of_out == kNoFace || of_out != of_in) continue;
     next_[in] = out;
     before_[out] = in;
   }
   return has_more;
-}
-
-int BoundaryMap::column_of(double x) const {
-  return static_cast<int>(std::clamp((x - corner_.x) / cell_, 0.0, columns_ - 1.0));
-}
-
-int BoundaryMap::row_of(double y) const {
-  return static_cast<int>(std::clamp((y - corner_.y) / cell_, 0.0, rows_ - 1.0));
 }
 
 template <typename Visit>
@@ -187,25 +242,39 @@ void BoundaryMap::for_each_cell(const Edge& edge, const Visit& visit) const {
   }
 }
 
+// Cells are about as large as edges are long, so that each edge comes into few of them, and of each
+// there are few in a cell; but not more than there is to be put into them.
 void BoundaryMap::index(const Box& box, double distance) {
   corner_ = {static_cast<double>(box.min_x), static_cast<double>(box.min_y)};
   const double width = static_cast<double>(box.max_x) - box.min_x;
   const double height = static_cast<double>(box.max_y) - box.min_y;
-  cell_ = std::max({distance, width / kMostCellsAcross, height / kMostCellsAcross, 1.0});
+  double along = 0;
+  for (const Edge& edge : edges_) {
+    const Vector way = edge.way();
+    along += std::min(std::abs(way.x) + std::abs(way.y), distance);
+  }
+  const double count = static_cast<double>(std::max<std::size_t>(edges_.size(), 1));
+  const double least = std::sqrt(width * height / (kCellsPerEdge * count));
+  cell_ = std::max({std::min(distance, along / count), least, 1.0});
+  per_cell_ = 1 / cell_;
   columns_ = static_cast<int>(width / cell_) + 1;
   rows_ = static_cast<int>(height / cell_) + 1;
   const auto cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   cell_end_.assign(cells + 1, 0);
-  for (const Edge& edge : edges_)
-    for_each_cell(edge, [this](std::size_t i) { ++cell_end_[i + 1]; });
+  for (const Edge& edge : edges_) {
+    if (!edge.is_cut) for_each_cell(edge, [this](std::size_t i) { ++cell_end_[i + 1]; });
+  }
   for (std::size_t i = 1; i <= cells; ++i) cell_end_[i] += cell_end_[i - 1];
   cell_edges_.resize(cell_end_[cells]);
   // Counted from the begin of each cell, which becomes its end.
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    for_each_cell(edges_[i], [this, i](std::size_t cell) { cell_edges_[cell_end_[cell]++] = i; });
+    const Edge& edge = edges_[i];
+    if (edge.is_cut) continue;
+    const std::array<bool, 2> has_face{edge.faces[0] != kNoFace, edge.faces[1] != kNoFace};
+    for_each_cell(edge, [&](std::size_t cell) {
+      cell_edges_[cell_end_[cell]++] = {edge.upper, edge.lower, i, has_face};
+    });
   }
-  seen_.assign(edges_.size(), 0);
-  look_up_ = 0;
 }
 
 }  // namespace trapeze

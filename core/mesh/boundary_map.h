@@ -11,6 +11,7 @@
 // Thread-safety: one thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "core/grid/grid.h"
+#include "core/grid/radix_sort.h"
 #include "core/mesh/trapezoid_mesh.h"
 
 namespace trapeze {
@@ -90,26 +92,37 @@ class BoundaryMap {
   std::uint32_t next(std::uint32_t side) const { return next_[side]; }
   std::uint32_t before(std::uint32_t side) const { return before_[side]; }
 
-  /// Calls visit(edge) for edges that may come into the box, at least those that do, once each.
+  /// An edge that is no cut, as look-ups meet it.
+  struct Near {
+    Point upper;
+    Point lower;
+    std::uint32_t edge = 0;
+    std::array<bool, 2> has_face{};  // by side
+
+    Vector from() const { return to_vector(upper); }
+    Vector way() const { return to_vector(lower) - to_vector(upper); }
+  };
+  /// About how far look-ups should reach first, in cells of the grid.
+  double cell() const { return cell_; }
+  /// Calls visit(near) for what may come into the box, at least for what does, some several times.
   template <typename Visit>
-  void for_each_near(Vector min, Vector max, const Visit& visit);
+  void for_each_near(Vector min, Vector max, const Visit& visit) const;
+  /// The same for what may meet a way, from its begin on: last() tells up to which share of it that
+  /// is still wanted, and does not grow.
+  template <typename Visit, typename Last>
+  void for_each_along(Vector from, Vector way, const Last& last, const Visit& visit) const;
 
  private:
   struct Side {
-    Point upper;
-    Point lower;
+    std::uint64_t upper;  // see order_of()
+    std::uint64_t lower;
     Face face;
     std::uint32_t number;  // 0 or 1
     std::uint32_t piece;
     std::uint32_t edge;
   };
-  struct Name {
-    std::uint64_t piece_and_edge;
-    std::uint32_t number;
-  };
   struct End {
-    Point at;
-    Point other;
+    std::uint64_t at;  // see order_of()
     std::uint32_t edge;
     bool is_upper;
   };
@@ -117,48 +130,97 @@ class BoundaryMap {
   Side side_of(std::uint32_t edge, Face face, std::uint32_t number) const;
   void unite_sides();
   void link();
+  void sort(std::vector<KeyedIndex>& items);
+  void sort_sides(std::span<const Side> sides, std::vector<KeyedIndex>& places);
+  void sort_ends();
+  void sort_around(std::span<End> ends) const;
+  Point other_end(const End& end) const;
   bool link_around(std::span<const End> ends);
   void index(const Box& box, double distance);
   template <typename Visit>
   void for_each_cell(const Edge& edge, const Visit& visit) const;
-  int column_of(double x) const;
-  int row_of(double y) const;
+  int column_of(double x) const {
+    return static_cast<int>(std::clamp((x - corner_.x) * per_cell_, 0.0, columns_ - 1.0));
+  }
+  int row_of(double y) const {
+    return static_cast<int>(std::clamp((y - corner_.y) * per_cell_, 0.0, rows_ - 1.0));
+  }
+  std::span<const Near> in_cell(int row, int column) const {
+    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                      static_cast<std::size_t>(column);
+    const std::uint32_t first = cell == 0 ? 0 : cell_end_[cell - 1];
+    return std::span(cell_edges_).subspan(first, cell_end_[cell] - first);
+  }
 
   std::vector<MeshView> meshes_;  // by piece
   std::vector<Side> sides_;
   std::vector<Side> cuts_;
+  // By their upper ends, then their lower ones: sides_, and cuts_.
+  std::vector<KeyedIndex> side_order_;
+  std::vector<KeyedIndex> cut_order_;
   std::vector<Edge> edges_;
-  std::vector<Name> names_;
+  std::vector<KeyedIndex> names_;  // the piece and its edge, and the number
+  std::vector<KeyedIndex> lower_ends_;
+  std::vector<KeyedIndex> scratch_;
   std::vector<End> ends_;
   std::vector<std::uint32_t> next_;    // by side
   std::vector<std::uint32_t> before_;  // by side
   // Cells of a lattice, by row and column, with the edges that come into each.
   Vector corner_;
   double cell_ = 1;
+  double per_cell_ = 1;
   int columns_ = 1;
   int rows_ = 1;
   std::vector<std::uint32_t> cell_end_;
-  std::vector<std::uint32_t> cell_edges_;
-  std::vector<std::uint64_t> seen_;  // by edge: the last look-up that met it
-  std::uint64_t look_up_ = 0;
+  std::vector<Near> cell_edges_;
 };
 
 template <typename Visit>
-void BoundaryMap::for_each_near(Vector min, Vector max, const Visit& visit) {
-  const std::uint64_t look_up = ++look_up_;
+void BoundaryMap::for_each_near(Vector min, Vector max, const Visit& visit) const {
   const int last_row = row_of(max.y);
+  const int first_column = column_of(min.x);
   const int last_column = column_of(max.x);
   for (int row = row_of(min.y); row <= last_row; ++row) {
-    for (int column = column_of(min.x); column <= last_column; ++column) {
-      const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                        static_cast<std::size_t>(column);
-      for (std::uint32_t i = cell == 0 ? 0 : cell_end_[cell - 1]; i < cell_end_[cell]; ++i) {
-        const std::uint32_t edge = cell_edges_[i];
-        if (seen_[edge] == look_up) continue;
-        seen_[edge] = look_up;
-        visit(edge);
-      }
+    for (int column = first_column; column <= last_column; ++column) {
+      for (const Near& near : in_cell(row, column)) visit(near);
     }
+  }
+}
+
+// Row by row, and column by column within each, as the way goes. Cells are met by what is up to
+// kBeside away from them, as numbers are rounded.
+template <typename Visit, typename Last>
+void BoundaryMap::for_each_along(Vector from, Vector way, const Last& last,
+                                 const Visit& visit) const {
+  constexpr double kBeside = 1;
+  const Vector to = from + way;
+  const int down = way.y < 0 ? -1 : 1;
+  const int right = way.x < 0 ? -1 : 1;
+  const int first_row = row_of(from.y);
+  const int last_row = row_of(to.y);
+  const double per_x = way.x == 0 ? 0 : 1 / way.x;
+  const double per_y = way.y == 0 ? 0 : 1 / way.y;
+  // The share of the way at which it comes to a line, and a little less.
+  const auto share_at = [](double line, double at, double per_way, int step) {
+    return (line - step * kBeside - at) * per_way;
+  };
+  for (int row = first_row;; row += down) {
+    const double enters_at = corner_.y + (down > 0 ? row : row + 1) * cell_;
+    if (row != first_row && share_at(enters_at, from.y, per_y, down) > last()) return;
+    const auto x_at = [&](double y) {
+      return from.x + way.x * std::clamp((y - from.y) * per_y, 0.0, 1.0);
+    };
+    const double begin = row == first_row ? from.x : x_at(enters_at);
+    const double end = row == last_row ? to.x : x_at(enters_at + down * cell_);
+    const int first_column = column_of(begin - right * kBeside);
+    const int last_column = column_of(end + right * kBeside);
+    for (int column = first_column;; column += right) {
+      const double line = corner_.x + (right > 0 ? column : column + 1) * cell_;
+      if (column != first_column && share_at(line, from.x, per_x, right) > last()) break;
+      for (const Near& near : in_cell(row, column)) visit(near);
+      if (column == last_column) break;
+    }
+    if (row == last_row) return;
   }
 }
 

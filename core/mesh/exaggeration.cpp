@@ -1,7 +1,8 @@
 #include "core/mesh/exaggeration.h"
 
 #include <algorithm>
-#include <numbers>
+#include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -11,6 +12,13 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNone = BoundaryMap::kNone;
+constexpr std::uint32_t kLong = kNone - 1;  // instead of the number of a loop
+constexpr std::uint32_t kSeen = kNone - 1;  // instead of that of a moved side, until all are known
+
+// Instead of how long a ray is: not known at all, and not known but for being long enough.
+constexpr float kUnknown = -1;
+constexpr float kWide = -2;
+constexpr double kRounding = 1e-6;  // of numbers that are kept, and more
 
 // Lengths in pixels.
 constexpr double kLeastStep = 1;    // between samples
@@ -23,8 +31,8 @@ constexpr double kLeastBend = 0.004;
 // depend on how much of it is known.
 constexpr std::int32_t kStepsOfStrip = 4;
 
-constexpr double kStraight = 3 * std::numbers::pi / 180;  // angles that are no corner
-constexpr double kMostOfTip = 1.5;                        // of how far the sides of a corner move
+constexpr double kStraight = 0.052336;  // the sine of 3 degrees: smaller angles are no corner
+constexpr double kMostOfTip = 1.5;      // of how far the sides of a corner move
 
 constexpr unsigned kStepsBetweenChecks = 1024;
 
@@ -46,6 +54,15 @@ constexpr double kBeside = 0.34;
 constexpr double kRay = 2.5;
 constexpr std::array<double, 2> kMostRadii{0.5, 1};
 
+// In widths: how far along the boundary it is looked for what is thick.
+constexpr double kWalk = 2;
+constexpr double kMostOfLoop = 16;  // how long boundaries are of which all is known at once
+
+// Of boundaries of which is known what lies near them: how many sides they have, and how many edges
+// may be near.
+constexpr int kMostSidesOfLoop = 64;
+constexpr std::uint32_t kMostEdgesInLoop = 32;
+
 // Of a radius: how far within the boundary a disc is looked for where there is none beside it, as
 // it is uneven.
 constexpr double kDepth = 1.5;
@@ -65,6 +82,17 @@ struct Touch {
   double radius = 0;
   double share = 0;  // of the way, where it is touched
 };
+
+/// For how wide a face is taken, by a disc so far away from it.
+double seen_from(double far, double own_radius, double radius) {
+  const double opened = std::max(0.0, radius - own_radius) / kOpening;
+  return 2 * radius - kThinnerBeyond * std::max(0.0, far - opened);
+}
+
+/// Of an angle.
+bool is_straight(double sine, double cosine) {
+  return cosine > 0 && std::abs(sine) < kStraight;
+}
 
 /// The smallest circle that touches a line through `from` there, on the side of the normal, and
 /// reaches the way that begins at `at`.
@@ -102,8 +130,25 @@ std::optional<Touch> circle_to(Vector from, Vector normal, Vector at, Vector way
   return least;
 }
 
+/// Whether the way that begins at `at` keeps farther away from (0, 0). Is not where the two are
+/// alike but for rounding.
+inline bool is_farther(Vector at, Vector way, double square_of_distance) {
+  const double square = square_of_distance * (1 + kRounding);
+  const double before = -dot(at, way);
+  if (before <= 0) return dot(at, at) > square;
+  const double all = dot(way, way);
+  if (before >= all) return dot(at + way, at + way) > square;
+  const double beside = cross(at, way);
+  return beside * beside > square * all;
+}
+
 /// The shares of the way between which it is in the box; nothing if it is not.
 std::optional<std::pair<double, double>> shares_in(const Box& box, Vector from, Vector way) {
+  const Vector to = from + way;
+  if (std::max(from.x, to.x) < box.min_x || std::min(from.x, to.x) > box.max_x ||
+      to.y < box.min_y || from.y > box.max_y) {
+    return std::nullopt;
+  }
   double first = 0;
   double last = 1;
   const auto clip = [&](double at, double by, double min, double max) {
@@ -172,20 +217,36 @@ void Exaggeration::find(const Size& size, const Box& box, const Cancellation* ca
   width_ = size.width * size.pixel;
   pixel_ = size.pixel;
   box_ = box;
+  around_box_ = with_margin(box_, kMostOfTip * width_);
   const Box around = with_margin(box, reach_of(size.width) * size.pixel);
   boundary_.find(around, std::max(size.width / 2, kLeastStep) * size.pixel);
-  take_samples(around);
+  divide_edges(around);
   moved_.clear();
   moved_sides_.clear();
   tips_.clear();
   triangles_.clear();
+  beside_others_.clear();
   CancellationCheck check(cancellation, kStepsBetweenChecks);
   const auto sides = static_cast<std::uint32_t>(2 * boundary_.edges().size());
+  // Face by face, and by where they lie: what one of them looks at has just been looked at.
+  number_of_moved_.assign(sides, kNone);
+  const auto move_around = [&](std::uint32_t side) {
+    for (; side != kNone && number_of_moved_[side] == kNone; side = boundary_.next(side)) {
+      check();
+      number_of_moved_[side] = kSeen;
+      move_side(side);
+    }
+  };
+  const Vector min{static_cast<double>(around.min_x), static_cast<double>(around.min_y)};
+  const Vector max{static_cast<double>(around.max_x), static_cast<double>(around.max_y)};
+  boundary_.for_each_near(min, max, [&](const BoundaryMap::Near& near) {
+    move_around(2 * near.edge);
+    move_around(2 * near.edge + 1);
+  });
+  number_moved_sides();
   for (std::uint32_t side = 0; side < sides; ++side) {
-    check();
-    move_side(side);
+    if (const MovedSide* moved = find_moved(side)) append_strip(*moved);
   }
-  for (const MovedSide& moved : moved_sides_) append_strip(moved);
   for (std::uint32_t side = 0; side < sides; ++side) {
     const std::uint32_t next = boundary_.next(side);
     if (next != kNone) append_corner(side, next);
@@ -193,11 +254,18 @@ void Exaggeration::find(const Size& size, const Box& box, const Cancellation* ca
   sort_triangles();
 }
 
-void Exaggeration::take_samples(const Box& box) {
+void Exaggeration::divide_edges(const Box& box) {
   rows_.clear();
-  std::uint32_t count = 0;
-  const double step = std::max(width_ / 3, kLeastStep * pixel_);
+  samples_.clear();
   places_.clear();
+  discs_.clear();
+  loop_of_side_.assign(2 * boundary_.edges().size(), kNone);
+  place_of_side_.resize(2 * boundary_.edges().size());
+  loops_.clear();
+  loop_edges_.clear();
+  loop_places_.clear();
+  loop_order_.clear();
+  const double step = std::max(width_ / 3, kLeastStep * pixel_);
   for (const BoundaryMap::Edge& edge : boundary_.edges()) {
     const Vector way = edge.way();
     const double along = length(way);
@@ -208,18 +276,9 @@ void Exaggeration::take_samples(const Box& box) {
       row.first = static_cast<std::int32_t>(std::floor(shares->first * row.steps));
       const auto last = static_cast<std::int32_t>(std::ceil(shares->second * row.steps));
       row.count = std::min(last, row.steps) - row.first + 1;
-      row.sample = count;
-      count += 2 * static_cast<std::uint32_t>(row.count);
-      // At an end of the edge, a little beside it.
-      const double off = std::min(kOffEnds * pixel_ / along, 0.125);
-      for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
-        const double share = static_cast<double>(i) / row.steps;
-        places_.push_back(edge.from() + way * std::clamp(share, off, 1 - off));
-      }
     }
     rows_.push_back(row);
   }
-  samples_.assign(count, {});
 }
 
 bool Exaggeration::has_sample(At at) const {
@@ -227,14 +286,30 @@ bool Exaggeration::has_sample(At at) const {
   return row.steps > 0 && at.step >= row.first && at.step < row.first + row.count;
 }
 
+/// Until the next call.
 Exaggeration::Sample& Exaggeration::sample(At at) {
   const Row& row = rows_[at.side / 2];
+  if (row.sample == kNone) take_samples(at.side / 2);
   return samples_[row.sample + 2 * static_cast<std::uint32_t>(at.step - row.first) + at.side % 2];
 }
 
-Vector Exaggeration::place(At at) const {
+Vector Exaggeration::place(At at) {
   const Row& row = rows_[at.side / 2];
+  if (row.sample == kNone) take_samples(at.side / 2);
   return places_[row.sample / 2 + static_cast<std::uint32_t>(at.step - row.first)];
+}
+
+void Exaggeration::take_samples(std::uint32_t number) {
+  Row& row = rows_[number];
+  const BoundaryMap::Edge& edge = boundary_.edges()[number];
+  row.sample = static_cast<std::uint32_t>(samples_.size());
+  samples_.resize(samples_.size() + 2 * static_cast<std::size_t>(row.count));
+  // At an end of the edge, a little beside it.
+  const double off = std::min(kOffEnds * pixel_ / length(edge.way()), 0.125);
+  for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
+    const double share = static_cast<double>(i) / row.steps;
+    places_.push_back(edge.from() + edge.way() * std::clamp(share, off, 1 - off));
+  }
 }
 
 Vector Exaggeration::inward(std::uint32_t side) const {
@@ -268,112 +343,301 @@ std::optional<Exaggeration::At> Exaggeration::step_back(At at) const {
 
 // ---- how wide a face is
 
+/// Whether it is less than the width straight into the face, to its boundary.
+bool Exaggeration::is_narrow(At at) {
+  if (const float known = sample(at).ray; known != kUnknown) return known >= 0 && known < width_;
+  if (look_across(at, (1 + kRounding) / kRay)) return sample(at).ray < width_;
+  sample(at).ray = kWide;
+  return false;
+}
+
 /// Straight into the face, to its boundary, and no farther than kRay.
 float Exaggeration::ray(At at) {
   if (const float known = sample(at).ray; known >= 0) return known;
+  look_across(at, 1);
+  return sample(at).ray;
+}
+
+/// Whether there is a boundary up to that share of kRay, or that is all of it.
+bool Exaggeration::look_across(At at, double share) {
   const Vector from = place(at);
   const Vector way = inward(at.side) * (kRay * width_);
-  double least = 1;
+  double least = share;
   double facing = 0;
-  const auto look_at = [&](std::uint32_t i) {
-    const BoundaryMap::Edge& edge = boundary_.edges()[i];
-    if (i == at.side / 2 || edge.is_cut) return;
-    const Vector along = edge.way();
+  const auto look_at = [&](const BoundaryMap::Near& near) {
+    if (near.edge == at.side / 2) return;
+    const Vector along = near.way();
     const double turn = cross(way, along);
     if (turn == 0) return;
-    const Vector c = edge.from() - from;
-    const double share = cross(c, along) / turn;
-    const double there = cross(c, way) / turn;
-    if (share <= 0 || share > least || there < 0 || there > 1) return;
+    const Vector c = near.from() - from;
+    const double on_edge = cross(c, way);
+    const double on_way = cross(c, along);
+    const double most = std::abs(turn) * (1 + kRounding);
+    if ((on_way > 0) != (turn > 0) || std::abs(on_way) > least * most) return;
+    if (std::abs(on_edge) > most) return;
+    const double there = on_edge / turn;
+    if (there < 0 || there > 1) return;
+    const double met = on_way / turn;
+    if (met <= 0 || met > least) return;
     const double cosine = std::abs(turn) / (kRay * width_ * length(along));
-    facing = share < least ? cosine : std::max(facing, cosine);
-    least = share;
+    facing = met < least ? cosine : std::max(facing, cosine);
+    least = met;
   };
-  const Vector to = from + way;
-  boundary_.for_each_near({std::min(from.x, to.x), std::min(from.y, to.y)},
-                          {std::max(from.x, to.x), std::max(from.y, to.y)}, look_at);
+  // Up to where it leaves the box of a loop, all that it may meet is known.
+  const std::uint32_t number = loop_of(at.side);
+  bool is_known = false;
+  if (number != kLong && loops_[number].edge_count > 0) {
+    const Loop& loop = loops_[number];
+    for (const BoundaryMap::Near& near : edges_in(loop)) look_at(near);
+    const Vector end = from + way * least;
+    is_known =
+        end.x >= loop.min.x && end.x <= loop.max.x && end.y >= loop.min.y && end.y <= loop.max.y;
+  }
+  if (!is_known)
+    boundary_.for_each_along(
+        from, way, [&least] { return least; }, look_at);
+  if (least == share && share < 1) return false;
   const double opposite = (facing - kBeside) / (kOpposite - kBeside);
-  sample(at).facing = static_cast<float>(std::clamp(opposite, 0.0, 1.0));
-  return sample(at).ray = static_cast<float>(least * kRay * width_);
+  Sample& told = sample(at);
+  told.facing = static_cast<float>(std::clamp(opposite, 0.0, 1.0));
+  told.ray = static_cast<float>(least * kRay * width_);
+  return true;
+}
+
+/// Half of the ray, or `most` if that is less.
+double Exaggeration::half_ray(At at, double most) {
+  if (2 * most <= width_ && !is_narrow(at)) return most;
+  return std::min(most, ray(at) / 2.0);
 }
 
 /// A disc in the face, over against the place: the smaller one, or the larger one, of kMostRadii.
 Exaggeration::Disc Exaggeration::disc(At at, std::size_t size) {
-  Disc& known = sample(at).discs[size];
-  if (known.radius >= 0) return known;
+  if (const std::uint32_t known = sample(at).discs[size]; known != kNone) return discs_[known];
   const double most = kMostRadii[size] * width_;
+  Disc found;
   for (const double depth : {most, kDepth * most}) {
-    const double deep = std::min(depth, ray(at) / 2.0);
+    const double deep = half_ray(at, depth);
     const Vector middle = place(at) + inward(at.side) * deep;
-    const double radius = clearance(middle, std::min(most, deep));
-    if (radius > known.radius) known = {middle, radius};
+    const double radius = clearance(middle, std::min(most, deep), loop_of(at.side));
+    if (radius > found.radius) found = {middle, radius};
     if (radius >= most || deep < depth) break;
   }
-  return known;
+  sample(at).discs[size] = static_cast<std::uint32_t>(discs_.size());
+  discs_.push_back(found);
+  return found;
 }
 
-/// How far it is to the boundary, and no more than `most`.
-double Exaggeration::clearance(Vector middle, double most) {
-  double radius = most;
-  // Near the place first: it often becomes so small there that little else has to be looked at.
-  for (const double part : {0.25, 1.0}) {
-    const double looked_at = most * part;
-    const Vector corner{looked_at, looked_at};
-    boundary_.for_each_near(middle - corner, middle + corner, [&](std::uint32_t i) {
-      const BoundaryMap::Edge& edge = boundary_.edges()[i];
-      if (edge.is_cut) return;
-      const Vector way = edge.way();
-      const double share = dot(way, middle - edge.from()) / dot(way, way);
-      const Vector nearest = edge.from() + way * std::clamp(share, 0.0, 1.0);
-      radius = std::min(radius, length(nearest - middle));
-    });
-    if (radius <= looked_at) break;
+/// How far it is to the boundary, and no more than `most`, of a place within the face that the loop
+/// is of.
+double Exaggeration::clearance(Vector middle, double most, std::uint32_t loop) {
+  double square = most * most;
+  const auto look_at = [&](const BoundaryMap::Near& near) {
+    const Vector way = near.way();
+    const Vector c = middle - near.from();
+    if (is_farther(near.from() - middle, way, square)) return;
+    const double share = dot(way, c) / dot(way, way);
+    const Vector nearest = near.from() + way * std::clamp(share, 0.0, 1.0) - middle;
+    square = std::min(square, dot(nearest, nearest));
+  };
+  const auto radius = [&] { return std::min(most, std::sqrt(square)); };
+  if (loop != kLong && loops_[loop].edge_count > 0) {
+    const auto& [min, max] = std::pair(loops_[loop].min, loops_[loop].max);
+    for (const BoundaryMap::Near& near : edges_in(loops_[loop])) look_at(near);
+    const double to_side =
+        std::min({middle.x - min.x, max.x - middle.x, middle.y - min.y, max.y - middle.y});
+    if (radius() <= to_side) return radius();
   }
-  return radius;
+  // Near the place first: it often becomes so small there that little else has to be looked at.
+  for (double looked_at = std::min(boundary_.cell() / 2, most);;) {
+    const Vector corner{looked_at, looked_at};
+    boundary_.for_each_near(middle - corner, middle + corner, look_at);
+    if (radius() <= looked_at || looked_at >= most) return radius();
+    looked_at = std::min(2 * looked_at, radius());
+  }
 }
 
-/// Calls visit(place) for those along the boundary, on both sides, until one returns true.
+/// Calls visit(at, place) for those along the boundary, on both sides, until one returns true.
 template <typename Visit>
 void Exaggeration::walk_from(At at, double far, const Visit& visit) {
-  if (visit(at)) return;
+  const Vector from = place(at);
+  if (visit(at, from)) return;
   for (const bool is_on : {true, false}) {
     double walked = 0;
     At last = at;
+    Vector last_place = from;
     while (walked <= far) {
       const auto next = is_on ? step_on(last) : step_back(last);
       if (!next) break;
       if (next->side == at.side && next->step == at.step) return;  // once around
-      walked += length(place(*next) - place(last));
+      const Vector next_place = place(*next);
+      walked += length(next_place - last_place);
       last = *next;
-      if (visit(last)) return;
+      last_place = next_place;
+      if (visit(last, last_place)) return;
     }
   }
 }
 
-/// How wide the face is for growth, at a place where it is narrow straight across: in a corner, as
-/// where the corner has become wide.
+/// How wide the face is for growth, at a place where it is narrow straight across, and no less than
+/// that: in a corner, as where the corner has become wide.
 double Exaggeration::width_beside(At at) {
+  const std::uint32_t loop = loop_of(at.side);
+  if (loop != kLong && loops_[loop].is_short) {
+    if (loops_[loop].count == 0) append_places(loops_[loop]);
+    return widest_in(loops_[loop], at);
+  }
   const Vector from = place(at);
   const double own = disc(at, 0).radius;
-  double widest = 0;
-  walk_from(at, 2 * width_, [&](At other) {
-    const double far = length(place(other) - from);
-    const auto seen_at = [&](double radius) {
-      const double seen_from = std::max(0.0, radius - own) / kOpening;
-      return 2 * radius - kThinnerBeyond * std::max(0.0, far - seen_from);
-    };
-    if (seen_at(width_ / 2) <= widest) return false;
-    widest = std::max(widest, seen_at(disc(other, 0).radius));
+  double widest = ray(at);
+  walk_from(at, kWalk * width_, [&](At other, Vector place_of_other) {
+    const double far = length(place_of_other - from);
+    if (seen_from(far, own, width_ / 2) <= widest) return false;
+    if (seen_from(far, own, half_ray(other, width_ / 2)) <= widest) return false;
+    widest = std::max(widest, seen_from(far, own, disc(other, 0).radius));
     return widest >= width_;
   });
   return widest;
+}
+
+/// The same, where the boundary is a loop.
+double Exaggeration::widest_in(const Loop& loop, At at) {
+  const std::span<LoopPlace> places = std::span(loop_places_).subspan(loop.first, loop.count);
+  const std::int32_t steps = rows_[at.side / 2].steps;
+  const std::uint32_t number =
+      place_of_side_[at.side] - loop.first +
+      static_cast<std::uint32_t>(is_forward(at.side) ? at.step : steps - at.step);
+  LoopPlace& from = places[number];
+  const auto is_within_walk = [&](std::uint32_t other) {
+    const std::uint32_t last = other == 0 ? loop.count - 1 : other - 1;
+    const std::uint32_t next = other + 1 == loop.count ? 0 : other + 1;
+    const double on = places[last].along - from.along;
+    const double back = from.along - places[next].along;
+    const double far = kWalk * width_;
+    return on + (on < 0 ? loop.around : 0) <= far || back + (back < 0 ? loop.around : 0) <= far;
+  };
+  double widest = ray(at);
+  for (const std::uint32_t other : std::span(loop_order_).subspan(loop.first, loop.count)) {
+    LoopPlace& place = places[other];
+    if (2 * place.most <= widest || widest >= width_) break;
+    if (other == number || (place.radius >= 0 && 2 * place.radius <= widest)) continue;
+    const double far = length(place.place - from.place);
+    if (seen_from(far, 0, place.most) <= widest) continue;
+    if (2 * radius_of(place) <= widest) continue;
+    const double seen = seen_from(far, radius_of(from), place.radius);
+    if (seen > widest && is_within_walk(other)) widest = seen;
+  }
+  return widest;
+}
+
+double Exaggeration::radius_of(LoopPlace& place) {
+  if (place.radius < 0) place.radius = disc(place.at, 0).radius;
+  return place.radius;
+}
+
+/// Of loops_, or kLong.
+std::uint32_t Exaggeration::loop_of(std::uint32_t side) {
+  return loop_of_side_[side] == kNone ? find_loop(side) : loop_of_side_[side];
+}
+
+/// Finds the boundary along which a side lies, if it has few edges, and else finds that out for as
+/// many sides as have been gone along.
+std::uint32_t Exaggeration::find_loop(std::uint32_t side) {
+  std::uint32_t end = side;
+  int count = 0;
+  do {
+    end = boundary_.next(end);
+    ++count;
+  } while (end != kNone && end != side && count < kMostSidesOfLoop);
+  if (end == side) {
+    append_loop(side);
+    return loop_of_side_[side];
+  }
+  std::uint32_t one = side;
+  do {
+    loop_of_side_[one] = kLong;
+    one = boundary_.next(one);
+  } while (one != end);
+  return kLong;
+}
+
+void Exaggeration::append_loop(std::uint32_t side) {
+  Loop loop;
+  loop.side = side;
+  loop.is_short = true;
+  loop.min = boundary_.edges()[side / 2].from();
+  loop.max = loop.min;
+  std::uint32_t one = side;
+  do {
+    loop_of_side_[one] = static_cast<std::uint32_t>(loops_.size());
+    const BoundaryMap::Edge& edge = boundary_.edges()[one / 2];
+    const Row& row = rows_[one / 2];
+    const bool is_whole = row.steps > 0 && row.first == 0 && row.count == row.steps + 1;
+    loop.around += length(edge.way());
+    loop.is_short = loop.is_short && is_whole;
+    for (const Vector end : {to_vector(edge.upper), to_vector(edge.lower)}) {
+      loop.min = {std::min(loop.min.x, end.x), std::min(loop.min.y, end.y)};
+      loop.max = {std::max(loop.max.x, end.x), std::max(loop.max.y, end.y)};
+    }
+    one = boundary_.next(one);
+  } while (one != side);
+  loop.is_short = loop.is_short && loop.around <= kMostOfLoop * width_;
+  append_edges(loop);
+  loops_.push_back(loop);
+}
+
+void Exaggeration::append_edges(Loop& loop) {
+  loop.first_edge = static_cast<std::uint32_t>(loop_edges_.size());
+  boundary_.for_each_near(loop.min, loop.max, [&](const BoundaryMap::Near& near) {
+    const Vector from = near.from();
+    const Vector to = to_vector(near.lower);
+    const bool is_beside = std::max(from.x, to.x) < loop.min.x ||
+                           std::min(from.x, to.x) > loop.max.x || to.y < loop.min.y ||
+                           from.y > loop.max.y;
+    if (is_beside || loop.edge_count > kMostEdgesInLoop) return;
+    const auto known = std::span(loop_edges_).subspan(loop.first_edge);
+    if (std::ranges::find(known, near.edge, &BoundaryMap::Near::edge) != known.end()) return;
+    loop_edges_.push_back(near);
+    ++loop.edge_count;
+  });
+  if (loop.edge_count <= kMostEdgesInLoop) return;
+  loop_edges_.resize(loop.first_edge);
+  loop.edge_count = 0;
+}
+
+std::span<const BoundaryMap::Near> Exaggeration::edges_in(const Loop& loop) const {
+  return std::span(loop_edges_).subspan(loop.first_edge, loop.edge_count);
+}
+
+void Exaggeration::append_places(Loop& loop) {
+  loop.first = static_cast<std::uint32_t>(loop_places_.size());
+  std::uint32_t one = loop.side;
+  do {
+    place_of_side_[one] = static_cast<std::uint32_t>(loop_places_.size());
+    const std::int32_t steps = rows_[one / 2].steps;
+    for (std::int32_t i = 0; i <= steps; ++i) {
+      const At at{one, is_forward(one) ? i : steps - i};
+      loop_places_.push_back({at, place(at), half_ray(at, width_ / 2)});
+    }
+    one = boundary_.next(one);
+  } while (one != loop.side);
+  const std::span<LoopPlace> places = std::span(loop_places_).subspan(loop.first);
+  loop.count = static_cast<std::uint32_t>(places.size());
+  for (std::uint32_t i = 0; i < loop.count; ++i) {
+    loop_order_.push_back(i);
+    if (i > 0)
+      places[i].along = places[i - 1].along + length(places[i].place - places[i - 1].place);
+  }
+  loop.around = places.back().along + length(places.front().place - places.back().place);
+  std::ranges::sort(std::span(loop_order_).subspan(loop.first), std::greater<>(),
+                    [places](std::uint32_t i) { return places[i].most; });
 }
 
 /// The diameter of a disc in the face near the place, up to twice the width.
 double Exaggeration::thickness(At at) {
   const Vector from = place(at);
   double thickest = 0;
-  walk_from(at, 2 * width_, [&](At other) {
+  walk_from(at, kWalk * width_, [&](At other, Vector) {
+    if (2 * half_ray(other, width_) <= thickest) return false;
     const Disc found = disc(other, 1);
     const double gap = std::max(0.0, length(found.middle - from) - found.radius);
     const double beyond = std::max(0.0, gap - found.radius);
@@ -393,7 +657,7 @@ double Exaggeration::growth(At at) {
   const std::int32_t steps = rows_[at.side / 2].steps;
   const At inner{at.side, at.step == 0 ? 1 : at.step - 1};
   const bool is_end = at.step == 0 || at.step == steps;
-  if (!is_still && is_end && ray(at) < width_ && sample(at).facing < 1 && has_sample(inner)) {
+  if (!is_still && is_end && is_narrow(at) && sample(at).facing < 1 && has_sample(inner)) {
     by = std::max(by, (1 - sample(at).facing) * growth_across(inner));
   }
   sample(at).growth = static_cast<float>(by);
@@ -402,8 +666,8 @@ double Exaggeration::growth(At at) {
 
 /// Half of what the width lacks straight across, at the place alone.
 double Exaggeration::growth_across(At at) {
-  if (ray(at) >= width_ || sample(at).facing == 0) return 0;
-  const double wide = std::max<double>(ray(at), width_beside(at));
+  if (!is_narrow(at) || sample(at).facing == 0) return 0;
+  const double wide = width_beside(at);
   return sample(at).facing * std::max(0.0, (width_ - wide) / 2);
 }
 
@@ -415,20 +679,34 @@ double Exaggeration::reserve(At at) {
   return sample(at).reserve;
 }
 
-/// Between samples; less than 0 where there is a reserve.
-double Exaggeration::signed_growth(std::uint32_t side, double share) {
+/// Between samples, of which `of` tells.
+template <typename Of>
+double Exaggeration::between_steps(std::uint32_t side, double share, const Of& of) {
   const Row& row = rows_[side / 2];
   const double at = share * row.steps;
   const auto step = static_cast<std::int32_t>(std::clamp<double>(std::floor(at), 0, row.steps));
-  const auto of = [&](std::int32_t i) {
+  const auto of_step = [&](std::int32_t i) {
     const At place{side, std::clamp(i, 0, row.steps)};
-    if (!has_sample(place)) return 0.0;
-    const double by = growth(place);
-    return by > 0 ? by : -reserve(place);
+    return has_sample(place) ? of(place) : 0.0;
   };
   const double between = at - step;
-  if (between == 0) return of(step);
-  return of(step) * (1 - between) + of(step + 1) * between;
+  if (between == 0) return of_step(step);
+  return of_step(step) * (1 - between) + of_step(step + 1) * between;
+}
+
+/// Between samples; less than 0 where there is a reserve.
+double Exaggeration::signed_growth(std::uint32_t side, double share) {
+  return between_steps(side, share, [this](At at) {
+    const double by = growth(at);
+    return by > 0 ? by : -reserve(at);
+  });
+}
+
+/// The same, but for what is less than 0. Reserves, which take long to find, matter only beside
+/// what grows.
+double Exaggeration::positive_growth(std::uint32_t side, double share) {
+  const double most = between_steps(side, share, [this](At at) { return growth(at); });
+  return most > 0 ? std::max(0.0, signed_growth(side, share)) : 0;
 }
 
 // ---- how far it may grow
@@ -438,32 +716,52 @@ double Exaggeration::limited(Vector from, Vector normal, double by,
                              const std::array<std::uint32_t, 3>& exempt) {
   if (by <= 0) return 0;
   double most = by;
-  const Vector middle = from + normal * by;
-  const Vector corner{by, by};
-  boundary_.for_each_near(middle - corner, middle + corner, [&](std::uint32_t i) {
-    const BoundaryMap::Edge& edge = boundary_.edges()[i];
-    if (edge.is_cut || std::ranges::find(exempt, i) != exempt.end()) return;
-    const Vector way = edge.way();
+  const double touching = kTouching * pixel_;
+  const auto look_at = [&](const BoundaryMap::Near& near, double within) {
+    const Vector way = near.way();
+    const Vector c = near.from() - from;
+    const double ahead = dot(normal, c);
+    if (std::max(ahead, ahead + dot(normal, way)) < -touching) return;
+    const double reach = within + touching;
+    if (is_farther(c - normal * within, way, reach * reach)) return;
+    // On which side of the edge the place lies, if not by so little that it is on both.
+    const double turn = cross(c, way);
+    const bool is_on_edge = turn * turn < touching * touching * dot(way, way) * (1 + kRounding);
+    if (!is_on_edge && !near.has_face[turn > 0 ? 1 : 0]) return;
+    if (std::ranges::find(exempt, near.edge) != exempt.end()) return;
+    const BoundaryMap::Edge& edge = boundary_.edges()[near.edge];
     const double along = length(way);
-    const double beside = cross(way, from - edge.from()) / along;
-    const auto limit = [&](std::uint32_t side, double radius, double at) {
-      if (boundary_.face_of(side) == BoundaryMap::kNoFace || radius >= most) return;
-      const double gap = length(edge.from() + way * at - from);
-      const double theirs = signed_growth(side, at);
+    const double beside = cross(way, from - near.from()) / along;
+    const auto limit = [&](std::uint32_t number, double radius, double at) {
+      if (edge.faces[number] == BoundaryMap::kNoFace || radius >= most) return;
+      const double gap = length(near.from() + way * at - from);
+      if (gap - width_ / 2 >= most) return;
+      const std::uint32_t side = 2 * near.edge + number;
       // Beyond a void nothing is grown over.
-      const bool is_beside_void = boundary_.face_of(side ^ 1U) == BoundaryMap::kNoFace;
-      const double left = gap - (is_beside_void ? std::max(0.0, theirs) : theirs);
+      const bool is_beside_void = edge.faces[1 - number] == BoundaryMap::kNoFace;
+      const double left =
+          gap - (is_beside_void ? positive_growth(side, at) : signed_growth(side, at));
       most = std::min(most, std::max(radius, left));
     };
-    const double nearest = dot(way, from - edge.from()) / (along * along);
-    const bool is_wall = std::abs(beside) < kTouching * pixel_ && nearest > 0 && nearest < 1 &&
+    const double nearest = dot(way, from - near.from()) / (along * along);
+    const bool is_wall = std::abs(beside) < touching && nearest > 0 && nearest < 1 &&
                          std::abs(dot(way, normal)) < 0.1 * along;
-    if (is_wall) return limit(2 * i + (dot(turned(way), normal) > 0 ? 0 : 1), 0, nearest);
-    const auto touch = circle_to(from, normal, edge.from(), way);
+    if (is_wall) return limit(dot(turned(way), normal) > 0 ? 0 : 1, 0, nearest);
+    const auto touch = circle_to(from, normal, near.from(), way);
     if (!touch) return;
-    if (beside > -kTouching * pixel_) limit(2 * i + 1, touch->radius, touch->share);
-    if (beside < kTouching * pixel_) limit(2 * i, touch->radius, touch->share);
-  });
+    if (beside > -touching) limit(1, touch->radius, touch->share);
+    if (beside < touching) limit(0, touch->radius, touch->share);
+  };
+  // What is near first: the circles that reach it are small, and no larger one matters then.
+  for (double looked_at = std::min(boundary_.cell() / 2, by);;
+       looked_at = std::min(2 * looked_at, most)) {
+    const Vector middle = from + normal * looked_at;
+    const Vector corner{looked_at + touching, looked_at + touching};
+    boundary_.for_each_near(middle - corner, middle + corner, [&](const BoundaryMap::Near& near) {
+      look_at(near, std::min(looked_at, most));
+    });
+    if (most <= looked_at) break;
+  }
   return std::max(most, 0.0);
 }
 
@@ -479,28 +777,32 @@ double Exaggeration::growth_at_end(std::uint32_t side, bool is_at_head) {
   return limited_by_neighbour(side, is_lower ? 1 : 0, growth(at));
 }
 
-/// By how much the boundary turns at the end of a side, towards the face.
-double Exaggeration::turn_between(std::uint32_t side, std::uint32_t next) const {
-  const auto way_of = [this](std::uint32_t of) {
-    const Vector way = boundary_.edges()[of / 2].way();
-    return is_forward(of) ? way : way * -1;
-  };
+/// As one goes along a side.
+Vector Exaggeration::way_of(std::uint32_t side) const {
+  const Vector way = boundary_.edges()[side / 2].way();
+  return is_forward(side) ? way : way * -1;
+}
+
+/// At the end of a side.
+Exaggeration::Turn Exaggeration::turn_between(std::uint32_t side, std::uint32_t next) const {
   const Vector one = way_of(side);
   const Vector other = way_of(next);
-  return std::atan2(cross(one, other), dot(one, other));
+  const double angle = std::atan2(cross(one, other), dot(one, other));
+  return {std::sin(angle), std::cos(angle)};
 }
 
 /// Where the boundary turns away from the face: how far from the end of the side, and from the
 /// begin of the next, their moved lines meet.
 std::optional<std::array<double, 2>> Exaggeration::fold_between(std::uint32_t side,
                                                                 std::uint32_t next) {
-  const double turn = turn_between(side, next);
-  if (turn > -kStraight) return std::nullopt;
+  if (cross(way_of(side), way_of(next)) >= 0) return std::nullopt;
+  const Turn turn = turn_between(side, next);
+  if (is_straight(turn.sine, turn.cosine)) return std::nullopt;
   const double one = growth_at_end(side, true);
   const double other = growth_at_end(next, false);
-  const double sine = std::abs(std::sin(turn));
+  const double sine = std::abs(turn.sine);
   const auto from_end = [&](double own, double theirs) {
-    return std::max(0.0, (theirs - own * std::cos(turn)) / std::max(sine, 1e-9));
+    return std::max(0.0, (theirs - own * turn.cosine) / std::max(sine, 1e-9));
   };
   const std::array<double, 2> gone{from_end(one, other), from_end(other, one)};
   return gone;
@@ -512,7 +814,7 @@ void Exaggeration::move_side(std::uint32_t side) {
   const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
   if (edge.is_cut || boundary_.face_of(side) == BoundaryMap::kNoFace) return;
   const Row& row = rows_[side / 2];
-  const auto seen = shares_in(with_margin(box_, kMostOfTip * width_), edge.from(), edge.way());
+  const auto seen = shares_in(around_box_, edge.from(), edge.way());
   if (!seen || row.steps == 0) return;
   const auto strip = [&](double share, double round) {
     const double strips = share * row.steps / kStepsOfStrip;
@@ -557,7 +859,7 @@ void Exaggeration::move_side(std::uint32_t side) {
     moved_.push_back({share, moves < kLeastMove * pixel_ ? 0 : moves});
   };
   const auto move_between = [&](double share) {
-    move(edge.from() + edge.way() * share, share, std::max(0.0, signed_growth(side, share)));
+    move(edge.from() + edge.way() * share, share, positive_growth(side, share));
   };
   const double upper = gone[0] / along;
   const double lower = 1 - gone[1] / along;
@@ -638,10 +940,11 @@ void Exaggeration::append_corner(std::uint32_t side, std::uint32_t next) {
   const double other = moved_end(next, false);
   const Point begin = end_place(side, true);
   const Point end = to_point(at - inward(next) * other);
-  const double turn = turn_between(side, next);
+  const Turn turn = turn_between(side, next);
+  const bool is_straight_on = is_straight(turn.sine, turn.cosine);
   const bool is_beside = is_beside_others(side) || is_beside_others(next);
   std::optional<Vector> tip;
-  if (turn > kStraight) tip = tip_between(side, next, one, other);
+  if (turn.sine >= 0 && !is_straight_on) tip = tip_between(side, next, one, other);
   if (tip) {
     const Point middle = to_point(at + *tip);
     append_triangle(face, is_beside, {corner, begin, middle});
@@ -649,7 +952,7 @@ void Exaggeration::append_corner(std::uint32_t side, std::uint32_t next) {
     tips_.push_back({side, middle});
     return;
   }
-  if (turn > -kStraight && orientation(corner, begin, end) > 0) {
+  if ((turn.sine >= 0 || is_straight_on) && orientation(corner, begin, end) > 0) {
     append_triangle(face, is_beside, {corner, begin, end});
   }
   if (begin != end_place(next, false)) tips_.push_back({side, begin});
@@ -673,10 +976,10 @@ Point Exaggeration::end_place(std::uint32_t side, bool is_at_head) const {
 std::optional<Vector> Exaggeration::tip_between(std::uint32_t side, std::uint32_t next, double one,
                                                 double other) {
   if (one == 0 && other == 0) return std::nullopt;
-  const double turn = turn_between(side, next);
-  const double sine = std::max(std::sin(turn), 1e-9);
-  const double on = (other - one * std::cos(turn)) / sine;
-  const double back = (one - other * std::cos(turn)) / sine;
+  const Turn turn = turn_between(side, next);
+  const double sine = std::max(turn.sine, 1e-9);
+  const double on = (other - one * turn.cosine) / sine;
+  const double back = (one - other * turn.cosine) / sine;
   if (on <= 0 || back <= 0) return std::nullopt;
   const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
   const Vector inner = inward(side);
@@ -690,8 +993,15 @@ std::optional<Vector> Exaggeration::tip_between(std::uint32_t side, std::uint32_
 }
 
 const Exaggeration::MovedSide* Exaggeration::find_moved(std::uint32_t side) const {
-  const auto found = std::ranges::lower_bound(moved_sides_, side, {}, &MovedSide::side);
-  return found != moved_sides_.end() && found->side == side ? &*found : nullptr;
+  const std::uint32_t number = number_of_moved_[side];
+  return number == kNone ? nullptr : &moved_sides_[number];
+}
+
+void Exaggeration::number_moved_sides() {
+  number_of_moved_.assign(2 * boundary_.edges().size(), kNone);
+  for (std::uint32_t i = 0; i < moved_sides_.size(); ++i) {
+    number_of_moved_[moved_sides_[i].side] = i;
+  }
 }
 
 const Exaggeration::Tip* Exaggeration::find_tip(std::uint32_t side) const {
@@ -719,17 +1029,19 @@ void Exaggeration::append_triangle(BoundaryMap::Face face, bool is_beside_others
   std::ranges::sort(triangle.corners, is_above);
   Box around;
   for (const Point p : corners) around.include(p);
-  if (around.intersects(box_)) triangles_.push_back(triangle);
+  if (!around.intersects(box_)) return;
+  (is_beside_others ? beside_others_ : triangles_).push_back(triangle);
 }
 
 void Exaggeration::sort_triangles() {
-  std::ranges::sort(triangles_, {}, [](const Triangle& t) {
-    return std::tuple(t.is_beside_others, t.corners[0].y, t.corners[0].x);
+  std::ranges::stable_sort(beside_others_, {}, [](const Triangle& t) {
+    return std::pair(t.corners[0].y, t.corners[0].x);
   });
   highest_ = 0;
-  for (const Triangle& t : triangles_) {
-    if (t.is_beside_others) highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
+  for (const Triangle& t : beside_others_) {
+    highest_ = std::max(highest_, t.corners[2].y - t.corners[0].y);
   }
+  triangles_.insert(triangles_.end(), beside_others_.begin(), beside_others_.end());
 }
 
 // ---- what is drawn
@@ -802,6 +1114,7 @@ void Exaggeration::append(const Triangle& triangle, std::vector<Point>& vertices
 void Exaggeration::append_common(const MeshView& mesh, const MeshTrapezoid& trapezoid,
                                  std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
                                  std::vector<MeshTrapezoid>& trapezoids) const {
+  if (triangles_.empty() || !triangles_.back().is_beside_others) return;
   const auto ends_of = [&mesh](std::uint32_t edge) {
     return Ends{mesh.vertices[mesh.edges[edge].upper], mesh.vertices[mesh.edges[edge].lower]};
   };

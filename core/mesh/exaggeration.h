@@ -90,13 +90,14 @@ class Exaggeration {
     Vector middle;
     double radius = -1;
   };
-  // A place on the boundary of a face. What is not known yet is less than 0.
+  // A place on the boundary of a face. What is not known yet is less than 0, or kNone.
   struct Sample {
-    float ray = -1;
-    float facing = 0;           // from 0 to 1: whether that meets the opposite side of the face
-    std::array<Disc, 2> discs;  // within the face, a smaller and a larger one
+    float ray = -1;    // or -2: not less than the width
+    float facing = 0;  // from 0 to 1: whether that meets the opposite side of the face
     float growth = -1;
     float reserve = -1;
+    // Of discs_: within the face, a smaller and a larger one.
+    std::array<std::uint32_t, 2> discs{BoundaryMap::kNone, BoundaryMap::kNone};
   };
   // Of an edge: so many steps, and samples of those in the box.
   struct Row {
@@ -104,11 +105,37 @@ class Exaggeration {
     std::int32_t steps = 0;  // 0: no sample
     std::int32_t first = 0;
     std::int32_t count = 0;
-    std::uint32_t sample = 0;  // of the first, on both sides in turn
+    std::uint32_t sample = BoundaryMap::kNone;  // of the first, on both sides in turn; once needed
+  };
+  // A boundary of few edges around a face.
+  struct Loop {
+    std::uint32_t side = 0;  // one of it
+    // What lies in the box around it, of loop_edges_, if that is not too much.
+    Vector min;
+    Vector max;
+    std::uint32_t first_edge = 0;
+    std::uint32_t edge_count = 0;
+    // Its places, in order, of loop_places_ and loop_order_; once needed, if it is short.
+    bool is_short = false;
+    double around = 0;  // how long it is
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+  // By how much the boundary turns from one side to the next, towards the face.
+  struct Turn {
+    double sine = 0;
+    double cosine = 0;
   };
   struct At {
     std::uint32_t side = 0;
     std::int32_t step = 0;
+  };
+  struct LoopPlace {
+    At at;
+    Vector place;
+    double most = 0;     // of the radius of the smaller disc, known without looking
+    double radius = -1;  // once needed
+    double along = 0;    // how far from the first one
   };
   // A place that moves: how far from the upper end, as a share of the edge, and how far outwards.
   struct Moved {
@@ -126,30 +153,46 @@ class Exaggeration {
     Point at;
   };
 
-  void take_samples(const Box& box);
+  void divide_edges(const Box& box);
   bool has_sample(At at) const;
   Sample& sample(At at);
-  Vector place(At at) const;
+  void take_samples(std::uint32_t edge);
+  Vector place(At at);
   Vector inward(std::uint32_t side) const;
   std::optional<At> step_on(At at) const;
   std::optional<At> step_back(At at) const;
 
+  bool is_narrow(At at);
   float ray(At at);
+  bool look_across(At at, double share);
+  double half_ray(At at, double most);
   Disc disc(At at, std::size_t size);
-  double clearance(Vector middle, double most);
+  double clearance(Vector middle, double most, std::uint32_t loop);
   template <typename Visit>
   void walk_from(At at, double far, const Visit& visit);
   double width_beside(At at);
+  std::uint32_t loop_of(std::uint32_t side);
+  std::uint32_t find_loop(std::uint32_t side);
+  void append_loop(std::uint32_t side);
+  void append_edges(Loop& loop);
+  void append_places(Loop& loop);
+  std::span<const BoundaryMap::Near> edges_in(const Loop& loop) const;
+  double widest_in(const Loop& loop, At at);
+  double radius_of(LoopPlace& place);
   double thickness(At at);
   double growth(At at);
   double growth_across(At at);
   double reserve(At at);
   double signed_growth(std::uint32_t side, double share);
+  double positive_growth(std::uint32_t side, double share);
+  template <typename Of>
+  double between_steps(std::uint32_t side, double share, const Of& of);
 
   double limited(Vector from, Vector normal, double by, const std::array<std::uint32_t, 3>& exempt);
   double limited_by_neighbour(std::uint32_t side, double share, double by);
   double growth_at_end(std::uint32_t side, bool is_at_head);
-  double turn_between(std::uint32_t side, std::uint32_t next) const;
+  Vector way_of(std::uint32_t side) const;
+  Turn turn_between(std::uint32_t side, std::uint32_t next) const;
   std::optional<std::array<double, 2>> fold_between(std::uint32_t side, std::uint32_t next);
   void move_side(std::uint32_t side);
   void straighten(std::size_t first, std::int32_t steps);
@@ -166,20 +209,31 @@ class Exaggeration {
   bool is_beside_others(std::uint32_t side) const;
   void append_triangle(BoundaryMap::Face face, bool is_beside_others,
                        const std::array<Point, 3>& corners);
+  void number_moved_sides();
   void sort_triangles();
 
   BoundaryMap boundary_;
   double width_ = 0;  // cells
   double pixel_ = 1;  // cells
   Box box_;
+  Box around_box_;         // where what moves may come into the box
   std::vector<Row> rows_;  // by edge
   std::vector<Sample> samples_;
   std::vector<Vector> places_;  // of the samples of both sides
+  std::vector<Disc> discs_;
+  std::vector<std::uint32_t> loop_of_side_;   // kNone: not known; kLong, see find_loop()
+  std::vector<std::uint32_t> place_of_side_;  // if it is of a loop: of the first one, in its order
+  std::vector<Loop> loops_;
+  std::vector<BoundaryMap::Near> loop_edges_;
+  std::vector<LoopPlace> loop_places_;
+  std::vector<std::uint32_t> loop_order_;  // of loop_places_: the largest `most` first
   std::vector<Moved> moved_;
-  std::vector<MovedSide> moved_sides_;  // by side
-  std::vector<Tip> tips_;               // by side
-  std::vector<Triangle> triangles_;     // those beside others last, by their uppermost corners
-  std::int32_t highest_ = 0;            // of those beside others, in cells
+  std::vector<MovedSide> moved_sides_;          // by side
+  std::vector<std::uint32_t> number_of_moved_;  // of moved_sides_, by side, or kNone
+  std::vector<Tip> tips_;                       // by side
+  std::vector<Triangle> triangles_;  // those beside others last, by their uppermost corners
+  std::vector<Triangle> beside_others_;
+  std::int32_t highest_ = 0;  // of those beside others, in cells
 };
 
 template <typename IsKept>
@@ -187,6 +241,7 @@ void Exaggeration::keep(const IsKept& is_kept) {
   std::erase_if(triangles_, [&](const Triangle& one) { return !is_kept(one.face); });
   const auto is_gone = [&](const auto& one) { return !is_kept(boundary_.face_of(one.side)); };
   std::erase_if(moved_sides_, is_gone);
+  number_moved_sides();
   std::erase_if(tips_, is_gone);
 }
 
