@@ -19,6 +19,7 @@ constexpr std::uint32_t kOfLane = 0x80000000;
 constexpr std::size_t kFewest = 2048;
 constexpr std::size_t kFewestOfVertices = 256;  // one in so many
 constexpr std::size_t kLanesPerThread = 4;
+constexpr std::size_t kMostLanes = 32;  // more of them put more off than threads gain
 constexpr std::size_t kFewestVerticesPerLane = 1024;
 // Who has a longer list of nodes along its edges is put off.
 constexpr std::size_t kMostNodes = 64;
@@ -276,7 +277,7 @@ void BatchLane::end(std::vector<PutOff>& put_off) {
 
 BatchRemoval::BatchRemoval(PriorityStack& stack, TrapezoidalGraph& graph, unsigned threads)
     : stack_(stack), graph_(graph), threads_(threads) {
-  const std::size_t most = graph.vertex_count() / kFewestVerticesPerLane;
+  const std::size_t most = std::min(kMostLanes, graph.vertex_count() / kFewestVerticesPerLane);
   const std::size_t lanes = threads > 1 ? std::min(kLanesPerThread * threads, most) : 0;
   for (std::size_t i = 0; i < lanes; ++i) {
     lanes_.push_back(std::make_unique<BatchLane>(stack, graph, held_));
