@@ -84,10 +84,10 @@ void BatchLane::take(const Candidate& retry) {
 
 /// Neighbours and those that wait for it are tried again when the corner has gone, and all of its
 /// neighbours go with it if it is the last of a loop.
-void BatchLane::hold(CornerId first) {
-  to_hold_.assign(1, first);
+void BatchLane::hold(CornerId c) {
+  to_hold_.assign(1, c);
   while (!to_hold_.empty()) {
-    const CornerId c = to_hold_.back();
+    c = to_hold_.back();
     to_hold_.pop_back();
     if (held_.has_whole(c)) continue;
     held_.hold_whole(c);
