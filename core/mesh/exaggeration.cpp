@@ -299,16 +299,16 @@ Vector Exaggeration::place(At at) {
   return places_[row.sample / 2 + static_cast<std::uint32_t>(at.step - row.first)];
 }
 
-void Exaggeration::take_samples(std::uint32_t number) {
-  Row& row = rows_[number];
-  const BoundaryMap::Edge& edge = boundary_.edges()[number];
+void Exaggeration::take_samples(std::uint32_t edge) {
+  Row& row = rows_[edge];
+  const BoundaryMap::Edge& line = boundary_.edges()[edge];
   row.sample = static_cast<std::uint32_t>(samples_.size());
   samples_.resize(samples_.size() + 2 * static_cast<std::size_t>(row.count));
   // At an end of the edge, a little beside it.
-  const double off = std::min(kOffEnds * pixel_ / length(edge.way()), 0.125);
+  const double off = std::min(kOffEnds * pixel_ / length(line.way()), 0.125);
   for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
     const double share = static_cast<double>(i) / row.steps;
-    places_.push_back(edge.from() + edge.way() * std::clamp(share, off, 1 - off));
+    places_.push_back(line.from() + line.way() * std::clamp(share, off, 1 - off));
   }
 }
 
