@@ -286,16 +286,16 @@ BatchRemoval::BatchRemoval(PriorityStack& stack, TrapezoidalGraph& graph, unsign
 
 BatchRemoval::~BatchRemoval() = default;
 
-void BatchRemoval::run(Level level, const Removed& removed) {
+bool BatchRemoval::run(Level level, const Removed& removed) {
   const auto& retries = stack_.main_.retries;
   const bool is_between = stack_.next_put_off_ == stack_.put_off_.size() &&
                           (retries.empty() || retries.front().weight > stack_.main_.epsilon);
-  if (lanes_.size() < 2 || !is_between || stack_.position_ < looked_at_) return;
+  if (lanes_.size() < 2 || !is_between || stack_.position_ < looked_at_) return false;
   const std::size_t begin = stack_.position_;
   const std::size_t end = end_of_batch(level);
   if (end < begin + std::max(kFewest, graph_.vertex_count() / kFewestOfVertices)) {
     looked_at_ = std::max(end, begin + 1);
-    return;
+    return false;
   }
   gather(end);
   const PriorityStack::Candidate* next = end < stack_.order_.size() ? &stack_.order_[end] : nullptr;
@@ -310,6 +310,7 @@ void BatchRemoval::run(Level level, const Removed& removed) {
   std::stable_sort(stack_.put_off_.begin(), stack_.put_off_.end(),
                    [](const auto& a, const auto& b) { return a.key < b.key; });
   stack_.position_ = end;
+  return true;
 }
 
 /// As lanes are taken one after another by whichever thread is free.

@@ -140,8 +140,8 @@ class BatchRemoval {
   std::size_t lanes() const { return lanes_.size(); }
 
   /// If many removals of the level come next in the sequence of the stack: carries out those that
-  /// may be carried out now. The others are the stack's next ones.
-  void run(Level level, const Removed& removed);
+  /// may be carried out now. The others are the stack's next ones. False if they are too few.
+  bool run(Level level, const Removed& removed);
 
  private:
   std::size_t end_of_batch(Level level) const;

@@ -86,6 +86,7 @@ std::optional<double> HistoryRecorder::record(TrapezoidalGraph& graph, const Fac
   milestones_.note(0, vertex_base_, history.milestones);
   EditLog log(graph);
   BatchRemoval batch(stack_, graph, threads);
+  touched_by_lane_.assign(batch.lanes(), {});
   const auto vertices = static_cast<double>(graph.vertex_count());
   const std::uint64_t most = most_work(graph.vertex_count());
   int level = 0;
@@ -183,11 +184,14 @@ void HistoryRecorder::touch(NodeId n, Touched& touched) {
 }
 
 void HistoryRecorder::remove_batch(BatchRemoval& batch, Level level) {
-  std::vector<Touched> touched(batch.lanes());
-  batch.run(level, [&](std::size_t lane, const EditLog& log) { note_touched(log, touched[lane]); });
-  for (const Touched& by_lane : touched) {
+  const auto note = [this](std::size_t lane, const EditLog& log) {
+    note_touched(log, touched_by_lane_[lane]);
+  };
+  if (!batch.run(level, note)) return;
+  for (Touched& by_lane : touched_by_lane_) {
     touched_.edges.insert(touched_.edges.end(), by_lane.edges.begin(), by_lane.edges.end());
     touched_.nodes.insert(touched_.nodes.end(), by_lane.nodes.begin(), by_lane.nodes.end());
+    by_lane = {};
   }
 }
 

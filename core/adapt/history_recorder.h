@@ -93,6 +93,7 @@ class HistoryRecorder {
   Milestones milestones_;
   std::vector<std::uint32_t> apart_;  // for rows_of()
   Touched touched_;
+  std::vector<Touched> touched_by_lane_;  // of a batch
   Table<EdgeId, std::uint8_t> edge_is_touched_;
   Table<NodeId, std::uint8_t> node_is_touched_;
   // Loops as they were at first.
