@@ -21,6 +21,10 @@ double distance(Point a, Point b) {
   return std::sqrt(x * x + y * y);
 }
 
+bool contains(const Box& box, Point p) {
+  return p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
+}
+
 /// The point at that distance from one towards another.
 Point point_towards(Point from, Point to, double share) {
   const auto between = [share](std::int32_t a, std::int32_t b) {
@@ -210,6 +214,7 @@ void CornerRounding::round_corner(VertexKey key, const Edge& first, const Edge& 
                                   const Size& size) {
   const std::array<const Edge*, 2> edges{&first, &second};
   const Point tip = first.upper_key == key ? first.upper : first.lower;
+  if (!contains(size.tips, tip)) return;
   const double pixel = size.pixel;
   Corner corner;
   std::array<Point, 2> ends;

@@ -18,7 +18,8 @@
 // the plane without gaps, to the last bit.
 //
 // Which corners are rounded, and how, does not depend on what else has been added, as long as there
-// is everything within twice the radius of them.
+// is everything within the radius of them. Where that is not so, it is left to chance: find() is
+// told where to look for corners, and those elsewhere stay as they are.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -43,6 +44,7 @@ class CornerRounding {
   struct Size {
     double radius = 0;  // how far from a vertex its edges may be rounded, in pixels
     double pixel = 1;   // cells
+    Box tips{kGridMin, kGridMin, kGridMax, kGridMax};  // in which corners lie that are rounded
   };
 
   struct Corner {

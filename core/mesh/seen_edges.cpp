@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace trapeze {
 namespace {
@@ -37,12 +38,29 @@ std::int32_t rounded(double cells) {
   return static_cast<std::int32_t>(std::floor(cells + 0.5));
 }
 
+/// The heights between which a line that is not horizontal lies in a box; none if the first is
+/// greater.
+std::pair<double, double> heights_within(const Box& box, Point upper, Point lower) {
+  const double first = std::max(upper.y, box.min_y);
+  const double last = std::min(lower.y, box.max_y);
+  if (upper.x == lower.x) {
+    return upper.x >= box.min_x && upper.x <= box.max_x ? std::pair(first, last)
+                                                        : std::pair(last + 1, first);
+  }
+  const double slope =
+      (static_cast<double>(lower.y) - upper.y) / (static_cast<double>(lower.x) - upper.x);
+  const auto height_at = [&](double x) { return upper.y + (x - upper.x) * slope; };
+  const double at_west = height_at(box.min_x);
+  const double at_east = height_at(box.max_x);
+  return {std::max(first, std::min(at_west, at_east)), std::min(last, std::max(at_west, at_east))};
+}
+
 }  // namespace
 
 void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
-                       std::span<const TrapezoidPart> parts, std::vector<SeenEdge>& seen) {
+                       const VisibleInBox& visible, std::vector<SeenEdge>& seen) {
   std::vector<Piece> pieces;
-  for (const TrapezoidPart& part : parts) {
+  for (const TrapezoidPart& part : visible.parts) {
     for (const std::uint32_t edge : {part.left, part.right}) {
       if (!std::ranges::binary_search(own, edge)) continue;
       pieces.push_back({edge, part.top, part.bottom, part.share});
@@ -52,21 +70,27 @@ void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
   for (const Piece& piece : pieces) {
     const Point upper = mesh.vertices[mesh.edges[piece.edge].upper];
     const Point lower = mesh.vertices[mesh.edges[piece.edge].lower];
+    const std::pair<double, double> within = heights_within(visible.box, upper, lower);
+    const bool is_in_box =
+        within.first <= within.second && piece.end > within.first && piece.begin < within.second;
+    if (!is_in_box) continue;
     const EdgeLine line(upper, lower);
     const auto point_at = [&](std::int32_t y) {
-      if (y <= upper.y) return upper;
-      return y >= lower.y ? lower : Point{rounded(line.x_at(y)), y};
+      if (y <= within.first) return upper;
+      return y >= within.second ? lower : Point{rounded(line.x_at(y)), y};
     };
     seen.push_back({piece.edge, point_at(piece.begin), point_at(piece.end), piece.share});
   }
 }
 
-void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge,
-                            std::span<const TrapezoidPart> parts, std::vector<SeenEdge>& seen) {
+void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge, const VisibleInBox& visible,
+                            std::vector<SeenEdge>& seen) {
+  const Box& box = visible.box;
   const Point west = mesh.vertices[mesh.edges[edge].upper];
   const Point east = mesh.vertices[mesh.edges[edge].lower];
+  if (west.y < box.min_y || west.y > box.max_y) return;
   std::vector<Piece> pieces;
-  for (const TrapezoidPart& part : parts) {
+  for (const TrapezoidPart& part : visible.parts) {
     if (part.top != west.y && part.bottom != west.y) continue;
     const std::int32_t begin = std::max(rounded(EdgeLine(mesh, part.left).x_at(west.y)), west.x);
     const std::int32_t end = std::min(rounded(EdgeLine(mesh, part.right).x_at(west.y)), east.x);
@@ -74,7 +98,10 @@ void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge,
   }
   join(pieces);
   for (const Piece& piece : pieces) {
-    seen.push_back({edge, {piece.begin, west.y}, {piece.end, west.y}, piece.share});
+    if (piece.begin > box.max_x || piece.end < box.min_x) continue;
+    const std::int32_t begin = piece.begin <= box.min_x ? west.x : piece.begin;
+    const std::int32_t end = piece.end >= box.max_x ? east.x : piece.end;
+    seen.push_back({edge, {begin, west.y}, {end, west.y}, piece.share});
   }
 }
 

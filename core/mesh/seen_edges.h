@@ -21,13 +21,21 @@ struct SeenEdge {
   friend bool operator==(const SeenEdge&, const SeenEdge&) = default;
 };
 
-/// Appends what is seen of the edges of the feature, which are those of `own`, in ascending order:
-/// of edges that are sides of `parts`, the feature's visible ones. A piece is as long as can be.
-void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
-                       std::span<const TrapezoidPart> parts, std::vector<SeenEdge>& seen);
+/// What is visible of a feature in a box, and perhaps beyond.
+struct VisibleInBox {
+  std::span<const TrapezoidPart> parts;  // all that meet the box
+  Box box;
+};
 
-/// Appends what is seen of a horizontal edge of the feature.
-void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge,
-                            std::span<const TrapezoidPart> parts, std::vector<SeenEdge>& seen);
+/// Appends what is seen of the edges of the feature, which are those of `own`, in ascending order:
+/// of edges that are sides of its visible parts. A piece is as long as can be. One that goes on
+/// beyond the box goes on to the end of its edge, and edges that do not meet the box are left out:
+/// so nothing depends on where trapezoids end outside of it.
+void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
+                       const VisibleInBox& visible, std::vector<SeenEdge>& seen);
+
+/// Appends what is seen of a horizontal edge of the feature, likewise.
+void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge, const VisibleInBox& visible,
+                            std::vector<SeenEdge>& seen);
 
 }  // namespace trapeze

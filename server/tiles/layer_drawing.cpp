@@ -204,11 +204,15 @@ void append_outer(std::vector<LayerDrawing::SideOf>& sides, std::vector<std::uin
   }
 }
 
+/// What the view shows, and so many pixels around it.
+Box box_around(const View& view, double reach) {
+  return view.projection == Projection::plate_carree
+             ? view.box_around(reach)
+             : with_margin(view.box(), reach * view.longer_side());
+}
+
 Layer::Selection selection_of(const TilePlan& plan, const LayerPaint& paint, const View& view) {
-  const double reach = paint.style.reach(plan.scale);  // pixels
-  const Box box = view.projection == Projection::plate_carree
-                      ? view.box_around(reach)
-                      : with_margin(view.box(), reach * view.longer_side());
+  const Box box = box_around(view, paint.style.reach(plan.scale));
   // Dust that many features share has no class.
   const bool has_classes = !paint.style.classing.is_plain();
   return {box, paint.level, plan.pixel_level(), has_classes ? SmallPolygons::drop : paint.small};
@@ -305,7 +309,10 @@ void LayerDrawing::find_corners(double scale, std::span<const DrawnPiece> pieces
       tools.corners.add_edge(edge, is_sharp(layer.feature_of(i)) || is_cut(edge));
     });
   }
-  tools.corners.find({style().smooth * scale, view_.shorter_side()});
+  // Around others not everything has been added. Their curves begin too far away to be seen.
+  const double radius = style().smooth * scale;
+  const Box tips = box_around(view_, style().reach(scale) - radius);
+  tools.corners.find({radius, view_.shorter_side(), tips});
 }
 
 // Where both sides of a border are drawn alike, it does not show in the areas.
@@ -531,7 +538,7 @@ void LayerDrawing::add_stack(const FeatureClasses* classes, const Layer::Selecti
     std::vector<std::uint32_t> edges;
     auto edge = std::ranges::lower_bound(level_edges, RowAndEdge{row, 0});
     for (; edge != level_edges.end() && edge->first == row; ++edge) edges.push_back(edge->second);
-    add_seen_edges(number, trapezoids, edges, parts);
+    add_seen_edges(number, trapezoids, edges, {parts, selection.box});
   };
   tools.stack.resolve(tools.cancellation, parts_of);
 }
@@ -551,7 +558,7 @@ void LayerDrawing::add_parts(std::uint8_t number, std::span<const TrapezoidPart>
 
 void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint32_t> trapezoids,
                                   std::span<const std::uint32_t> level_edges,
-                                  std::span<const TrapezoidPart> parts) {
+                                  const VisibleInBox& visible) {
   const Rgba colour = style().paints[number].stroke;
   if (colour.a == 0) return;
   const MeshView& mesh = layer_->mesh();
@@ -561,8 +568,8 @@ void LayerDrawing::add_seen_edges(std::uint8_t number, std::span<const std::uint
   append_outer(in_common, own);
   sort_and_part(own);
   std::vector<SeenEdge>& seen = lines_of(colour).seen;
-  append_seen_sides(mesh, own, parts, seen);
-  for (const std::uint32_t edge : level_edges) append_seen_level_edge(mesh, edge, parts, seen);
+  append_seen_sides(mesh, own, visible, seen);
+  for (const std::uint32_t edge : level_edges) append_seen_level_edge(mesh, edge, visible, seen);
 }
 
 GrainIndex::Births births_of_dust(const LayerPaint& paint, const Layer::Selection& selection) {

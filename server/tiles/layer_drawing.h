@@ -230,8 +230,7 @@ class LayerDrawing {
                  DrawingTools& tools);
   void add_parts(std::uint8_t number, std::span<const TrapezoidPart> parts);
   void add_seen_edges(std::uint8_t number, std::span<const std::uint32_t> trapezoids,
-                      std::span<const std::uint32_t> level_edges,
-                      std::span<const TrapezoidPart> parts);
+                      std::span<const std::uint32_t> level_edges, const VisibleInBox& visible);
   bool take_edge(std::uint32_t edge, Point from, Point to, const Box& box, const InkOfLoops& ink,
                  OutlineEdge& line) const;
   void add_places(const Layer::Selection& selection, const FeatureClasses* classes,

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/grid/box_margin.h"
 #include "core/layer/layer_builder.h"
 #include "tests/core/shapes/layers.h"
 #include "tests/core/shapes/maps.h"
@@ -269,28 +270,23 @@ TEST(CornerRounding, NothingComesToCross) {
 
 TEST(CornerRounding, DoesNotDependOnWhatLiesBeyondTwiceTheRadius) {
   constexpr double kRadius = 40;
-  constexpr auto kReach = static_cast<std::int32_t>(2 * kRadius * kLarger) + 2;
+  constexpr auto kRadiusInCells = static_cast<std::int32_t>(kRadius * kLarger) + 1;
   std::size_t compared = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     const auto layer = seed % 2 == 0 ? parcels(seed) : layer_of({larger(random_shape(seed))});
+    const Box bounds = layer->bounds();
+    const Box view{bounds.min_x, bounds.min_y, (bounds.min_x + bounds.max_x) / 2,
+                   (bounds.min_y + bounds.max_y) / 2};
+    const CornerRounding::Size size{kRadius, kLarger, with_margin(view, kRadiusInCells)};
     CornerRounding all;
     add_all(*layer, kEverywhere, all);
-    all.find({kRadius, kLarger});
-    const Box bounds = layer->bounds();
-    const Point middle{(bounds.min_x + bounds.max_x) / 2, (bounds.min_y + bounds.max_y) / 2};
-    const Box view{bounds.min_x, bounds.min_y, middle.x, middle.y};
+    all.find(size);
     CornerRounding some;
-    add_all(*layer,
-            {view.min_x - kReach, view.min_y - kReach, view.max_x + kReach, view.max_y + kReach},
-            some);
-    some.find({kRadius, kLarger});
-    const auto shapes_in_view = [&view](const CornerRounding& corners) {
+    const auto edges = add_all(*layer, with_margin(view, 2 * kRadiusInCells), some);
+    some.find(size);
+    const auto shapes_of = [](const CornerRounding& corners) {
       std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> shapes;
       for (const CornerRounding::Corner& corner : corners.corners()) {
-        Box around;
-        around.include(corner.tip);
-        for (const Point p : corners.points_of(corner)) around.include(p);
-        if (!around.intersects(view)) continue;
         auto& shape = shapes.emplace_back();
         for (const Point p : corners.points_of(corner)) shape.emplace_back(p.x, p.y);
         shape.emplace_back(static_cast<std::int32_t>(corner.inside),
@@ -298,8 +294,16 @@ TEST(CornerRounding, DoesNotDependOnWhatLiesBeyondTwiceTheRadius) {
       }
       return shapes;
     };
-    EXPECT_EQ(shapes_in_view(some), shapes_in_view(all)) << seed;
-    compared += shapes_in_view(all).size();
+    EXPECT_EQ(shapes_of(some), shapes_of(all)) << seed;
+    compared += shapes_of(all).size();
+    // Edges of which one end is seen, and the other is far away, too.
+    std::vector<PointOnWay> way;
+    std::vector<PointOnWay> same;
+    for (const std::uint32_t edge : edges) {
+      some.trace(0, layer->mesh(), edge, way);
+      all.trace(0, layer->mesh(), edge, same);
+      EXPECT_TRUE(std::ranges::equal(way, same, {}, &PointOnWay::place, &PointOnWay::place));
+    }
   }
   EXPECT_GT(compared, 100u);
 }
