@@ -96,7 +96,7 @@ class Seeding {
       for (std::size_t i = next.fetch_add(kAtOnce); i < tiles.size(); i = next.fetch_add(kAtOnce)) {
         for (std::size_t j = i; j < std::min(i + kAtOnce, tiles.size()); ++j) {
           const TilePlan plan = plan_->plan_of(tiles[j]);
-          const TilePainter::Job job{&plan};
+          const PaintJob job{&plan};
           if (!painters[thread].paint({&job, 1}).front()) throw std::runtime_error("not drawn");
         }
       }

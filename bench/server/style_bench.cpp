@@ -149,7 +149,7 @@ void paint(benchmark::State& state, const std::string& query) {
   // All of them, however slow the style is: they differ by more than styles do.
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(plans.size()))) {
     for (const TilePlan& plan : plans) {
-      const TilePainter::Job job{&plan};
+      const PaintJob job{&plan};
       benchmark::DoNotOptimize(painter.paint({&job, 1}));
     }
   }

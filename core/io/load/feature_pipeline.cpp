@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/borders/coverage_groups.h"
 #include "core/borders/gap_closing.h"
 #include "core/borders/part_union.h"
 #include "core/grid/for_each_in_parallel.h"

@@ -123,10 +123,11 @@ bool can_take_over(const LoadOptions& options) {
 
 /// Throws SourceError if there are other features than were divided.
 void keep_part(FeatureSource& source, const LoadOptions& options) {
-  source.keep_only([division = options.division, part = options.part](std::size_t order) {
+  const auto is_wanted = [division = options.division, part = options.part](std::size_t order) {
     if (!division->knows(order)) throw SourceError("has changed since it was divided into parts");
     return division->part_of(order) == part;
-  });
+  };
+  source.keep_only(is_wanted, options.division->parts()[options.part - 1].features);
 }
 
 LoadedLayer load(FeatureSource& source, const LoadOptions& options, Clock::time_point start) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/borders/box_ties.h"
+#include "core/borders/merge_plan.h"
 #include "core/grid/digest.h"
 #include "core/grid/disjoint_sets.h"
 #include "core/grid/hilbert.h"

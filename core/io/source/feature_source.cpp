@@ -38,6 +38,9 @@ std::string quoted_name(const std::string& name) {
   return quoted + "\"";
 }
 
+// A feature by its place takes so many times as long as the next one, at most.
+constexpr std::size_t kCostByPlace = 8;
+
 /// Whether layers of this driver take any condition, and fail with it when they are read.
 bool is_asked_when_read(std::string_view driver) {
   return driver == "GPKG" || driver == "SQLite" || driver == "PostgreSQL";
@@ -217,6 +220,19 @@ void FeatureSource::check_reference_systems() const {
   }
 }
 
+void FeatureSource::keep_only(std::function<bool(std::size_t order)> is_wanted, std::size_t about) {
+  is_wanted_ = std::move(is_wanted);
+  reads_by_place_ =
+      knows_places() && about < static_cast<std::size_t>(stored_.front()) / kCostByPlace;
+}
+
+/// Whether the features of its only layer are numbered as they are stored, and an index tells where
+/// each of them is.
+bool FeatureSource::knows_places() const {
+  return driver() == "FlatGeobuf" && layers_.size() == 1 && !has_condition_ &&
+         stored_.front() > 0 && layers_.front().layer->TestCapability(OLCRandomRead) != 0;
+}
+
 bool FeatureSource::next(SourceFeature& next) {
   while (read_next(next)) {
     if (!is_wanted_ || is_wanted_(read_ - 1)) return true;
@@ -226,9 +242,10 @@ bool FeatureSource::next(SourceFeature& next) {
 
 bool FeatureSource::read_next(SourceFeature& next) {
   messages_.clear();
-  next.feature = is_interleaved_ ? next_interleaved(next)
-                 : ids_          ? next_by_id(next)
-                                 : next_of_layers(next);
+  next.feature = is_interleaved_   ? next_interleaved(next)
+                 : ids_            ? next_by_id(next)
+                 : reads_by_place_ ? next_by_place(next)
+                                   : next_of_layers(next);
   if (next.feature != nullptr) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
@@ -239,6 +256,22 @@ bool FeatureSource::read_next(SourceFeature& next) {
                       " features: " + messages_.text());
   }
   return next.feature != nullptr;
+}
+
+/// The next that is wanted. What has been passed over counts as read.
+OGRFeatureUniquePtr FeatureSource::next_by_place(SourceFeature& next) {
+  const auto count = static_cast<std::size_t>(stored_.front());
+  while (read_ < count && !is_wanted_(read_)) ++read_;
+  if (read_ >= count) return nullptr;
+  next.layer = &layers_.front();
+  next.layer_index = 0;
+  OGRFeatureUniquePtr feature(next.layer->layer->GetFeature(static_cast<GIntBig>(read_)));
+  if (feature == nullptr && !messages_.has_failure()) {
+    throw SourceError("is cut off or damaged: feature " + std::to_string(read_) + " of the " +
+                      std::to_string(count) + " of its layer \"" + next.layer->layer->GetName() +
+                      "\" cannot be read");
+  }
+  return feature;
 }
 
 OGRFeatureUniquePtr FeatureSource::next_by_id(SourceFeature& next) {

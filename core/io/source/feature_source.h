@@ -59,10 +59,10 @@ class FeatureSource {
   bool next(SourceFeature& next);
 
   /// From here on, next() passes over features for which that is false, without looking at them;
-  /// `order` counts those that it would give otherwise, from 0.
-  void keep_only(std::function<bool(std::size_t order)> is_wanted) {
-    is_wanted_ = std::move(is_wanted);
-  }
+  /// `order` counts those that it would give otherwise, from 0. Where about so few are wanted that
+  /// it is worth it, and the format knows where each of them is, no others are read: then it is not
+  /// noticed if others cannot be.
+  void keep_only(std::function<bool(std::size_t order)> is_wanted, std::size_t about);
 
   /// Share of the features that have been read, 0 to 1, or < 0 if unknown.
   double progress() const;
@@ -75,7 +75,9 @@ class FeatureSource {
   std::string apply_condition(const std::string& where);
   std::string apply_condition(const std::string& where, OGRLayer& layer);
   void select_ids(const SourceSelection& selection);
+  bool knows_places() const;
   bool read_next(SourceFeature& next);
+  OGRFeatureUniquePtr next_by_place(SourceFeature& next);
   OGRFeatureUniquePtr next_by_id(SourceFeature& next);
   void read_by_id(OGRLayer& layer);
   std::vector<SelectionProblem> find_missing_attributes(
@@ -104,6 +106,7 @@ class FeatureSource {
   std::vector<OGRFeatureUniquePtr> by_id_;
 
   std::function<bool(std::size_t)> is_wanted_;  // empty: all are
+  bool reads_by_place_ = false;                 // only those are read at all
 
   std::size_t current_layer_ = 0;
   std::size_t read_ = 0;

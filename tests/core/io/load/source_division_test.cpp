@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/io/load/load_layer.h"
+#include "core/layer/layer_contents.h"
 #include "tests/core/io/source/written_source.h"
 #include "tests/core/io/temporary_folder.h"
 
@@ -37,12 +39,13 @@ std::string wkt_of(const Square& s) {
          corner(s.x, s.y) + "))";
 }
 
-std::string write_squares(const TemporaryFolder& folder, const std::vector<Square>& squares) {
+std::string write_squares(const TemporaryFolder& folder, const std::vector<Square>& squares,
+                          const std::string& driver = "GPKG") {
   TestLayer layer;
   layer.crs = "EPSG:3857";
   for (const Square& square : squares) layer.features.push_back({wkt_of(square)});
-  const std::string path = folder.file("squares.gpkg");
-  write_source(path, "GPKG", {layer});
+  const std::string path = folder.file(driver == "GPKG" ? "squares.gpkg" : "squares.fgb");
+  write_source(path, driver, {layer});
   return path;
 }
 
@@ -61,6 +64,16 @@ std::vector<Square> random_squares(std::uint32_t seed, std::size_t count, double
 std::shared_ptr<const SourceDivision> divide(const std::string& path, std::uint32_t count,
                                              LayerOptions options = {}) {
   return SourceDivision::of(path, {}, options, count, {});
+}
+
+std::map<std::int64_t, Box> boxes_by_id(const Layer& layer) {
+  std::map<std::int64_t, Box> boxes;
+  for (std::size_t i = 0; i < layer.contents().feature_of.size(); ++i) {
+    const std::uint32_t row = layer.contents().feature_of[i];
+    if (row >= layer.features().size()) continue;
+    boxes[layer.features().id(row)].include(box_of(layer.mesh(), layer.mesh().trapezoids[i]));
+  }
+  return boxes;
 }
 
 TEST(SourceDivisionTest, PutsFeaturesWhoseBoxesMeetIntoOnePart) {
@@ -123,28 +136,40 @@ TEST(SourceDivisionTest, IsKnownByWhatWasDividedAndHow) {
   EXPECT_NE(divide(write_squares(other, squares), 3)->fingerprint(), fingerprint);
 }
 
+// Of FlatGeobuf, small parts are read by the places of their features.
 TEST(SourceDivisionTest, PartsHaveEachFeatureOnceUnderItsId) {
-  const TemporaryFolder folder;
-  const std::string path = write_squares(folder, random_squares(6, 300, 3000));
-  const LoadedLayer whole = load_layer(path);
-  LoadOptions options;
-  options.division = divide(path, 4);
-  std::multiset<std::int64_t> ids;
-  std::size_t vertices = 0;
-  for (options.part = 1; options.part <= 4; ++options.part) {
-    const LoadedLayer part = load_layer(path, options);
-    EXPECT_EQ(part.part->number, options.part);
-    EXPECT_EQ(part.part->count, 4u);
-    const FeatureTable& features = part.layer->features();
-    for (std::uint32_t row = 0; row < features.size(); ++row) {
-      ids.insert(features.id(row));
-      EXPECT_TRUE(row == 0 || features.id(row - 1) < features.id(row)) << "the source's order";
+  for (const std::string driver : {"GPKG", "FlatGeobuf"}) {
+    for (const std::uint32_t count : {4u, 30u}) {
+      SCOPED_TRACE(driver + " in " + std::to_string(count));
+      const TemporaryFolder folder;
+      const std::string path = write_squares(folder, random_squares(6, 300, 3000), driver);
+      const LoadedLayer whole = load_layer(path);
+      const auto boxes = boxes_by_id(*whole.layer);
+      LoadOptions options;
+      options.division = divide(path, count);
+      std::multiset<std::int64_t> ids;
+      std::size_t vertices = 0;
+      std::size_t largest = 0;
+      for (options.part = 1; options.part <= count; ++options.part) {
+        const LoadedLayer part = load_layer(path, options);
+        EXPECT_EQ(part.part->number, options.part);
+        EXPECT_EQ(part.part->count, count);
+        EXPECT_EQ(part.report.features, options.division->parts()[options.part - 1].features);
+        const FeatureTable& features = part.layer->features();
+        for (std::uint32_t row = 0; row < features.size(); ++row) {
+          ids.insert(features.id(row));
+          EXPECT_TRUE(row == 0 || features.id(row - 1) < features.id(row)) << "the source's order";
+        }
+        for (const auto& [id, box] : boxes_by_id(*part.layer)) EXPECT_EQ(box, boxes.at(id)) << id;
+        vertices += part.report.vertices;
+        largest = std::max<std::size_t>(largest, features.size());
+      }
+      EXPECT_EQ(ids.size(), 300u);
+      EXPECT_EQ(std::set<std::int64_t>(ids.begin(), ids.end()).size(), 300u);
+      EXPECT_EQ(vertices, whole.report.vertices);
+      EXPECT_LT(largest, 300u / count * 2);
     }
-    vertices += part.report.vertices;
   }
-  EXPECT_EQ(ids.size(), 300u);
-  EXPECT_EQ(std::set<std::int64_t>(ids.begin(), ids.end()).size(), 300u);
-  EXPECT_EQ(vertices, whole.report.vertices);
 }
 
 }  // namespace
