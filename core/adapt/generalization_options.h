@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/adapt/vertex_weight.h"
-#include "core/graph/topological_consistency.h"
+#include "core/graph/topology.h"
 
 namespace trapeze {
 

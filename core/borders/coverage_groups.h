@@ -8,26 +8,10 @@
 #include <vector>
 
 #include "core/borders/coverage_builder.h"
-#include "core/grid/name_table.h"
+#include "core/borders/coverage_options.h"
 #include "core/grid/rings.h"
 
 namespace trapeze {
-
-/// How polygons that share borders are treated.
-enum class CoverageMode : std::uint8_t {
-  off,        // nothing: each is simplified as if it were alone
-  automatic,  // those that have an edge in common, and do not overlap by more than a little
-  on,         // all that lie near each other, however much they overlap unless they are a crowd
-};
-
-/// The default.
-constexpr CoverageMode kUsualCoverage = CoverageMode::automatic;
-
-inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
-    {"auto", CoverageMode::automatic},
-    {"on", CoverageMode::on},
-    {"off", CoverageMode::off},
-});
 
 /// Nothing is known of the group of a feature.
 constexpr std::uint32_t kUnknownGroup = 0xffffffff;

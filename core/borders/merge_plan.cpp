@@ -12,19 +12,6 @@ Box widened_for_blocks(const Box& box) {
       std::min(box.max_x, kGridMax - kHalf) + kHalf, std::min(box.max_y, kGridMax - kHalf) + kHalf};
 }
 
-std::vector<std::uint32_t> numbered(std::span<const std::uint64_t> classes) {
-  std::vector<std::uint64_t> known(classes.begin(), classes.end());
-  std::sort(known.begin(), known.end());
-  known.erase(std::unique(known.begin(), known.end()), known.end());
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(classes.size());
-  for (const std::uint64_t own : classes) {
-    const auto at = std::lower_bound(known.begin(), known.end(), own);
-    numbers.push_back(static_cast<std::uint32_t>(at - known.begin()));
-  }
-  return numbers;
-}
-
 std::vector<std::uint32_t> classes_of_faces(const FaceFeatures& faces, const Merging& merging) {
   std::vector<std::uint32_t> classes(faces.face_count() + 1, 0);
   classes[kOutside] = kMixedClass;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/borders/coverage_options.h"
 #include "core/borders/face_features.h"
 #include "core/grid/grid.h"
 #include "core/grid/ids.h"
@@ -19,17 +20,6 @@ constexpr double kWidestBridge = 16384;
 Box widened_for_blocks(const Box& box);
 
 constexpr std::uint32_t kMixedClass = 0xffffffff;
-
-/// What becomes a block.
-struct Merging {
-  /// The distance that is bridged, as a multiple of the tolerance; 0: none is.
-  double ratio = 0;
-  /// Only features of one class become one block: the class of each, or empty if all are of one.
-  std::vector<std::uint32_t> classes = {};
-};
-
-/// Numbers for classes that are given by what they are known by.
-std::vector<std::uint32_t> numbered(std::span<const std::uint64_t> classes);
 
 /// The faces of a coverage that become one, and when.
 struct MergePlan {

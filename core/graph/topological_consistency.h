@@ -11,21 +11,10 @@
 
 #include <cstdint>
 
+#include "core/graph/topology.h"
 #include "core/graph/trapezoidal_graph.h"
-#include "core/grid/name_table.h"
 
 namespace trapeze {
-
-enum class Topology : std::uint8_t {
-  strict,  // the boundary never crosses or touches itself where it did not before
-  fast,    // only the preconditions of the operators are tested, as in the paper's runs without the
-           // test: the boundary may come to cross itself
-};
-
-inline constexpr NameTable<Topology, 2> kTopologyNames({
-    {"fast", Topology::fast},
-    {"strict", Topology::strict},
-});
 
 /// The kind of a removal.
 enum class Removal : std::uint8_t {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/borders/coverage_builder.h"
+#include "core/borders/coverage_groups.h"
 #include "core/grid/rings.h"
 #include "core/grid/work_share.h"
 #include "core/layer/earlier_layer.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/adapt/generalization_options.h"
-#include "core/borders/coverage_groups.h"
+#include "core/borders/coverage_options.h"
 
 namespace trapeze {
 

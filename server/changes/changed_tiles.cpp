@@ -241,11 +241,11 @@ class Comparison {
   }
 
   bool are_different(const TilePlan& before, const TilePlan& after, TilePainter& painter) const {
-    const TilePainter::Job old{&before};
-    const TilePainter::Job now{&after};
+    const PaintJob old{&before};
+    const PaintJob now{&after};
     if (painter.identify(old) == painter.identify(now)) return false;
     if (request_.certainty == Certainty::fingerprints) return true;
-    const auto bytes_of = [&painter](const TilePainter::Job& job) {
+    const auto bytes_of = [&painter](const PaintJob& job) {
       return painter.paint({&job, 1}).front().value().bytes;
     };
     return *bytes_of(old) != *bytes_of(now);

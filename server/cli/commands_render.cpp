@@ -87,7 +87,7 @@ int run_render(const RenderArguments& arguments) {
                       std::make_shared<LabelBook>(FontChoice{fonts}));
   const auto plan = plan_tile(request, Dataset::load(layers));
   if (!plan) throw_wrong_style(plan.problem());
-  const TilePainter::Job job{&*plan};
+  const PaintJob job{&*plan};
   const PaintedTile tile = painter.paint({&job, 1}).front().value();
   write_file(arguments.output, *tile.bytes);
   const PaintTimes& times = tile.times;

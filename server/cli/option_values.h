@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/borders/coverage_groups.h"
+#include "core/borders/coverage_options.h"
 #include "core/grid/name_table.h"
 #include "core/io/prepared/open_layer.h"
 #include "core/layer/layer_options.h"

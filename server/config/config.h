@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/adapt/vertex_weight.h"
-#include "core/borders/coverage_groups.h"
+#include "core/borders/coverage_options.h"
 #include "core/grid/web_mercator.h"
 #include "core/io/source/source_selection.h"
 #include "render/make_renderer.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/borders/gap_closing.h"
-#include "core/graph/topological_consistency.h"
+#include "core/graph/topology.h"
 #include "core/layer/layer_options.h"
 #include "server/base/language_tag.h"
 #include "server/base/url.h"

@@ -34,7 +34,7 @@ JobPainter::JobPainter(const SeedPlan& plan, TilePainter painter,
   nothing.labels.clear();
   nothing.debug = {};
   nothing.background = kTransparent;
-  const TilePainter::Job job{&nothing};
+  const PaintJob job{&nothing};
   empty_ = *painter_.paint({&job, 1}).front().value().bytes;
 }
 
@@ -148,7 +148,7 @@ void JobPainter::paint_tile(const TileId& tile) {
 JobPainter::Painted JobPainter::paint_whole(
     const TilePlan& plan, std::string& fingerprint,
     const std::function<bool(const std::string&)>& is_wanted) {
-  const TilePainter::Job job{&plan, nullptr, is_wanted};
+  const PaintJob job{&plan, nullptr, is_wanted};
   const int bands = TilePainter::bands_of(plan);
   PaintedTile tile;
   if (bands == 1) {

@@ -9,7 +9,7 @@
 #include "server/base/build_id.h"
 #include "server/base/gzip.h"
 #include "server/base/json_text.h"
-#include "server/tiles/tile_painter.h"
+#include "server/tiles/painted_tile.h"
 
 namespace trapeze {
 namespace {

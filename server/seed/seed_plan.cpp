@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "server/base/content_hash.h"
-#include "server/tiles/tile_painter.h"
+#include "server/tiles/painted_tile.h"
 
 namespace trapeze {
 namespace {

@@ -84,6 +84,17 @@ Problem still_loading() {
   return {503, "The data is still being loaded."};
 }
 
+/// Which layers are read, and how far.
+Json loading_json(const SiteOptions& site) {
+  Json layers = Json::array();
+  for (const LayerProgress& layer : site.loading ? site.loading() : std::vector<LayerProgress>()) {
+    layers.push_back({{"name", layer.name},
+                      {"title", layer.title},
+                      {"percent", layer.percent ? Json(*layer.percent) : Json(nullptr)}});
+  }
+  return {{"status", "loading"}, {"detail", still_loading().detail}, {"layers", std::move(layers)}};
+}
+
 /// For /ready, which tells the state of the server and no problem with a request.
 HttpResponse not_ready(const Json& state) {
   HttpResponse response;
@@ -385,20 +396,8 @@ HttpResponse Site::answer_health() {
   return response;
 }
 
-/// Which layers are read, and how far.
-Json Site::loading_json() const {
-  Json layers = Json::array();
-  for (const LayerProgress& layer :
-       options_.loading ? options_.loading() : std::vector<LayerProgress>()) {
-    layers.push_back({{"name", layer.name},
-                      {"title", layer.title},
-                      {"percent", layer.percent ? Json(*layer.percent) : Json(nullptr)}});
-  }
-  return {{"status", "loading"}, {"detail", still_loading().detail}, {"layers", std::move(layers)}};
-}
-
 HttpResponse Site::answer_ready() const {
-  if (data_.get() == nullptr) return not_ready(loading_json());
+  if (data_.get() == nullptr) return not_ready(loading_json(options_));
   if (options_.is_stopping && options_.is_stopping()) {
     return not_ready({{"status", "stopping"}, {"detail", "The server is about to end."}});
   }

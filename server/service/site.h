@@ -15,7 +15,6 @@
 
 #include "render/text/fonts.h"
 #include "server/base/defaults.h"
-#include "server/base/json_text.h"
 #include "server/base/result.h"
 #include "server/base/url.h"
 #include "server/config/config.h"
@@ -97,7 +96,6 @@ class Site {
 
   void dispatch(const Target& target, const HttpRequest& request, const Respond& respond) const;
   static HttpResponse answer_health();
-  Json loading_json() const;
   HttpResponse answer_ready() const;
   Result<std::string> catalog(const HttpRequest& request) const;
   Result<std::string> tile_json_of(const TileJsonRequest& tiles, const HttpRequest& request) const;

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <tuple>
 
-#include "core/graph/topological_consistency.h"
+#include "core/graph/topology.h"
 #include "core/layer/layer.h"
 #include "core/layer/layer_options.h"
 #include "render/mask/stroke.h"

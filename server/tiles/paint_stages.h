@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "server/tiles/tile_painter.h"
+#include "server/tiles/painted_tile.h"
 
 namespace trapeze {
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/tiles/tile_painter.h"
+#include "server/tiles/painted_tile.h"
 
 namespace trapeze {
 

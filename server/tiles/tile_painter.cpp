@@ -78,10 +78,10 @@ std::shared_ptr<FeatureClassCache> TilePainter::new_class_cache() {
   return std::make_shared<FeatureClassCache>(std::size_t{64} << 20);
 }
 
-std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> jobs) {
+std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const PaintJob> jobs) {
   drawing_count_ = 0;
   std::vector<Sketch> sketches;
-  for (const Job& job : jobs) {
+  for (const PaintJob& job : jobs) {
     sketches.push_back(sketch(job, job.plan->view));
     Sketch& last = sketches.back();
     if (last.is_cancelled) continue;
@@ -111,7 +111,7 @@ std::vector<std::optional<PaintedTile>> TilePainter::paint(std::span<const Job> 
   return tiles;
 }
 
-std::string TilePainter::identify(const Job& job) {
+std::string TilePainter::identify(const PaintJob& job) {
   drawing_count_ = 0;
   const Sketch sketch = this->sketch(job, job.plan->view);
   if (sketch.is_cancelled) throw Cancelled();
@@ -167,7 +167,7 @@ int TilePainter::bands_of(const TilePlan& plan) {
   return is_large && !plan.debug.any() ? (view.height + kBandRows - 1) / kBandRows : 1;
 }
 
-std::optional<PaintedBand> TilePainter::paint_band(const Job& job, int band) {
+std::optional<PaintedBand> TilePainter::paint_band(const PaintJob& job, int band) {
   drawing_count_ = 0;
   Sketch sketch = this->sketch(job, band_of(*job.plan, band));
   note_times(draw({&job, 1}, {&sketch, 1}), sketch);
@@ -213,7 +213,7 @@ void TilePainter::note_times(const DrawTimes& drawn, Sketch& sketch) const {
   sketch.times.resolve_ms += drawn.resolve_ms * part;
 }
 
-TilePainter::Sketch TilePainter::sketch(const Job& job, const View& view) {
+TilePainter::Sketch TilePainter::sketch(const PaintJob& job, const View& view) {
   Sketch sketch;
   sketch.view = view;
   sketch.first_drawing = drawing_count_;
@@ -278,7 +278,7 @@ std::vector<DrawnPiece> TilePainter::pieces_for(const TilePlan& plan, const Laye
   return pieces;
 }
 
-DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketches) {
+DrawTimes TilePainter::draw(std::span<const PaintJob> jobs, std::span<Sketch> sketches) {
   tasks_.clear();
   for (std::size_t i = 0; i < jobs.size(); ++i) draw_details(jobs[i], sketches[i]);
   if (tasks_.empty()) return {};
@@ -296,7 +296,7 @@ DrawTimes TilePainter::draw(std::span<const Job> jobs, std::span<Sketch> sketche
 }
 
 // Draws the outlines and patterns of one tile, and adds its masks to those to be drawn.
-void TilePainter::draw_details(const Job& job, Sketch& sketch) {
+void TilePainter::draw_details(const PaintJob& job, Sketch& sketch) {
   const View& view = sketch.view;
   const std::size_t tasks_before = tasks_.size();
   tools_.cancellation = job.cancellation;

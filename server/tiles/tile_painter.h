@@ -25,55 +25,13 @@
 #include "server/labels/label_book.h"
 #include "server/styles/feature_classes.h"
 #include "server/tiles/layer_drawing.h"
+#include "server/tiles/painted_tile.h"
 #include "server/tiles/tile_plan.h"
 
 namespace trapeze {
 
-/// Of the pictures of tiles: raised whenever the bytes of any tile become others.
-constexpr int kPictureVersion = 1;
-
-/// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
-struct PaintTimes {
-  double queue_ms = 0;  // until a worker began
-  double select_ms = 0;
-  double draw_ms = 0;
-  double read_ms = 0;
-  double resolve_ms = 0;
-  double compose_ms = 0;
-  double encode_ms = 0;
-};
-
-/// What a tile shows, at a glance.
-enum class TileHint : std::uint8_t {
-  none,
-  empty,  // nothing but the background
-  full,   // one colour, of polygons that cover it wholly
-};
-
-struct PaintedTile {
-  std::string fingerprint;                   // see TilePainter::paint()
-  std::shared_ptr<const std::string> bytes;  // PNG or WebP; null if it was not wanted
-  TileHint hint = TileHint::none;
-  PaintTimes times;
-  bool has_palette = true;  // or would have one, as PNG
-};
-
-/// A part of a tile: some of its rows, over its whole width.
-struct PaintedBand {
-  RunPicture picture;
-  TileHint hint = TileHint::none;
-  PaintTimes times;
-};
-
 class TilePainter {
  public:
-  struct Job {
-    const TilePlan* plan = nullptr;
-    const Cancellation* cancellation = nullptr;  // null: wanted whatever happens
-    /// Whether a tile of that fingerprint has to be painted. Empty: it has.
-    std::function<bool(const std::string& fingerprint)> is_wanted = {};
-  };
-
   /// Painters may share what keeps the classes of features, the fonts, which are for marks, and
   /// the labels.
   explicit TilePainter(std::unique_ptr<MaskRenderer> renderer,
@@ -93,16 +51,16 @@ class TilePainter {
   /// Tiles of the same fingerprint have the same bytes, wherever they are, however their layers are
   /// numbered or called, and whoever paints them; marks for debugging excepted, which have one for
   /// each tile, layer and build.
-  std::vector<std::optional<PaintedTile>> paint(std::span<const Job> jobs);
+  std::vector<std::optional<PaintedTile>> paint(std::span<const PaintJob> jobs);
 
   /// The fingerprint that paint() would find.
-  std::string identify(const Job& job);
+  std::string identify(const PaintJob& job);
 
   /// How many bands a picture is painted in: 1, or if it is large, several, which painters may do
   /// at the same time. That depends on nothing but the plan, and so do its bytes.
   static int bands_of(const TilePlan& plan);
   /// Paints one of them, the northernmost being 0. As paint().
-  std::optional<PaintedBand> paint_band(const Job& job, int band);
+  std::optional<PaintedBand> paint_band(const PaintJob& job, int band);
   /// The tile that has these bands, from the north.
   PaintedTile join(const TilePlan& plan, std::span<const PaintedBand> bands);
 
@@ -126,14 +84,14 @@ class TilePainter {
     PaintTimes times;
   };
 
-  Sketch sketch(const Job& job, const View& view);
+  Sketch sketch(const PaintJob& job, const View& view);
   std::string fingerprint_of(const TilePlan& plan, const Sketch& sketch) const;
   bool is_constant(const TilePlan& plan, const Sketch& sketch) const;
   void select(const TilePlan& plan, Sketch& sketch);
-  void draw_details(const Job& job, Sketch& sketch);
+  void draw_details(const PaintJob& job, Sketch& sketch);
   std::vector<DrawnPiece> pieces_for(const TilePlan& plan, const LayerPaint& paint,
                                      const View& view);
-  DrawTimes draw(std::span<const Job> jobs, std::span<Sketch> sketches);
+  DrawTimes draw(std::span<const PaintJob> jobs, std::span<Sketch> sketches);
   void note_times(const DrawTimes& drawn, Sketch& sketch) const;
   PaintedTile finish(const TilePlan& plan, Sketch& sketch);
   /// False if it is of one colour, which its only pixel has then.

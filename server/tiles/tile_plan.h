@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/graph/topological_consistency.h"
+#include "core/graph/topology.h"
 #include "core/grid/tolerance.h"
 #include "core/layer/layer.h"
 #include "render/mask/mask.h"

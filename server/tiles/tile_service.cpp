@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/base/heap.h"
+#include "server/tiles/tile_painter.h"
 
 namespace trapeze {
 namespace {
@@ -271,7 +272,7 @@ std::vector<TileAnswer> TileService::paint(TilePainter& painter, const Flights& 
 // Those that are large one after the other, each with the help of others.
 std::vector<std::optional<PaintedTile>> TileService::paint_tiles(TilePainter& painter,
                                                                  const Flights& flights) {
-  std::vector<TilePainter::Job> jobs;
+  std::vector<PaintJob> jobs;
   for (const auto& flight : flights) {
     if (TilePainter::bands_of(flight->order.plan) == 1) jobs.push_back(job_of(flight));
   }
@@ -286,8 +287,8 @@ std::vector<std::optional<PaintedTile>> TileService::paint_tiles(TilePainter& pa
   return tiles;
 }
 
-TilePainter::Job TileService::job_of(const std::shared_ptr<Flight>& flight) {
-  TilePainter::Job job{&flight->order.plan, &flight->cancellation};
+PaintJob TileService::job_of(const std::shared_ptr<Flight>& flight) {
+  PaintJob job{&flight->order.plan, &flight->cancellation};
   if (flight->order.may_be_known) {
     job.is_wanted = [this, flight](const std::string& fingerprint) {
       return is_wanted(flight, fingerprint);
@@ -319,7 +320,7 @@ TileAnswer TileService::answer_of(const Flight& flight, std::optional<PaintedTil
 
 std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
                                                        const std::shared_ptr<Flight>& flight) {
-  const TilePainter::Job job = job_of(flight);
+  const PaintJob job = job_of(flight);
   PaintedTile tile;
   tile.fingerprint = painter.identify(job);
   if (job.is_wanted && !job.is_wanted(tile.fingerprint)) return tile;
@@ -350,7 +351,7 @@ std::optional<PaintedTile> TileService::paint_in_bands(TilePainter& painter,
 
 // Whoever waits for the bands is told of what goes wrong.
 void TileService::help(TilePainter& painter, const std::shared_ptr<Bands>& bands) {
-  const TilePainter::Job job{&bands->flight->order.plan, &bands->flight->cancellation};
+  const PaintJob job{&bands->flight->order.plan, &bands->flight->cancellation};
   while (const auto band = take_band(*bands)) {
     std::exception_ptr failure;
     try {

@@ -25,11 +25,14 @@
 #include "core/grid/cancellation.h"
 #include "core/grid/name_table.h"
 #include "server/base/defaults.h"
+#include "server/labels/label_book.h"
+#include "server/tiles/painted_tile.h"
 #include "server/tiles/tile_cache.h"
-#include "server/tiles/tile_painter.h"
 #include "server/tiles/tile_plan.h"
 
 namespace trapeze {
+
+class TilePainter;
 
 enum class TileOutcome : std::uint8_t {
   drawn,
@@ -190,7 +193,7 @@ class TileService {
   void answer(TilePainter& painter, const Flights& flights);
   std::vector<TileAnswer> paint(TilePainter& painter, const Flights& flights);
   std::vector<std::optional<PaintedTile>> paint_tiles(TilePainter& painter, const Flights& flights);
-  TilePainter::Job job_of(const std::shared_ptr<Flight>& flight);
+  PaintJob job_of(const std::shared_ptr<Flight>& flight);
   /// Whether the tile still has to be drawn, once its fingerprint is known.
   bool is_wanted(const std::shared_ptr<Flight>& flight, const std::string& fingerprint);
   static TileAnswer answer_of(const Flight& flight, std::optional<PaintedTile> tile);

@@ -202,13 +202,13 @@ export async function tiles_drawn(page) {
     return tiles.length > 0 && tiles.every((tile) =>
       tile.classList.contains("leaflet-tile-loaded") && tile.naturalWidth > 0 &&
       getComputedStyle(tile).opacity === "1");
-  }, null, { timeout: 30_000 });
+  }, null, { timeout: 30_000, polling: 50 });
 }
 
 /** Until nothing on the page moves, unfolds or fades. */
 export async function at_rest(page) {
   await page.waitForFunction(() => !document.querySelector(".leaflet-pan-anim, .leaflet-zoom-anim") &&
-    document.getAnimations().every(({ playState }) => playState !== "running"));
+    document.getAnimations().every(({ playState }) => playState !== "running"), null, { polling: 50 });
 }
 
 /**

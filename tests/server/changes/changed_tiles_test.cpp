@@ -76,7 +76,7 @@ class Drawn {
     TileRequest request = request_of(style_, Certainty::bytes).tile;
     request.tile = tile;
     const auto plan = plan_tile(request, dataset);
-    const TilePainter::Job job{&*plan};
+    const PaintJob job{&*plan};
     return *painter_.paint({&job, 1}).front().value().bytes;
   }
 

@@ -207,12 +207,12 @@ class Comparison {
   }
 
   PaintedTile paint(const TilePlan& plan) {
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     return painter_.paint({&job, 1}).front().value();
   }
 
   Picture picture(const TilePlan& plan) {
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     return to_pixels(painter_.paint_band(job, 0).value().picture);
   }
 

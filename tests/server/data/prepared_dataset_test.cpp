@@ -74,7 +74,7 @@ class Comparison {
 
  private:
   PaintedTile paint(const TilePlan& plan) {
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     return painter_.paint({&job, 1}).front().value();
   }
 

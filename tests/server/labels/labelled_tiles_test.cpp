@@ -187,7 +187,7 @@ TEST_F(LabelledTilesTest, LabelsDoNotOverlap) {
 TEST_F(LabelledTilesTest, AroundLabelsATileIsWhatItIsWithoutThem) {
   TilePainter painter = testing::software_painter();
   const auto paint = [&painter](const TilePlan& plan) {
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     return decode_png(*painter.paint({&job, 1}).front().value().bytes);
   };
   for (const std::string& style : kStyles) {

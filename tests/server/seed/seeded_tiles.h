@@ -39,7 +39,7 @@ inline TilePainter software_painter() {
 /// What the server answers with.
 inline std::string served_bytes(const SeedPlan& plan, const TileId& tile, TilePainter& painter) {
   const TilePlan of_tile = plan.plan_of(tile);
-  const TilePainter::Job job{&of_tile};
+  const PaintJob job{&of_tile};
   return *painter.paint({&job, 1}).front().value().bytes;
 }
 

@@ -32,7 +32,7 @@ class FingerprintTest : public ::testing::TestWithParam<RendererKind> {
 
   PaintedTile paint(const std::shared_ptr<const Dataset>& dataset, const std::string& target) {
     const TilePlan plan = plan_of(dataset, target);
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     PaintedTile tile = painter_->paint({&job, 1}).front().value();
     EXPECT_EQ(painter_->identify(job), tile.fingerprint) << target;
     return tile;
@@ -161,14 +161,13 @@ TEST_P(FingerprintTest, ATileThatIsNotWantedIsNotPainted) {
   const TilePlan plan = plan_of(land.load(), "land/5/16/15.png");
   const TilePlan other = plan_of(land.load(), "land/5/16/15.png?fill=red");
   std::string asked;
-  const std::vector<TilePainter::Job> jobs = {
-      {&plan, nullptr,
-       [&](const std::string& fingerprint) {
-         asked = fingerprint;
-         return false;
-       }},
-      {&other, nullptr, [](const std::string&) { return true; }},
-      {&plan}};
+  const std::vector<PaintJob> jobs = {{&plan, nullptr,
+                                       [&](const std::string& fingerprint) {
+                                         asked = fingerprint;
+                                         return false;
+                                       }},
+                                      {&other, nullptr, [](const std::string&) { return true; }},
+                                      {&plan}};
   const auto tiles = painter_->paint(jobs);
   EXPECT_EQ(tiles[0]->bytes, nullptr);
   EXPECT_EQ(tiles[0]->fingerprint, asked);
@@ -191,7 +190,7 @@ TEST(PictureVersion, IsThatOfTheBytesOfTiles) {
         "west/1/0/0.png?pattern=dots&pattern-color=navy", "rings/2/1/1.png?simplify=6&small=keep",
         "rings,west/0/0/0@4x.png?quality=exact"}) {
     const TilePlan plan = plan_of(dataset, target);
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     hash.add(*painter.paint({&job, 1}).front().value().bytes);
   }
   EXPECT_EQ(kVersion, kPictureVersion);

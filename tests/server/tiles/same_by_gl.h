@@ -23,7 +23,7 @@ inline void expect_same_by_gl(const std::string& target,
   const TilePlan plan = *plan_tile(std::get<TileRequest>(*parsed), dataset);
   const auto draw = [&plan](std::unique_ptr<MaskRenderer> renderer) {
     TilePainter painter(std::move(renderer));
-    const TilePainter::Job job{&plan};
+    const PaintJob job{&plan};
     return decode_png(*painter.paint({&job, 1}).front()->bytes);
   };
   const Picture one = draw(std::make_unique<SoftwareRenderer>());

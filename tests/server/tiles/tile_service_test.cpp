@@ -8,6 +8,7 @@
 #include "render/make_renderer.h"
 #include "render/picture/channels.h"
 #include "render/picture/png.h"
+#include "server/tiles/tile_painter.h"
 #include "tests/server/service/sample_site.h"
 
 namespace trapeze {
