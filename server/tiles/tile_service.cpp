@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <stdexcept>
 #include <utility>
 
 #include "server/base/heap.h"
@@ -24,6 +25,33 @@ void attempt(const Action& tell) {
   }
 }
 
+// As drawing_cost() counts, for a tile of a few thousand trapezoids: some 100 microseconds.
+constexpr std::uint64_t kQuickToIdentify = 30'000;
+
+/// In the place of a renderer where tiles are identified only.
+class NoRenderer final : public MaskRenderer {
+ public:
+  explicit NoRenderer(std::string identity) : identity_(std::move(identity)) {}
+
+  DrawTimes draw(std::span<const MaskTask> /*tasks*/) override {
+    throw std::logic_error("what identifies tiles does not draw");
+  }
+  std::string_view name() const override { return "none"; }
+  std::string description() const override { return identity_; }
+
+ private:
+  std::string identity_;
+};
+
+bool is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) {
+  const auto is_quick = [&plan](const LayerPaint& paint) {
+    return paint.style.classing.is_plain() &&
+           plan.dataset->layers_on_all_grids()[paint.layer].parts == nullptr;
+  };
+  return cost <= kQuickToIdentify && plan.labels.empty() && !plan.debug.any() &&
+         std::ranges::all_of(plan.layers, is_quick);
+}
+
 }  // namespace
 
 TileService::TileService(TileServiceOptions options,
@@ -31,6 +59,7 @@ TileService::TileService(TileServiceOptions options,
     : options_(std::move(options)),
       renderer_(*renderers.front()),
       renderer_name_(renderer_.name()),
+      renderer_identity_(renderer_.identity()),
       workers_(renderers.size()) {
   try {
     start_workers(std::move(renderers));
@@ -57,6 +86,26 @@ void TileService::stop_workers() {
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) thread.join();
+}
+
+std::string TileService::identify(const TilePlan& plan, std::uint64_t cost) {
+  if (!is_quick_to_identify(plan, cost)) return {};
+  std::unique_ptr<TilePainter> identifier;
+  {
+    const std::lock_guard lock(identifying_);
+    if (!idle_identifiers_.empty()) {
+      identifier = std::move(idle_identifiers_.back());
+      idle_identifiers_.pop_back();
+    }
+  }
+  if (identifier == nullptr) {
+    identifier = std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_));
+  }
+  std::string fingerprint = identifier->identify({&plan});
+  if (plan.damaged_layer() != nullptr) fingerprint.clear();
+  const std::lock_guard lock(identifying_);
+  idle_identifiers_.push_back(std::move(identifier));
+  return fingerprint;
 }
 
 TileService::Ticket TileService::submit(Order order, Callback callback, Holds holds) {

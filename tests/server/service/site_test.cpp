@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -66,6 +69,30 @@ TEST_F(SiteTest, ATileShowsInsideAndOutsideWhereTheyAre) {
     }
   }
   EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(SiteTest, WhoeverHasATileIsToldSoWithoutWaitingForAWorker) {
+  const std::string target = "/tiles/rings,west/1/0/0.png?rings.stroke=black";
+  const std::string tag(get(target).header("ETag"));
+  testing::SampleSite other;  // which has drawn nothing
+  const auto answer_at_once = [&](const std::string& if_none_match) {
+    auto answer = std::make_shared<std::promise<HttpResponse>>();
+    auto answered = answer->get_future();
+    other.site().handle(
+        {"GET", target, "maps.example:8080", if_none_match, {}},
+        [answer](HttpResponse response) { answer->set_value(std::move(response)); });
+    const bool is_at_once = answered.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return std::pair(answered.get(), is_at_once);
+  };
+  const auto [same, is_at_once] = answer_at_once(tag);
+  EXPECT_EQ(same.status, 304);
+  EXPECT_EQ(same.header("ETag"), tag);
+  EXPECT_TRUE(is_at_once);
+  const auto [drawn, is_drawn_at_once] = answer_at_once("\"another\"");
+  EXPECT_EQ(drawn.status, 200);
+  EXPECT_EQ(drawn.header("ETag"), tag);
+  EXPECT_EQ(drawn.header("X-Cache"), "MISS");
+  EXPECT_EQ(*drawn.body, *get(target).body);
 }
 
 TEST_F(SiteTest, ScaleMultipliesThePixels) {

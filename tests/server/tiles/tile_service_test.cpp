@@ -405,6 +405,36 @@ TEST_F(TileServiceTest, WhatAllHoldWhoAskIsNotDrawn) {
   }
 }
 
+TEST_F(TileServiceTest, CheapTilesAreIdentifiedWithoutAWorker) {
+  constexpr std::uint64_t kCheap = 10'000;
+  start();
+  const TilePlan tile = plan(1);
+  const auto waiting = submit(2);  // which nothing opens the gate for
+  const std::string fingerprint = service_->identify(tile, kCheap);
+  EXPECT_FALSE(fingerprint.empty());
+  EXPECT_EQ(service_->identify(tile, kCheap), fingerprint);
+  EXPECT_NE(service_->identify(plan(3), kCheap), fingerprint);
+  open();
+  auto promise = std::make_shared<std::promise<TileAnswer>>();
+  service_->submit(order_of(tile, TileService::Cost::cheap),
+                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
+  EXPECT_EQ(promise->get_future().get().tile.fingerprint, fingerprint);
+}
+
+TEST_F(TileServiceTest, OthersAreNotIdentifiedWithinACall) {
+  constexpr std::uint64_t kCheap = 10'000;
+  start();
+  EXPECT_TRUE(service_->identify(plan(1), 1'000'000).empty());
+  TileRequest request;
+  request.layers = {"rings"};
+  for (const char* style : {"color-by=name&classes=a:red", "label=name", "debug=tile"}) {
+    request.style = testing::style_of(style);
+    EXPECT_TRUE(service_->identify(*plan_tile(request, dataset_), kCheap).empty()) << style;
+  }
+  request.style = testing::style_of("stroke=black");
+  EXPECT_FALSE(service_->identify(*plan_tile(request, dataset_), kCheap).empty());
+}
+
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
   TileService service({}, make_renderers({RendererKind::software, {}}, 4).renderers);
   std::vector<std::promise<TileAnswer>> answers(64);
