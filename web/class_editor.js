@@ -30,6 +30,7 @@ export class ClassEditor {
   constructor(fields, suggest, on_change) {
     this.fields_ = fields;
     this.suggest_ = suggest;
+    this.asked_ = 0;
     this.on_change_ = on_change;
     this.classes_ = [];
     this.is_open_ = false;
@@ -144,9 +145,10 @@ export class ClassEditor {
 
   async suggest_classes_() {
     const property = this.property_.value;
+    const asked = ++this.asked_; // answers may come in another order
     this.hint_.textContent = "Looking…";
     const { values, quantiles } = await this.suggest_(property, this.from_.value === "all");
-    if (this.property_.value !== property) return;
+    if (this.property_.value !== property || asked !== this.asked_) return;
     this.hint_.textContent = values.length ? "" : "There are no values in view.";
     if (values.length === 0) return this.on_change_();
     if (this.is_by_range_()) this.breaks_.value = this.breaks_of_(quantiles).join(", ");
