@@ -784,28 +784,19 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
   }
   TileService::Order order;
   order.key = plan.key();
-  const auto answer_held = [&](std::string fingerprint) {
-    if (fingerprint.empty()) return false;
+  if (std::string fingerprint = known_fingerprints_->find(order.key); !fingerprint.empty()) {
     KnownTarget known{std::move(fingerprint), window.format, layers_of(plan)};
-    order.may_be_known = false;
-    auto held = find_held(request, known);
-    if (!held) return false;
-    if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
-      known_targets_->insert(plan.dataset, request.target, std::move(known));
+    if (auto held = find_held(request, known)) {
+      if (request.target.starts_with("/tiles/") && KnownTargets::may_be_known(request.target)) {
+        known_targets_->insert(plan.dataset, request.target, std::move(known));
+      }
+      return respond(*std::move(held));
     }
-    respond(*std::move(held));
-    return true;
-  };
-  if (answer_held(known_fingerprints_->find(order.key))) return;
+    order.may_be_known = false;
+  }
   const std::uint64_t most = options_.tile_cost == 0 ? kNoLimit : options_.tile_cost;
   const std::uint64_t cost = drawing_cost(plan) + tiles_.cost_of_labels(plan);
   if (cost > most) return respond(problem_response(too_dear(most)));
-  if (order.may_be_known && !request.if_none_match.empty()) {
-    // Whoever has a tile mostly has the one that there is.
-    std::string fingerprint = tiles_.identify(plan, cost);
-    if (!fingerprint.empty()) known_fingerprints_->insert(order.key, fingerprint);
-    if (answer_held(std::move(fingerprint))) return;
-  }
   if (auto refusal = find_impatience(request, cost)) return respond(*std::move(refusal));
   if (cost > defaults::kDearTile) order.cost = TileService::Cost::dear;
   if (cost > kGiantTile) order.cost = TileService::Cost::giant;
@@ -827,6 +818,10 @@ void Site::draw_window(const WindowRequest& window, std::shared_ptr<const Datase
     holds = [if_none_match = request.if_none_match](const std::string& fingerprint) {
       return matches_entity_tag(if_none_match, entity_tag_of(fingerprint));
     };
+  }
+  // Whoever has a tile mostly has the one that there is.
+  if (holds && order.may_be_known) {
+    if (const auto answer = tiles_.answer_at_once(plan, cost, holds)) return answer_with(*answer);
   }
   order.plan = std::move(plan);
   const auto ticket = tiles_.submit(std::move(order), std::move(answer_with), std::move(holds));

@@ -88,8 +88,27 @@ void TileService::stop_workers() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-std::string TileService::identify(const TilePlan& plan, std::uint64_t cost) {
-  if (!is_quick_to_identify(plan, cost)) return {};
+std::optional<TileAnswer> TileService::answer_at_once(const TilePlan& plan, std::uint64_t cost,
+                                                      const Holds& holds) {
+  if (!is_quick_to_identify(plan, cost)) return std::nullopt;
+  TileAnswer answer{TileOutcome::held, {identify(plan), nullptr, TileHint::none, {}}};
+  const std::string& fingerprint = answer.tile.fingerprint;
+  if (plan.damaged_layer() != nullptr) return std::nullopt;
+  const TileCache::Tile kept =
+      options_.find_kept ? options_.find_kept(fingerprint) : TileCache::Tile{};
+  if (kept.bytes != nullptr) {
+    answer.outcome = TileOutcome::kept;
+    answer.tile.bytes = kept.bytes;
+    answer.tile.hint = kept.hint;
+  } else if (!holds(fingerprint)) {
+    return std::nullopt;
+  }
+  tell(answer);
+  return answer;
+}
+
+/// By the thread that calls; several may.
+std::string TileService::identify(const TilePlan& plan) {
   std::unique_ptr<TilePainter> identifier;
   {
     const std::lock_guard lock(identifying_);
@@ -102,7 +121,6 @@ std::string TileService::identify(const TilePlan& plan, std::uint64_t cost) {
     identifier = std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_));
   }
   std::string fingerprint = identifier->identify({&plan});
-  if (plan.damaged_layer() != nullptr) fingerprint.clear();
   const std::lock_guard lock(identifying_);
   idle_identifiers_.push_back(std::move(identifier));
   return fingerprint;

@@ -122,11 +122,12 @@ class TileService {
   /// memory to wait.
   Ticket submit(Order order, Callback callback, Holds holds = {});
 
-  /// The fingerprint of what a plan of that cost shows, found within this call, where that takes
-  /// less time than to hand it to a worker: a tenth of a millisecond at most. Empty for all others:
-  /// of many trapezoids, in several parts, with labels, marks or classes, of a file that was
-  /// truncated.
-  std::string identify(const TilePlan& plan, std::uint64_t cost);
+  /// What submit() would answer a plan of that cost which need not be drawn, found within this call
+  /// where that takes less time than to hand it to a worker: a tenth of a millisecond at most.
+  /// Nothing if it has to be drawn, and for all others, to be submitted: those of many trapezoids,
+  /// in several parts, with labels, marks or classes, of a file that was truncated.
+  std::optional<TileAnswer> answer_at_once(const TilePlan& plan, std::uint64_t cost,
+                                           const Holds& holds);
 
   /// Answers this one who asked, if that has not been done; what nobody else asked for is not drawn
   /// any further.
@@ -177,6 +178,7 @@ class TileService {
   using Flights = std::vector<std::shared_ptr<Flight>>;
   using Queue = std::deque<std::shared_ptr<Flight>>;
 
+  std::string identify(const TilePlan& plan);
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
   void work(TilePainter& painter);

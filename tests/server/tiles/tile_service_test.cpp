@@ -405,34 +405,62 @@ TEST_F(TileServiceTest, WhatAllHoldWhoAskIsNotDrawn) {
   }
 }
 
-TEST_F(TileServiceTest, CheapTilesAreIdentifiedWithoutAWorker) {
+TEST_F(TileServiceTest, CheapTilesThatAreHeldAreAnsweredWithoutAWorker) {
   constexpr std::uint64_t kCheap = 10'000;
-  start();
+  std::vector<TileOutcome> told;
+  TileServiceOptions options;
+  options.observe = [&told](const TileAnswer& answer) { told.push_back(answer.outcome); };
+  start(options);
   const TilePlan tile = plan(1);
   const auto waiting = submit(2);  // which nothing opens the gate for
-  const std::string fingerprint = service_->identify(tile, kCheap);
-  EXPECT_FALSE(fingerprint.empty());
-  EXPECT_EQ(service_->identify(tile, kCheap), fingerprint);
-  EXPECT_NE(service_->identify(plan(3), kCheap), fingerprint);
+  std::string asked;
+  const auto not_held = [&asked](const std::string& fingerprint) {
+    asked = fingerprint;
+    return false;
+  };
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, not_held));
+  EXPECT_FALSE(asked.empty());
+  const auto holds = [&asked](const std::string& fingerprint) { return fingerprint == asked; };
+  const auto held = service_->answer_at_once(tile, kCheap, holds);
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->outcome, TileOutcome::held);
+  EXPECT_EQ(held->tile.fingerprint, asked);
+  EXPECT_FALSE(service_->answer_at_once(plan(3), kCheap, holds));
+  EXPECT_EQ(told, std::vector{TileOutcome::held});
   open();
   auto promise = std::make_shared<std::promise<TileAnswer>>();
   service_->submit(order_of(tile, TileService::Cost::cheap),
                    [promise](const TileAnswer& answer) { promise->set_value(answer); });
-  EXPECT_EQ(promise->get_future().get().tile.fingerprint, fingerprint);
+  EXPECT_EQ(promise->get_future().get().tile.fingerprint, asked);
+  service_.reset();  // before what is told goes
 }
 
-TEST_F(TileServiceTest, OthersAreNotIdentifiedWithinACall) {
+TEST_F(TileServiceTest, CheapTilesThatAreKeptAreAnsweredWithoutAWorker) {
+  const auto bytes = std::make_shared<const std::string>("bytes");
+  TileServiceOptions options;
+  options.find_kept = [&](const std::string&) { return TileCache::Tile{bytes, TileHint::full}; };
+  start(options);
+  const auto kept =
+      service_->answer_at_once(plan(1), 10'000, [](const std::string&) { return false; });
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->outcome, TileOutcome::kept);
+  EXPECT_EQ(kept->tile.bytes, bytes);
+  EXPECT_EQ(kept->tile.hint, TileHint::full);
+}
+
+TEST_F(TileServiceTest, OthersAreNotAnsweredAtOnce) {
   constexpr std::uint64_t kCheap = 10'000;
+  const auto holds = [](const std::string&) { return true; };
   start();
-  EXPECT_TRUE(service_->identify(plan(1), 1'000'000).empty());
+  EXPECT_FALSE(service_->answer_at_once(plan(1), 1'000'000, holds));
   TileRequest request;
   request.layers = {"rings"};
   for (const char* style : {"color-by=name&classes=a:red", "label=name", "debug=tile"}) {
     request.style = testing::style_of(style);
-    EXPECT_TRUE(service_->identify(*plan_tile(request, dataset_), kCheap).empty()) << style;
+    EXPECT_FALSE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds)) << style;
   }
   request.style = testing::style_of("stroke=black");
-  EXPECT_FALSE(service_->identify(*plan_tile(request, dataset_), kCheap).empty());
+  EXPECT_TRUE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds));
 }
 
 TEST_F(TileServiceTest, DifferentTilesAreDrawnAtTheSameTimeAsIfOneByOne) {
