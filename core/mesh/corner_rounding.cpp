@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/grid/ring_box.h"
+
 namespace trapeze {
 namespace {
 
@@ -19,10 +21,6 @@ double distance(Point a, Point b) {
   const double x = static_cast<double>(b.x) - a.x;
   const double y = static_cast<double>(b.y) - a.y;
   return std::sqrt(x * x + y * y);
-}
-
-bool contains(const Box& box, Point p) {
-  return p.x >= box.min_x && p.x <= box.max_x && p.y >= box.min_y && p.y <= box.max_y;
 }
 
 /// The point at that distance from one towards another.
@@ -214,7 +212,7 @@ void CornerRounding::round_corner(VertexKey key, const Edge& first, const Edge& 
                                   const Size& size) {
   const std::array<const Edge*, 2> edges{&first, &second};
   const Point tip = first.upper_key == key ? first.upper : first.lower;
-  if (!contains(size.tips, tip)) return;
+  if (!holds(size.tips, {tip.x, tip.y, tip.x, tip.y})) return;
   const double pixel = size.pixel;
   Corner corner;
   std::array<Point, 2> ends;

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -113,8 +114,9 @@ TEST_P(ChangedTilesTest, AreAllAndOnlyThoseThatHaveOtherBytes) {
     truly += different.size();
     before = after;
   }
-  // The others show a change that is too small for any pixel.
-  EXPECT_LE(listed, truly * 3 / 2 + 90);
+  // The others show a change that is too small for any pixel, or of corners out of sight.
+  const bool is_smooth = std::string_view(GetParam()).find("smooth") != std::string_view::npos;
+  EXPECT_LE(listed, truly * 3 / 2 + (is_smooth ? 90 : 60));
 }
 
 INSTANTIATE_TEST_SUITE_P(Styles, ChangedTilesTest,
