@@ -57,6 +57,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION web)
 # Beside the libraries: the unit reloads by kill.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS procps)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, fonts-dejavu-core")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libosmesa6)  # loaded when it is asked for
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "tile server for polygon maps
 Reads polygons in any format of GDAL and serves them over HTTP as PNG and WebP
 tiles, in the style that a request asks for, simplified to what a pixel shows.

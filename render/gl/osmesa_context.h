@@ -1,4 +1,5 @@
-// Contexts by OSMesa, which draws in memory and knows no devices.
+// Contexts by OSMesa, which draws in memory and knows no devices. Its library is loaded when the
+// first one is opened.
 #pragma once
 
 #include <memory>
@@ -7,7 +8,7 @@
 
 namespace trapeze {
 
-/// Whether this program was built with OSMesa.
+/// Whether this program was built to draw by OSMesa. Its library may be missing all the same.
 bool has_osmesa();
 
 /// Throws std::runtime_error with the reason.
