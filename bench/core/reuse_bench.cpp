@@ -146,10 +146,12 @@ void prepare(const std::string& source, const std::string& earlier, const std::s
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
   LoadOptions options;
-  if (!earlier.empty()) options.earlier = open_earlier_layer(earlier, {}).layer;
+  EarlierPrepared before;
+  if (!earlier.empty()) before = open_earlier_layer(earlier, {});
+  options.earlier = before.layer;
   const LoadedLayer loaded = load_layer(source, options);
   const double built = since_start();
-  save_prepared_layer(output, loaded, 1, stamp_source(source));
+  save_prepared_layer(output, loaded, 1, stamp_source(source), {}, before);
   shortest.beyond_reading = std::min(shortest.beyond_reading, built - loaded.report.read_seconds);
   shortest.all = std::min(shortest.all, since_start());
   shortest.taken_over = loaded.report.taken_over;

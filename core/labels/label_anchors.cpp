@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include "core/grid/digest.h"
 #include "core/grid/for_each_in_parallel.h"
 #include "core/grid/ring_box.h"
+#include "core/layer/built_units.h"
 
 namespace trapeze {
 namespace {
@@ -17,6 +18,8 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 256;
 // A part that is too fine to be searched to the end has the best point of so many.
 constexpr int kMostProbes = 2'000;
+// And one of which nothing is seen in so many is taken for covered by others.
+constexpr int kMostProbesOfNothing = 500;
 
 double area_of_ring(std::span<const Point> ring) {
   double twice = 0;
@@ -196,13 +199,30 @@ class Boundary {
 
   std::size_t size() const { return sides_.size(); }
 
-  /// How far a side is from the place.
-  double distance(std::uint32_t number, double x, double y) const {
+  /// Where on a side a place is nearest to it.
+  struct Foot {
+    double square = 0;  // of the distance
+    double along = 0;   // from 0 to 1: from the beginning of the side
+    double from_x = 0;  // the way from there to the place
+    double from_y = 0;
+
+    double distance() const { return std::sqrt(square); }
+  };
+  Foot foot(std::uint32_t number, double x, double y) const {
     const Side& side = sides_[number];
     const double px = x - side.x;
     const double py = y - side.y;
     const double along = std::clamp((px * side.dx + py * side.dy) * side.by_square, 0.0, 1.0);
-    return std::hypot(px - along * side.dx, py - along * side.dy);
+    const double from_x = px - along * side.dx;
+    const double from_y = py - along * side.dy;
+    return {from_x * from_x + from_y * from_y, along, from_x, from_y};
+  }
+  /// By how much the foot of a place that near to one with that foot may be beyond an end of the
+  /// side, were the side longer; nothing if the foot is an end itself.
+  std::optional<double> most_beyond(std::uint32_t number, const Foot& foot, double near) const {
+    if (foot.along <= 0 || foot.along >= 1) return std::nullopt;
+    const double to_end = std::min(foot.along, 1 - foot.along);
+    return std::max(0.0, near - to_end / std::sqrt(sides_[number].by_square));
   }
 
   bool is_small(std::uint32_t number) const { return is_small_[sides_[number].polygon] != 0; }
@@ -261,81 +281,154 @@ struct Square {
   double half = 0;
   double to_large = 0;  // from its centre to the nearest large ring, negative where that is outside
   double to_small = 0;  // the same of small ones
-  std::vector<std::uint32_t> sides = {};  // those that may be nearest to a place in it
+  double most = 0;      // no point in it is deeper
+  std::size_t first_side = 0;  // of those that may be nearest to a place in it
+  std::size_t side_count = 0;
 
   double half_diagonal() const { return half * std::sqrt(2.0); }
   double depth() const { return std::min(to_large, LabelAnchors::kSmallRings * to_small); }
-  /// No point in it is deeper.
-  double most() const {
-    return std::min(to_large + half_diagonal(),
-                    LabelAnchors::kSmallRings * (to_small + half_diagonal()));
-  }
 };
 
-/// The square with its depth, and with those of the sides that may be nearest somewhere in it: no
-/// side does that is farther from the centre than the nearest one by more than a diagonal.
-Square probe(Boundary& boundary, double x, double y, double half,
-             std::span<const std::uint32_t> sides, std::vector<double>& distances) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Square square{x, y, half, kFar, kFar};
-  distances.clear();
-  for (const std::uint32_t side : sides) {
-    distances.push_back(boundary.distance(side, x, y));
-    double& nearest = boundary.is_small(side) ? square.to_small : square.to_large;
-    nearest = std::min(nearest, distances.back());
+/// Looks at squares, one after the other.
+class Prober {
+ public:
+  void begin(Boundary& boundary) {
+    boundary_ = &boundary;
+    sides_.resize(boundary.size());
+    for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = static_cast<std::uint32_t>(i);
   }
-  const double diagonal = 2 * square.half_diagonal();
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const double nearest = boundary.is_small(sides[i]) ? square.to_small : square.to_large;
-    if (distances[i] <= nearest + diagonal) square.sides.push_back(sides[i]);
+
+  /// All sides, for squares that are not a part of another one.
+  std::size_t side_count() const { return boundary_->size(); }
+
+  /// The square with its depth, and with those of the sides that may be nearest somewhere in it: no
+  /// side does that is farther from the centre than the nearest one by more than a diagonal.
+  Square look(double x, double y, double half, std::size_t first_side, std::size_t side_count) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Square square{x, y, half, kFar, kFar, 0, sides_.size(), 0};
+    feet_.clear();
+    double large = kFar;
+    double small = kFar;
+    for (std::size_t i = first_side; i < first_side + side_count; ++i) {
+      feet_.push_back(boundary_->foot(sides_[i], x, y));
+      double& nearest = boundary_->is_small(sides_[i]) ? small : large;
+      nearest = std::min(nearest, feet_.back().square);
+    }
+    square.to_large = std::sqrt(large);
+    square.to_small = std::sqrt(small);
+    const double diagonal = 2 * square.half_diagonal();
+    const auto squared_reach = [diagonal](double nearest) {
+      return (nearest + diagonal) * (nearest + diagonal);
+    };
+    const double reach_of_large = squared_reach(square.to_large);
+    const double reach_of_small = squared_reach(square.to_small);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < side_count; ++i) {
+      const std::uint32_t side = sides_[first_side + i];
+      if (feet_[i].square > (boundary_->is_small(side) ? reach_of_small : reach_of_large)) continue;
+      sides_.push_back(side);
+      feet_[kept++] = feet_[i];
+    }
+    square.side_count = kept;
+    const Boundary::Inside inside = boundary_->inside(x, y);
+    const double between = inside.of_large ? most_between_walls(square) : kFar;
+    if (!inside.of_large) square.to_large = -square.to_large;
+    if (!inside.of_small) square.to_small = -square.to_small;
+    square.most =
+        std::min({square.to_large + square.half_diagonal(), between,
+                  LabelAnchors::kSmallRings * (square.to_small + square.half_diagonal())});
+    return square;
   }
-  const Boundary::Inside inside = boundary.inside(x, y);
-  if (!inside.of_large) square.to_large = -square.to_large;
-  if (!inside.of_small) square.to_small = -square.to_small;
-  return square;
-}
+
+ private:
+  /// How deep a point of the square may be at most, being between the nearest large side and any
+  /// other. As a point moves by v, its distances from two straight walls change by the parts of v
+  /// along their normals m and n, and the smaller one is at most the mean of both,
+  /// (d + e + (m + n) v) / 2. So where walls face each other, it is half of what lies between them,
+  /// wherever the point. Beyond the end of a side it is farther away than from the straight line,
+  /// by no more than it is beyond; and behind a side no farther than the square reaches.
+  double most_between_walls(const Square& square) const {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    const double near = square.half_diagonal();
+    const auto most_beyond = [&](std::size_t i) {
+      const std::uint32_t side = sides_[square.first_side + i];
+      if (boundary_->is_small(side)) return std::optional<double>();
+      return boundary_->most_beyond(side, feet_[i], near);
+    };
+    std::size_t nearest = square.side_count;
+    for (std::size_t i = 0; i < square.side_count; ++i) {
+      const bool is_nearer =
+          nearest == square.side_count || feet_[i].square < feet_[nearest].square;
+      if (is_nearer && most_beyond(i)) nearest = i;
+    }
+    if (nearest == square.side_count || feet_[nearest].square == 0) return kFar;
+    const Boundary::Foot& one = feet_[nearest];
+    const double d = one.distance();
+    const double beyond_one = *most_beyond(nearest);
+    double most = kFar;
+    for (std::size_t i = 0; i < square.side_count; ++i) {
+      const Boundary::Foot& other = feet_[i];
+      if (one.from_x * other.from_x + one.from_y * other.from_y >= 0) continue;
+      const std::optional<double> beyond_other = most_beyond(i);
+      if (!beyond_other) continue;
+      const double e = other.distance();
+      const double x = one.from_x / d + other.from_x / e;
+      const double y = one.from_y / d + other.from_y / e;
+      const double before_both =
+          (d + e + std::sqrt(x * x + y * y) * near + beyond_one + *beyond_other) / 2;
+      const double behind_one = near - d + beyond_one;
+      const double behind_other = near - e + *beyond_other;
+      most = std::min(most, std::max({before_both, behind_one, behind_other}));
+    }
+    return most;
+  }
+
+  Boundary* boundary_ = nullptr;
+  std::vector<std::uint32_t> sides_;  // all, then those of each square
+  std::vector<Boundary::Foot> feet_;  // of the sides at hand
+};
 
 /// The deepest point, by squares that are divided where it may lie; its place is not whole yet.
-Square deepest(Boundary& boundary, const Box& box) {
+Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
   const double min_x = box.min_x / LabelAnchors::kSqueeze;
   const double width = box.max_x / LabelAnchors::kSqueeze - min_x;
   const double height = static_cast<double>(box.max_y) - box.min_y;
   // Long ones are divided into as many squares as fit.
   const double side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
-  std::vector<std::uint32_t> all(boundary.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
-  std::vector<double> distances;
+  prober.begin(boundary);
+  const std::size_t all = prober.side_count();
   std::vector<Square> open;  // a heap
-  const auto is_worse = [](const Square& a, const Square& b) { return a.most() < b.most(); };
+  const auto is_worse = [](const Square& a, const Square& b) { return a.most < b.most; };
   Square best;
   best.to_large = -std::numeric_limits<double>::infinity();
   int probes = 0;
-  const auto take = [&](Square square) {
+  const auto take = [&](const Square& square) {
     ++probes;
-    if (square.depth() > best.depth()) {
-      best = {square.x, square.y, square.half, square.to_large, square.to_small};
-    }
-    open.push_back(std::move(square));
+    if (square.depth() > best.depth()) best = square;
+    open.push_back(square);
     std::ranges::push_heap(open, is_worse);
   };
   const auto columns = static_cast<int>(std::ceil(width / side));
   const auto rows = static_cast<int>(std::ceil(height / side));
   for (int column = 0; column < columns; ++column) {
     for (int row = 0; row < rows; ++row) {
-      take(probe(boundary, min_x + (column + 0.5) * side, box.min_y + (row + 0.5) * side, side / 2,
-                 all, distances));
+      take(prober.look(min_x + (column + 0.5) * side, box.min_y + (row + 0.5) * side, side / 2, 0,
+                       all));
     }
   }
-  while (!open.empty() && probes < kMostProbes) {
+  const auto has_been_searched = [&] {
+    return probes >= (best.depth() > 0 ? kMostProbes : kMostProbesOfNothing);
+  };
+  while (!open.empty() && !has_been_searched()) {
     std::ranges::pop_heap(open, is_worse);
-    const Square square = std::move(open.back());
+    const Square square = open.back();
     open.pop_back();
     const double wanted = best.depth() + std::max(best.depth() * LabelAnchors::kDepthShare, 0.5);
-    if (square.most() <= wanted) break;
+    if (square.most <= wanted) break;
     const double quarter = square.half / 2;
     for (const double x : {square.x - quarter, square.x + quarter}) {
       for (const double y : {square.y - quarter, square.y + quarter}) {
-        take(probe(boundary, x, y, quarter, square.sides, distances));
+        take(prober.look(x, y, quarter, square.first_side, square.side_count));
       }
     }
   }
@@ -345,29 +438,43 @@ Square deepest(Boundary& boundary, const Box& box) {
 /// Reused from feature to feature for its memory.
 class Finder {
  public:
-  Rings rings;  // of the feature
-  /// Begins without any that lie over the feature.
-  void clear_above() { above_.clear(); }
-  void add_above(const Rings& other) {
-    Above& above = above_.emplace_back();
-    above.rings = &other;
-    for (std::size_t i = 0; i < other.size(); ++i) {
-      above.boxes.push_back(box_of(other[i]));
-      above.box.include(above.boxes.back());
-      above.area = std::max(above.area, area_of_ring(other[i]));
+  /// Takes a feature of a layer, with those over it. False if there is nothing of it.
+  bool take(const Layer& layer, std::uint32_t row) {
+    rings_.clear();
+    above_.clear();
+    if (layer.is_removed(row)) return false;
+    layer.append_outline(row, rings_);
+    if (rings_.empty()) return false;
+    for (const FeatureOverlap& overlap : layer.overlaps().of(row)) {
+      if (overlap.other < row || layer.is_removed(overlap.other)) continue;
+      layer.append_outline(overlap.other, add_above());
     }
+    return true;
+  }
+  void take(const Rings& rings, std::span<const Rings> above) {
+    rings_ = rings;
+    above_.clear();
+    for (const Rings& other : above) add_above() = other;
+  }
+
+  /// Of all that the anchors of the feature depend on.
+  Digest digest() const {
+    std::vector<Digest> digests{digest_of(rings_)};
+    for (const Above& above : above_) digests.push_back(digest_of(above.rings));
+    return digest_of(digests);
   }
 
   void find(std::uint32_t row, LabelParts parts, std::vector<LabelAnchor>& anchors) {
-    for (const Part& part : parts_of(rings)) {
-      const Box box = box_of(rings[part.outer]);
+    for (Above& above : above_) above.measure();
+    for (const Part& part : parts_of(rings_)) {
+      const Box box = box_of(rings_[part.outer]);
       const double small = part.area * LabelAnchors::kSmallShare;
       boundary_.clear();
       boundary_.begin_polygon(false);
-      boundary_.add(rings[part.outer]);
+      boundary_.add(rings_[part.outer]);
       const auto add_holes = [&](bool are_small) {
         for (const std::size_t hole : part.holes) {
-          if ((area_of_ring(rings[hole]) < small) == are_small) boundary_.add(rings[hole]);
+          if ((area_of_ring(rings_[hole]) < small) == are_small) boundary_.add(rings_[hole]);
         }
       };
       add_holes(false);
@@ -377,11 +484,11 @@ class Finder {
         if (!above.box.intersects(box)) continue;
         boundary_.begin_polygon(above.area < small);
         for (std::size_t i = 0; i < above.boxes.size(); ++i) {
-          if (above.boxes[i].intersects(box)) boundary_.add((*above.rings)[i]);
+          if (above.boxes[i].intersects(box)) boundary_.add(above.rings[i]);
         }
       }
       boundary_.sort(box);
-      const Square found = deepest(boundary_, box);
+      const Square found = deepest(boundary_, box, prober_);
       // In whole cells.
       const double x = std::round(found.x * LabelAnchors::kSqueeze);
       const double y = std::round(found.y);
@@ -399,50 +506,103 @@ class Finder {
 
  private:
   struct Above {
-    const Rings* rings = nullptr;
-    std::vector<Box> boxes;  // of its rings
-    Box box;                 // around all
-    double area = 0;         // of the largest
+    Rings rings;
+    std::vector<Box> boxes = {};  // of its rings
+    Box box = {};                 // around all
+    double area = 0;              // of the largest
+
+    void measure() {
+      for (std::size_t i = 0; i < rings.size(); ++i) {
+        boxes.push_back(box_of(rings[i]));
+        box.include(boxes.back());
+        area = std::max(area, area_of_ring(rings[i]));
+      }
+    }
   };
 
+  Rings& add_above() { return above_.emplace_back().rings; }
+
+  Rings rings_;
   Boundary boundary_;
+  Prober prober_;
   std::vector<Above> above_;
 };
 
-void find_rows(const Layer& layer, LabelParts parts, std::uint32_t first, std::uint32_t end,
-               std::vector<LabelAnchor>& anchors) {
-  Finder finder;
-  std::deque<Rings> above;
-  for (std::uint32_t row = first; row < end; ++row) {
-    if (layer.is_removed(row)) continue;
-    finder.rings.clear();
-    layer.append_outline(row, finder.rings);
-    if (finder.rings.empty()) continue;
-    finder.clear_above();
-    above.clear();
-    for (const FeatureOverlap& overlap : layer.overlaps().of(row)) {
-      if (overlap.other < row || layer.is_removed(overlap.other)) continue;
-      layer.append_outline(overlap.other, above.emplace_back());
-      finder.add_above(above.back());
+/// Calls visit(row, finder, results) for all features of which there is something, the finder
+/// having taken the feature; what the calls append to `results`, in order of rows.
+template <typename Result, typename Visit>
+std::vector<Result> for_each_feature(const Layer& layer, unsigned threads, const Visit& visit) {
+  const std::size_t rows = layer.features().size();
+  std::vector<std::vector<Result>> results((rows + kRowsAtOnce - 1) / kRowsAtOnce);
+  for_each_in_parallel(results.size(), threads, [&](std::size_t i) {
+    Finder finder;
+    const std::size_t end = std::min((i + 1) * kRowsAtOnce, rows);
+    for (auto row = static_cast<std::uint32_t>(i * kRowsAtOnce); row < end; ++row) {
+      if (finder.take(layer, row)) visit(row, finder, results[i]);
     }
-    finder.find(row, parts, anchors);
-  }
+  });
+  std::size_t count = 0;
+  for (const auto& some : results) count += some.size();
+  std::vector<Result> all;
+  all.reserve(count);
+  for (const auto& some : results) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
+
+/// What was found before, by what it was found of.
+class AnchorsByDigest {
+ public:
+  AnchorsByDigest(const KnownAnchors& known, unsigned threads) {
+    if (known.of_all_parts.empty()) return;
+    entries_ = for_each_feature<Entry>(
+        *known.layer, threads,
+        [&](std::uint32_t row, const Finder& finder, std::vector<Entry>& entries) {
+          const auto of_row =
+              std::ranges::equal_range(known.of_all_parts, row, {}, &LabelAnchor::row);
+          entries.push_back({finder.digest(), {of_row.begin(), of_row.end()}});
+        });
+    std::ranges::sort(entries_, {}, &Entry::digest);
+  }
+
+  /// Nothing if it has not been looked at.
+  std::optional<std::span<const LabelAnchor>> find(const Finder& finder) const {
+    if (entries_.empty()) return std::nullopt;
+    const Digest digest = finder.digest();
+    const auto entry = std::ranges::lower_bound(entries_, digest, {}, &Entry::digest);
+    if (entry == entries_.end() || entry->digest != digest) return std::nullopt;
+    return entry->anchors;
+  }
+
+ private:
+  struct Entry {
+    Digest digest;
+    std::span<const LabelAnchor> anchors;
+  };
+
+  std::vector<Entry> entries_;
+};
 
 }  // namespace
 
-LabelAnchors::LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads) {
-  const std::size_t rows = layer.features().size();
-  std::vector<std::vector<LabelAnchor>> found((rows + kRowsAtOnce - 1) / kRowsAtOnce);
-  for_each_in_parallel(found.size(), threads, [&](std::size_t i) {
-    const std::size_t first = i * kRowsAtOnce;
-    find_rows(layer, parts, static_cast<std::uint32_t>(first),
-              static_cast<std::uint32_t>(std::min(first + kRowsAtOnce, rows)), found[i]);
-  });
-  std::size_t count = 0;
-  for (const auto& some : found) count += some.size();
-  anchors_.reserve(count);
-  for (const auto& some : found) anchors_.insert(anchors_.end(), some.begin(), some.end());
+LabelAnchors::LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads)
+    : anchors_(for_each_feature<LabelAnchor>(
+          layer, threads,
+          [parts](std::uint32_t row, Finder& finder, std::vector<LabelAnchor>& anchors) {
+            finder.find(row, parts, anchors);
+          })) {}
+
+LabelAnchors::LabelAnchors(const Layer& layer, const KnownAnchors& known, unsigned threads) {
+  const AnchorsByDigest before(known, threads);
+  anchors_ = for_each_feature<LabelAnchor>(
+      layer, threads,
+      [&before](std::uint32_t row, Finder& finder, std::vector<LabelAnchor>& anchors) {
+        const auto found = before.find(finder);
+        if (!found) return finder.find(row, LabelParts::all, anchors);
+        for (LabelAnchor anchor : *found) {
+          anchor.row = row;
+          anchors.push_back(anchor);
+        }
+      });
 }
 
 LabelAnchors::LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts parts) {
@@ -455,8 +615,7 @@ LabelAnchors::LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts
 std::vector<LabelAnchor> anchors_of_feature(std::uint32_t row, const Rings& rings,
                                             std::span<const Rings> above, LabelParts parts) {
   Finder finder;
-  finder.rings = rings;
-  for (const Rings& other : above) finder.add_above(other);
+  finder.take(rings, above);
   std::vector<LabelAnchor> anchors;
   finder.find(row, parts, anchors);
   return anchors;

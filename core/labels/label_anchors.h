@@ -39,6 +39,12 @@ struct LabelAnchor {
   friend bool operator==(const LabelAnchor&, const LabelAnchor&) = default;
 };
 
+/// What was found of a layer before.
+struct KnownAnchors {
+  const Layer* layer = nullptr;
+  std::span<const LabelAnchor> of_all_parts;  // in order of rows; empty: nothing is known
+};
+
 class LabelAnchors {
  public:
   /// Width by height of the ellipse.
@@ -51,8 +57,13 @@ class LabelAnchors {
   static constexpr double kDepthShare = 0.04;
 
   /// Of all features that there are, on up to `threads` threads, on which nothing depends. A part
-  /// without any inside that is seen has none; of a feature whose largest part has none, the next.
+  /// without any inside that is seen has none, and one of which next to nothing is seen may have
+  /// none; of a feature whose largest part has none, the next.
   LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads = 1);
+  /// Those of all parts; of features whose outlines, and those of the features over them, are as
+  /// they were in a layer that has been looked at before, they are not sought again. Equal to
+  /// finding all.
+  LabelAnchors(const Layer& layer, const KnownAnchors& known, unsigned threads = 1);
   /// Those of a layer of which all parts have been looked at before: equal to finding them.
   LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts parts);
 

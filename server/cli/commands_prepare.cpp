@@ -89,7 +89,7 @@ EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
                              const LayerOptions& options, const std::string& grid) {
   if (file.empty()) return {};
   if (!std::filesystem::exists(file)) {
-    if (file != reuse) return {nullptr, nullptr, "is not there"};
+    if (file != reuse) return {nullptr, nullptr, {}, "is not there"};
     throw std::runtime_error(file + ": there is no such file to take over from");
   }
   if (!is_prepared_file(file)) {
@@ -140,7 +140,7 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   if (const std::string excess = find_excess(loaded.report, max_skipped); !excess.empty()) {
     throw std::runtime_error(excess + "; `trapeze check` tells which");
   }
-  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source, how.grid);
+  save_prepared_layer(output, loaded, revision_of(*loaded.layer), source, how.grid, earlier);
   const LoadReport& report = loaded.report;
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,

@@ -289,10 +289,10 @@ void add_arrays(const LayerArrays& a, SectionWriter& out) {
 }
 
 /// None of a part of a layer, as labels are of all of it.
-LabelAnchors label_anchors_of(const LoadedLayer& loaded) {
-  if (loaded.part) return {{}, LabelParts::all};
+LabelAnchors label_anchors_of(const LoadedLayer& loaded, const EarlierPrepared& earlier) {
+  if (loaded.part) return {std::span<const LabelAnchor>(), LabelParts::all};
   const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
-  return {*loaded.layer, LabelParts::all, threads};
+  return {*loaded.layer, {earlier.layer.get(), earlier.label_anchors}, threads};
 }
 
 std::span<const LabelAnchor> take_label_anchors(SectionReader& in, std::size_t features) {
@@ -477,14 +477,15 @@ LoadedLayer open(const std::string& path, const PreparedDemands& demands) {
 }  // namespace
 
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
-                         const SourceStamp& source, const std::string& grid) {
+                         const SourceStamp& source, const std::string& grid,
+                         const EarlierPrepared& earlier) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !is_prepared_file(path)) {
     throw std::runtime_error(path + ": is there already and is no prepared file; not replaced");
   }
   const LayerArrays arrays = arrays_of(*loaded.layer);
   const ByteWriter description = written(arrays, revision, source, loaded);
-  const LabelAnchors anchors = label_anchors_of(loaded);
+  const LabelAnchors anchors = label_anchors_of(loaded, earlier);
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
   add_arrays(arrays, sections);
@@ -541,7 +542,9 @@ EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& 
                   {options.weights, "", options.coverage, options.close_gaps, "", options.merge,
                    options.merge_by});
     check_fingerprint(options, grid, sections.fingerprint());
-    earlier.layer = layer_from_sections(sections, std::move(description), file).layer;
+    LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
+    earlier.layer = std::move(loaded.layer);
+    earlier.label_anchors = loaded.label_anchors;
     earlier.file = file;
   } catch (const UnfitError& error) {
     earlier.unfit = error.what();

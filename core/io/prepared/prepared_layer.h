@@ -16,12 +16,22 @@
 
 namespace trapeze {
 
+/// A prepared layer of which another one is to take over what has not changed.
+struct EarlierPrepared {
+  std::shared_ptr<const Layer> layer;          // null if nothing can be taken over
+  std::shared_ptr<const MappedFile> file;      // that the layer looks at
+  std::span<const LabelAnchor> label_anchors;  // in memory that the layer keeps
+  std::string unfit;                           // why nothing can be; empty if there is a layer
+};
+
 /// Saves a layer that was loaded from the source of the stamp, or a part of one, under a `revision`
 /// that it is to have when it is opened. A prepared file of that name is replaced, see
-/// write_atomically; any other one is not. `grid` is the one it was built on. Throws
-/// std::runtime_error that names the path.
+/// write_atomically; any other one is not. `grid` is the one it was built on. Where labels go is
+/// taken over from `earlier`, of features that are as they were. Throws std::runtime_error that
+/// names the path.
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
-                         const SourceStamp& source, const std::string& grid = {});
+                         const SourceStamp& source, const std::string& grid = {},
+                         const EarlierPrepared& earlier = {});
 
 /// The demands on a prepared layer.
 struct PreparedDemands {
@@ -75,13 +85,6 @@ void check_prepared_summary(const std::string& path, const PreparedSummary& summ
 /// checked. Throws std::runtime_error that names the path if it is not the same file any longer, or
 /// damaged.
 LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary& summary);
-
-/// A prepared layer of which another one is to take over what has not changed.
-struct EarlierPrepared {
-  std::shared_ptr<const Layer> layer;      // null if nothing can be taken over
-  std::shared_ptr<const MappedFile> file;  // that the layer looks at
-  std::string unfit;                       // why nothing can be; empty if there is a layer
-};
 
 /// Maps a prepared file for LoadOptions::earlier, whatever it was prepared from. A file of another
 /// version of Trapeze, or prepared with other options than these, is unfit. Throws

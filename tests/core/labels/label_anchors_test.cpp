@@ -139,6 +139,56 @@ TEST(LabelAnchorsTest, NothingIsDeeper) {
   }
 }
 
+/// With corners at right angles, turned by an angle, and so between walls that face each other.
+Ring turned(const Ring& ring, double angle) {
+  Ring made;
+  for (const Point p : ring) {
+    made.push_back({static_cast<std::int32_t>(p.x * std::cos(angle) - p.y * std::sin(angle)),
+                    static_cast<std::int32_t>(p.x * std::sin(angle) + p.y * std::cos(angle))});
+  }
+  return made;
+}
+
+TEST(LabelAnchorsTest, NothingIsDeeperBetweenWalls) {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<std::int32_t> length(300, 6'000);
+  std::uniform_real_distribution<double> angle(0, std::numbers::pi);
+  for (int i = 0; i < 60; ++i) {
+    // An L with arms of any width, some of them cut into short sides.
+    const std::int32_t wide = length(random);
+    const std::int32_t high = length(random);
+    const std::int32_t across = wide / 4 + length(random) * wide / 12'000;
+    const std::int32_t down = high / 4 + length(random) * high / 12'000;
+    Ring corners{{0, 0}, {wide, 0}, {wide, down}, {across, down}, {across, high}, {0, high}};
+    Ring ring;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Point a = corners[k];
+      const Point b = corners[(k + 1) % corners.size()];
+      const int pieces = i % 3 == 0 ? 7 : 1;
+      for (int j = 0; j < pieces; ++j) {
+        ring.push_back({a.x + (b.x - a.x) * j / pieces, a.y + (b.y - a.y) * j / pieces});
+      }
+    }
+    const Rings rings = rings_of({turned(ring, i % 2 == 0 ? 0 : angle(random))});
+    const auto anchors = anchors_of_feature(0, rings);
+    ASSERT_EQ(anchors.size(), 1u);
+    const double greatest = deepest(rings, std::min(wide, high) / 60.0);
+    EXPECT_GE(anchors[0].depth, greatest * (1 - LabelAnchors::kDepthShare) - 1);
+    EXPECT_LE(anchors[0].depth, greatest * 1.1) << "no boundary is nearer than that";
+  }
+}
+
+TEST(LabelAnchorsTest, AStripThatIsSeenIsFound) {
+  const Rings land = rings_of({turned(box(0, 0, 90'000, 30'000), 0.3)});
+  for (const std::int32_t seen : {30'000, 3'000, 1'000}) {
+    const std::vector<Rings> above = {rings_of({turned(box(0, 0, 90'000 - seen, 30'000), 0.3)})};
+    const auto anchors = anchors_of_feature(0, land, above);
+    ASSERT_EQ(anchors.size(), 1u) << seen;
+    EXPECT_GT(anchors[0].depth, 0);
+    EXPECT_FALSE(is_inside(above[0], anchors[0].place.x, anchors[0].place.y));
+  }
+}
+
 TEST(LabelAnchorsTest, DegenerateRingsHaveNone) {
   EXPECT_TRUE(anchors_of_feature(0, {}).empty());
   EXPECT_TRUE(anchors_of_feature(0, rings_of({{{0, 0}, {10, 10}}})).empty());

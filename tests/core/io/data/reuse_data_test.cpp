@@ -110,14 +110,13 @@ using Case = std::tuple<std::string, CoverageMode>;
 class ReuseDataTest : public ::testing::TestWithParam<Case> {
  protected:
   /// Prepares what was written last; returns the file.
-  std::string prepare(const std::string& name, std::shared_ptr<const Layer> earlier,
-                      unsigned threads) {
+  std::string prepare(const std::string& name, const EarlierPrepared& earlier, unsigned threads) {
     LoadOptions options;
     options.generalization.coverage = std::get<CoverageMode>(GetParam());
     options.threads = threads;
-    options.earlier = std::move(earlier);
+    options.earlier = earlier.layer;
     loaded_ = load_layer(source_, options);
-    save_prepared_layer(folder_.file(name), loaded_, 1, stamp_source(source_));
+    save_prepared_layer(folder_.file(name), loaded_, 1, stamp_source(source_), {}, earlier);
     return folder_.file(name);
   }
 
@@ -133,26 +132,30 @@ TEST_P(ReuseDataTest, IsTheFileThatIsPreparedAnew) {
   if (!edited.is_there()) GTEST_SKIP() << "that file is not in TRAPEZE_DATA";
   std::mt19937 random(static_cast<unsigned>(edited.size()));
   edited.write(source_);
-  prepare("before.trapeze", nullptr, 0);
+  prepare("before.trapeze", {}, 0);
   EXPECT_EQ(loaded_.report.taken_over, 0u);
-  std::shared_ptr<const Layer> before = std::move(loaded_.layer);
+  EarlierPrepared before;
+  before.layer = std::move(loaded_.layer);
   for (int step = 0; step < 4; ++step) {
     SCOPED_TRACE("step " + std::to_string(step));
     for (int changes = 0; changes < 1 + 4 * step; ++changes) edited.edit(random);
     if (step == 3) edited.shuffle(random);
     std::filesystem::remove(source_);
     edited.write(source_);
-    const std::string anew = read_file(prepare("anew.trapeze", nullptr, 0));
+    const std::string anew = read_file(prepare("anew.trapeze", {}, 0));
     const std::string reused = read_file(prepare("reused.trapeze", before, 1 + step % 2));
     EXPECT_TRUE(anew == reused);
     if (std::get<CoverageMode>(GetParam()) == CoverageMode::off) {
       EXPECT_GE(loaded_.report.taken_over + 20, loaded_.report.loaded);
     }
     // In turns from a layer in memory, and from one that is mapped.
-    before = step % 2 == 0 ? open_earlier_layer(folder_.file("reused.trapeze"),
-                                                {{}, std::get<CoverageMode>(GetParam()), 0})
-                                 .layer
-                           : std::move(loaded_.layer);
+    if (step % 2 == 0) {
+      before = open_earlier_layer(folder_.file("reused.trapeze"),
+                                  {{}, std::get<CoverageMode>(GetParam()), 0});
+    } else {
+      before = {};
+      before.layer = std::move(loaded_.layer);
+    }
   }
 }
 

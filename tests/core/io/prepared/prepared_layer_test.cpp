@@ -587,10 +587,10 @@ TEST_F(PreparedLayerTest, ThatTakesOverFromAnotherIsTheSameFile) {
     const EarlierPrepared earlier = open_earlier_layer(prepared_, options.generalization);
     const LoadedLayer again = load_with(kMixed, earlier, options);
     EXPECT_EQ(again.report.taken_over, loaded.report.loaded);
-    save_prepared_layer(path("again.trapeze"), again, kRevision, stamp_source(kMixed));
+    save_prepared_layer(path("again.trapeze"), again, kRevision, stamp_source(kMixed), {}, earlier);
     EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
     // In place of the file that is looked at.
-    save_prepared_layer(prepared_, again, kRevision, stamp_source(kMixed));
+    save_prepared_layer(prepared_, again, kRevision, stamp_source(kMixed), {}, earlier);
     EXPECT_EQ(read_file(prepared_), read_file(path("again.trapeze")));
     EXPECT_TRUE(earlier.file->is_whole());
   }
