@@ -29,6 +29,7 @@
 #include "server/seed/batch_jobs.h"
 #include "server/service/server_log.h"
 #include "server/styles/parameter_table.h"
+#include "server/styles/style_parameters.h"
 #include "server/tiles/tile_request.h"
 
 namespace {
@@ -144,7 +145,8 @@ constexpr const char* kDiffFooter =
 constexpr const char* kExportFooter =
     "\nExamples:\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg\n"
-    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n\n"
+    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n"
+    "  trapeze export landcover.gpkg --zoom 12 --smooth 8 --output smooth.gpkg\n\n"
     "The polygons are those that tiles of that zoom are drawn from; attributes are kept, and the\n"
     "field trapeze_id holds the id of each feature in FILE. What is too small to be left at that\n"
     "tolerance is left out and counted. With --topology strict all polygons are valid.";
@@ -444,6 +446,15 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
       [&arguments](const std::string& option, const std::string& text) {
         arguments.simplify =
             trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
+      });
+  const double max_smooth = trapeze::style_parameter(trapeze::ParameterId::smooth).max;
+  add_number(
+      *command, "--smooth", "PX",
+      fmt::format("Corners rounded as tiles in a style with smooth show them: as far as so many "
+                  "pixels along their edges, 0 to {}; all polygons are held in memory",
+                  max_smooth),
+      [&arguments, max_smooth](const std::string& option, const std::string& text) {
+        arguments.smooth = trapeze::number_or_throw(option, text, 0, max_smooth);
       });
   command
       ->add_option(

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/borders/rounded_polygons.h"
 #include "core/io/export/export_crs.h"
 #include "core/io/load/load_report.h"
 #include "core/layer/layer_options.h"
@@ -14,7 +15,8 @@
 namespace trapeze {
 
 struct ExportOptions {
-  double epsilon = 0;  // the tolerance, in cells; 0: nothing is removed
+  double epsilon = 0;   // the tolerance, in cells; 0: nothing is removed
+  RoundingSize smooth;  // of corners; none is rounded if its radius is 0
   LayerOptions generalization;
   ExportCrs crs = ExportCrs::degrees;
   bool overwrite = false;  // replace an output that exists
@@ -39,6 +41,7 @@ struct ExportReport {
   std::size_t vertices = 0;        // left at the tolerance
   std::size_t all_vertices = 0;    // of the same features and the too small ones, untouched
   std::size_t held = 0;  // vertices of less weight than the tolerance that the topology test kept
+  RoundedCorners corners;
   std::size_t crossed = 0;     // features that crossed themselves, for want of the test; noded
   std::size_t subdivided = 0;  // polygons that got vertices on long edges to be valid in degrees
   std::size_t unchecked = 0;   // polygons with too many holes to check whether they are so
@@ -53,6 +56,10 @@ struct ExportReport {
 ///
 /// With a coverage among the options, neighbours are adapted together, and have every edge of their
 /// common border in common; the whole source is held in memory.
+///
+/// With `smooth`, corners are rounded as tiles show them: neighbours in common, and none where
+/// polygons lie over each other at full detail, or where another vertex is near, whose ever it is
+/// (see round_corners()). The whole source is held in memory.
 ///
 /// Attributes keep their names and types; what the format cannot hold (lists, times of day) becomes
 /// text as in AttributeReader, and names that would clash get a number. The field `trapeze_id`
