@@ -28,11 +28,11 @@ class Rounding {
  public:
   using WayPoints = std::vector<PlateCarreeMesh::PointOnWay>;
 
-  Rounding(std::span<PolygonsToRound* const> features, const RoundingSize& size, unsigned threads)
+  Rounding(std::span<DrawnPolygons* const> features, const RoundingSize& size, unsigned threads)
       : features_(features.begin(), features.end()), size_(size), threads_(threads) {
-    std::ranges::stable_sort(features_, {}, &PolygonsToRound::graph);
+    std::ranges::stable_sort(features_, {}, &DrawnPolygons::graph);
     std::size_t points = 0;
-    for (const PolygonsToRound* feature : features_) {
+    for (const DrawnPolygons* feature : features_) {
       const bool is_new = graphs_.empty() || graphs_.back().number != feature->graph;
       if (is_new) graphs_.push_back({feature->graph, first_point_.size()});
       graphs_.back().end = first_point_.size() + 1;
@@ -153,7 +153,7 @@ class Rounding {
         const std::uint32_t edge = edge_of_[point];
         const Point upper = vertices_[edges_[edge].upper];
         const Point lower = vertices_[edges_[edge].lower];
-        const bool is_sharp = features_[f]->is_sharp || is_on_frame(upper, lower);
+        const bool is_sharp = features_[f]->lies_over_others || is_on_frame(upper, lower);
         if (upper.y == lower.y) {
           corners_.add_edge(edge, is_sharp);
         } else {
@@ -276,7 +276,7 @@ class Rounding {
     features_[feature]->polygons = polygons_of(rings);
   }
 
-  std::vector<PolygonsToRound*> features_;  // by graph
+  std::vector<DrawnPolygons*> features_;  // by graph
   const RoundingSize size_;
   const unsigned threads_;
   std::vector<Graph> graphs_;
@@ -290,7 +290,7 @@ class Rounding {
 
 }  // namespace
 
-RoundedCorners round_corners(std::span<PolygonsToRound* const> features, const RoundingSize& size,
+RoundedCorners round_corners(std::span<DrawnPolygons* const> features, const RoundingSize& size,
                              unsigned threads) {
   return Rounding(features, size, threads).run();
 }

@@ -8,21 +8,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
-#include "core/borders/polygons.h"
+#include "core/borders/drawn_polygons.h"
 
 namespace trapeze {
-
-/// The polygons of a feature.
-struct PolygonsToRound {
-  /// Those of the same number are of one graph: they have vertices and edges in common. Vertices of
-  /// several graphs are several, also where they are in the same place.
-  std::uint32_t graph = 0;
-  bool is_sharp = false;  // its corners stay, and those of others on the same edges
-  Polygons polygons;
-};
 
 struct RoundingSize {
   double radius = 0;  // how far from a vertex its edges may be rounded, in pixels
@@ -35,12 +25,13 @@ struct RoundedCorners {
   std::size_t refused = 0;  // drawn round, but sharp here, as an edge would come to cross another
 };
 
-/// Replaces polygons by what they are with round corners. Where the edges of a graph do not cross,
+/// Replaces polygons by what they are with round corners. What lies over others keeps its corners,
+/// and those that others have on the same edges. Where the edges of a graph do not cross,
 /// as is so with the topological consistency test, polygons of it have no place in common that they
 /// did not have before, and none comes about between them. Cuts at the edges of the map stay sharp
 /// (see is_on_frame()). On up to `threads` threads; the result does not depend on their number.
 /// Throws std::length_error if there are more vertices than 32 bits count.
-RoundedCorners round_corners(std::span<PolygonsToRound* const> features, const RoundingSize& size,
+RoundedCorners round_corners(std::span<DrawnPolygons* const> features, const RoundingSize& size,
                              unsigned threads = 1);
 
 }  // namespace trapeze

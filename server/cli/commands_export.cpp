@@ -26,7 +26,11 @@ double epsilon_of(int zoom, double pixels) {
 ExportOptions options_from(const ExportArguments& arguments) {
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
+  if (arguments.smooth > 0 && arguments.grow > 0) {
+    throw UsageError("--grow: what grows keeps its corners: not beside --smooth");
+  }
   options.smooth = {arguments.smooth, cells_per_pixel(arguments.zoom)};
+  options.grow = {arguments.grow, cells_per_pixel(arguments.zoom)};
   options.generalization.topology = word_or_throw("--topology", arguments.topology, kTopologyNames);
   options.generalization.weights = word_or_throw("--weights", arguments.weights, kWeightNames);
   apply(arguments.coverage, options.generalization);
@@ -48,6 +52,7 @@ void print_report(const ExportReport& report, const std::string& output) {
   print_if_any("corners rounded", report.corners.rounded);
   print_if_any("corners drawn round, but sharp here to keep edges apart on the grid",
                report.corners.refused);
+  print_if_any("features that are narrow somewhere, and grew there", report.grown);
   print_if_any("features that are no polygons", report.other_geometry);
   print_if_any("features smaller than the grid, or outside the world", report.empty);
   print_if_any("features skipped", report.skipped);

@@ -11,6 +11,7 @@
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
+#include "core/borders/grown_polygons.h"
 #include "core/borders/polygons.h"
 #include "core/borders/rounded_polygons.h"
 #include "core/grid/for_each_in_parallel.h"
@@ -31,13 +32,18 @@ namespace {
 // round costs little, little enough to hold.
 constexpr FeaturePipeline::RoundLimit kRound{std::size_t{1} << 25, 16384};
 
+/// Whether a style is applied to the polygons when all of them are known.
+bool is_reshaped(const ExportOptions& options) {
+  return options.smooth.radius > 0 || options.grow.width > 0;
+}
+
 /// What becomes of a polygon feature.
 struct Adapted {
   FeatureKey key;
   enum class Outcome { written, too_small, empty, skipped };
   Outcome outcome = Outcome::empty;
-  std::string reason;     // for skipping it
-  PolygonsToRound drawn;  // until they are rounded
+  std::string reason;   // for skipping it
+  DrawnPolygons drawn;  // until they are reshaped
   PolygonGeometry result;
   std::size_t polygons = 0;
   std::size_t rings_written = 0;
@@ -69,13 +75,13 @@ class Exporter : public FeatureWorker {
     if (!built.failure.empty()) return skip(adapted, built.failure);
     if (!built.built) return;
     adapted.all_vertices = graph_.corners().size();
-    if (is_rounded()) full_detail_.add(graph_, FaceFeatures({feature.row}), feature.row);
+    if (is_reshaped(options_)) full_detail_.add(graph_, FaceFeatures({feature.row}), feature.row);
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
     Polygons polygons = polygons_of(adaptable.graph());
     if (!finish(adapted, polygons)) return;
     adapted.held = count_held(adaptable);
-    if (is_rounded()) {
+    if (is_reshaped(options_)) {
       adapted.drawn = {feature.row, false, std::move(polygons)};
     } else {
       adapted.result = geometry_of(polygons, options_.crs);
@@ -96,12 +102,10 @@ class Exporter : public FeatureWorker {
 
   /// What became of features since the last call, in any order.
   std::vector<Adapted> take_adapted() { return std::exchange(adapted_, {}); }
-  /// The features since the last call, if corners are rounded.
+  /// The features since the last call, if they are reshaped.
   FullDetail take_full_detail() { return std::exchange(full_detail_, {}); }
 
  private:
-  bool is_rounded() const { return options_.smooth.radius > 0; }
-
   Adapted& begin(const FeatureKey& feature) {
     Adapted& adapted = adapted_.emplace_back();
     adapted.key = feature;
@@ -119,7 +123,7 @@ class Exporter : public FeatureWorker {
     std::vector<std::uint32_t> rows;
     for (const WaitingFeature* feature : features) rows.push_back(feature->key.row);
     const std::uint32_t number = rows[assembly.together.front()];
-    if (is_rounded()) full_detail_.add(graph_, faces.named(rows), number);
+    if (is_reshaped(options_)) full_detail_.add(graph_, faces.named(rows), number);
     const std::vector<Rings> outlines = rings_of_features(graph_, faces);
     const std::optional<MergePlan>& plan = assembly.outcome.plan;
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization,
@@ -128,14 +132,14 @@ class Exporter : public FeatureWorker {
     std::vector<Polygons> polygons = polygons_of_features(adaptable.graph(), faces);
     std::size_t held = count_held(adaptable);
     std::vector<PolygonGeometry> geometries(polygons.size());
-    if (!is_rounded()) geometries = geometries_of_neighbours(polygons, options_.crs);
+    if (!is_reshaped(options_)) geometries = geometries_of_neighbours(polygons, options_.crs);
     for (const std::uint32_t i : assembly.together) {
       Adapted& adapted = begin(features[i]->key);
       adapted.all_vertices = outlines[i].points.size();
       if (!finish(adapted, polygons[i])) continue;
       adapted.result = std::move(geometries[i]);
       adapted.held = std::exchange(held, 0);
-      if (is_rounded()) adapted.drawn = {number, false, std::move(polygons[i])};
+      if (is_reshaped(options_)) adapted.drawn = {number, false, std::move(polygons[i])};
     }
   }
 
@@ -177,7 +181,7 @@ class Export {
     const FeaturePipeline::Take take = [this](SourceFeature& next) { return keep(next); };
     // Any feature may be a neighbour of any other one.
     const bool are_all_held =
-        options_.generalization.coverage != CoverageMode::off || options_.smooth.radius > 0;
+        options_.generalization.coverage != CoverageMode::off || is_reshaped(options_);
     const auto round = are_all_held ? FeaturePipeline::RoundLimit{} : kRound;
     bool is_more = true;
     while (is_more) {
@@ -216,27 +220,38 @@ class Export {
       for (Adapted& adapted : exporter.take_adapted()) round.push_back(std::move(adapted));
     }
     std::ranges::sort(round, {}, [](const Adapted& adapted) { return adapted.key.row; });
-    if (options_.smooth.radius > 0) smooth(round);
+    if (is_reshaped(options_)) reshape(round);
     for (Adapted& adapted : round) count(adapted);
     first_row_ += static_cast<std::uint32_t>(kept_.size());
     kept_.clear();
   }
 
-  /// Rounds the corners of all that is written, and makes geometries of it.
-  void smooth(std::vector<Adapted>& round) {
+  /// Has corners rounded, or what is narrow grown, of all that is written, and makes geometries of
+  /// it.
+  void reshape(std::vector<Adapted>& round) {
     const unsigned threads = thread_count(options_.threads);
     FullDetail all;
     for (Exporter& exporter : exporters_) all.add(exporter.take_full_detail());
     const std::vector<std::uint8_t> is_overlapping = all.overlapping(threads);
-    std::map<std::uint32_t, std::vector<Adapted*>> by_graph;
-    std::vector<PolygonsToRound*> polygons;
+    std::vector<Adapted*> written;
+    std::vector<DrawnPolygons*> polygons;
     for (Adapted& adapted : round) {
       if (adapted.outcome != Adapted::Outcome::written) continue;
-      adapted.drawn.is_sharp = is_overlapping[adapted.key.row] != 0;
+      adapted.drawn.lies_over_others = is_overlapping[adapted.key.row] != 0;
       polygons.push_back(&adapted.drawn);
-      by_graph[adapted.drawn.graph].push_back(&adapted);
+      written.push_back(&adapted);
     }
-    report_.corners = round_corners(polygons, options_.smooth, threads);
+    if (options_.smooth.radius > 0) {
+      report_.corners = round_corners(polygons, options_.smooth, threads);
+    } else {
+      const GrownPolygons grown = grow(polygons, options_.grow, threads);
+      if (!grown.failure.empty()) {
+        throw SourceError("what grows cannot be united: " + grown.failure);
+      }
+      report_.grown = grown.grown;
+    }
+    std::map<std::uint32_t, std::vector<Adapted*>> by_graph;
+    for (Adapted* adapted : written) by_graph[adapted->drawn.graph].push_back(adapted);
     std::vector<std::vector<Adapted*>> graphs;
     for (auto& [graph, features] : by_graph) graphs.push_back(std::move(features));
     for_each_in_parallel(graphs.size(), threads,

@@ -13,29 +13,29 @@
 namespace trapeze {
 namespace {
 
-PolygonsToRound feature(const std::string& text, std::uint32_t graph, bool is_sharp = false) {
+DrawnPolygons feature(const std::string& text, std::uint32_t graph, bool is_sharp = false) {
   Rings rings = rings_from_text(text);
-  PolygonsToRound result{graph, is_sharp, polygons_of(rings)};
+  DrawnPolygons result{graph, is_sharp, polygons_of(rings)};
   EXPECT_FALSE(result.polygons.empty());
   return result;
 }
 
-RoundedCorners round(std::vector<PolygonsToRound>& features, const RoundingSize& size) {
-  std::vector<PolygonsToRound*> all;
-  for (PolygonsToRound& each : features) all.push_back(&each);
+RoundedCorners round(std::vector<DrawnPolygons>& features, const RoundingSize& size) {
+  std::vector<DrawnPolygons*> all;
+  for (DrawnPolygons& each : features) all.push_back(&each);
   return round_corners(all, size, 2);
 }
 
-const std::vector<Point>& points_of(const PolygonsToRound& feature) {
+const std::vector<Point>& points_of(const DrawnPolygons& feature) {
   return feature.polygons.rings.points;
 }
 
-bool has_point(const PolygonsToRound& feature, Point p) {
+bool has_point(const DrawnPolygons& feature, Point p) {
   return std::ranges::count(points_of(feature), p) > 0;
 }
 
 TEST(RoundedPolygonsTest, CornersAreRoundedAndEdgesKeepTheirMiddles) {
-  std::vector<PolygonsToRound> features{feature("0 0,1000 0,1000 1000,0 1000", 0)};
+  std::vector<DrawnPolygons> features{feature("0 0,1000 0,1000 1000,0 1000", 0)};
   EXPECT_EQ(round(features, {100, 1}).rounded, 4u);
   for (const Point p : {Point{0, 0}, Point{1000, 0}, Point{1000, 1000}, Point{0, 1000}}) {
     EXPECT_FALSE(has_point(features[0], p));
@@ -50,7 +50,7 @@ TEST(RoundedPolygonsTest, CornersAreRoundedAndEdgesKeepTheirMiddles) {
 }
 
 TEST(RoundedPolygonsTest, HolesAndIslandsAreRoundedToo) {
-  std::vector<PolygonsToRound> features{
+  std::vector<DrawnPolygons> features{
       feature("0 0,1000 0,1000 1000,0 1000;200 200,800 200,800 800,200 800;"
               "400 400,600 400,600 600,400 600",
               0)};
@@ -62,7 +62,7 @@ TEST(RoundedPolygonsTest, HolesAndIslandsAreRoundedToo) {
 TEST(RoundedPolygonsTest, NeighboursOfOneGraphGetTheSamePoints) {
   const std::string left = "0 0,1000 0,1200 300,900 700,1000 1000,0 1000";
   const std::string right = "2000 0,2000 1000,1000 1000,900 700,1200 300,1000 0";
-  std::vector<PolygonsToRound> features{feature(left, 3), feature(right, 3)};
+  std::vector<DrawnPolygons> features{feature(left, 3), feature(right, 3)};
   // Not the two ends of the border, from which three edges lead.
   EXPECT_EQ(round(features, {100, 1}).rounded, 6u);
   EXPECT_TRUE(has_point(features[0], {1000, 0}));
@@ -82,7 +82,7 @@ TEST(RoundedPolygonsTest, VerticesOfOtherGraphsKeepACornerSharp) {
   const std::string square = "0 0,1000 0,1000 1000,0 1000";
   // Its corner is within the triangle; then in the same place as one of the square.
   for (const std::string other : {"20 20,-500 10,-500 -500", "0 0,-500 10,-500 -500"}) {
-    std::vector<PolygonsToRound> features{feature(square, 0), feature(other, 1)};
+    std::vector<DrawnPolygons> features{feature(square, 0), feature(other, 1)};
     round(features, {100, 1});
     EXPECT_TRUE(has_point(features[0], {0, 0}));
     EXPECT_FALSE(has_point(features[0], {1000, 0}));
@@ -90,8 +90,8 @@ TEST(RoundedPolygonsTest, VerticesOfOtherGraphsKeepACornerSharp) {
 }
 
 TEST(RoundedPolygonsTest, WhatIsSharpStaysAndKeepsItsNeighboursEdges) {
-  std::vector<PolygonsToRound> features{feature("0 0,1000 0,1200 500,1000 1000,0 1000", 0, true),
-                                        feature("2000 0,2000 1000,1000 1000,1200 500,1000 0", 0)};
+  std::vector<DrawnPolygons> features{feature("0 0,1000 0,1200 500,1000 1000,0 1000", 0, true),
+                                      feature("2000 0,2000 1000,1000 1000,1200 500,1000 0", 0)};
   EXPECT_EQ(round(features, {100, 1}).rounded, 2u);
   EXPECT_TRUE(has_point(features[0], {1200, 500}));
   EXPECT_TRUE(has_point(features[1], {1200, 500}));
@@ -100,7 +100,7 @@ TEST(RoundedPolygonsTest, WhatIsSharpStaysAndKeepsItsNeighboursEdges) {
 
 TEST(RoundedPolygonsTest, CutsAtTheEdgesOfTheMapStaySharp) {
   const std::string east = std::to_string(kGridMax);
-  std::vector<PolygonsToRound> features{
+  std::vector<DrawnPolygons> features{
       feature("0 0," + east + " 0," + east + " 1000000,0 1000000", 0)};
   EXPECT_EQ(round(features, {1000, 1}).rounded, 2u);
   EXPECT_TRUE(has_point(features[0], {kGridMax, 0}));
@@ -113,7 +113,7 @@ TEST(RoundedPolygonsTest, CutsAtTheEdgesOfTheMapStaySharp) {
 TEST(RoundedPolygonsTest, ACornerStaysWhereItsEdgeWouldComeToTouchAnother) {
   const std::string above = "0 -300,1000 -300,1000 1,0 0";
   const std::string below = ";750 1,700 400,600 400;750 1,900 400,800 400";
-  std::vector<PolygonsToRound> features{feature(above, 0)};
+  std::vector<DrawnPolygons> features{feature(above, 0)};
   EXPECT_EQ(round(features, {1000, 1}).refused, 0u);
   EXPECT_FALSE(has_point(features[0], {0, 0}));
   features = {feature(above + below, 0)};

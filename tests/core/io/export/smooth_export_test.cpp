@@ -2,55 +2,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "core/io/export/export_layer.h"
 #include "tests/core/io/export/exported_cells.h"
-#include "tests/core/io/source/written_source.h"
-#include "tests/core/io/temporary_folder.h"
+#include "tests/core/io/export/reshaped_export.h"
 #include "tests/core/shapes/ring_text.h"
 
 namespace trapeze {
 namespace {
 
 using testing::doubled_area;
-using testing::exported_rings;
 
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-class SmoothExportTest : public ::testing::Test {
+class SmoothExportTest : public testing::ReshapedExportTest {
  protected:
-  SmoothExportTest() {
-    options_.overwrite = true;
-    options_.crs = ExportCrs::web_mercator;
-    options_.smooth = {8, 256};  // corners are rounded for up to 38 m
-  }
-
-  /// In metres of EPSG:3857, which are about 54 cells each.
-  void set_source(const std::vector<std::string>& polygons) {
-    std::vector<TestFeature> features;
-    for (const std::string& polygon : polygons)
-      features.push_back({.wkt = "POLYGON(" + polygon + ")"});
-    write_source(source_, "GPKG", {{.crs = "EPSG:3857", .features = features}});
-  }
-
-  std::vector<Rings> write() {
-    report_ = export_layer(source_, output_, options_);
-    return exported_rings(output_);
-  }
-
-  TemporaryFolder folder_;
-  const std::string source_ = folder_.file("source.gpkg");
-  const std::string output_ = folder_.file("out.gpkg");
-  ExportOptions options_;
-  ExportReport report_;
+  SmoothExportTest() { options_.smooth = {8, 256}; }  // for up to 38 m
 };
 
 std::size_t points_of(const Rings& rings) {
@@ -59,12 +27,10 @@ std::size_t points_of(const Rings& rings) {
 
 TEST_F(SmoothExportTest, NothingChangesWithoutARadius) {
   set_source({"(0 0,900 0,1000 500,900 1000,0 1000,0 0),(300 300,600 300,500 600,300 300)"});
-  const std::string output = folder_.file("out.geojson");
   std::vector<std::string> files;
   for (const RoundingSize& size : {RoundingSize{}, RoundingSize{0, 256}, RoundingSize{8, 256}}) {
     options_.smooth = size;
-    report_ = export_layer(source_, output, options_);
-    files.push_back(read_file(output));
+    files.push_back(write_text());
     EXPECT_EQ(report_.corners.rounded, size.radius > 0 ? 8u : 0u);
     EXPECT_EQ(report_.vertices, 8u);
   }
@@ -161,15 +127,13 @@ TEST_F(SmoothExportTest, TheOutputDoesNotDependOnTheThreads) {
     stars.push_back("(" + text + first + ")");
   }
   set_source(stars);
-  const std::string output = folder_.file("out.geojson");
   options_.epsilon = 100;
   for (const CoverageMode coverage : {CoverageMode::off, CoverageMode::on}) {
     options_.generalization.coverage = coverage;
     std::vector<std::string> files;
     for (const unsigned threads : {1u, 4u}) {
       options_.threads = threads;
-      report_ = export_layer(source_, output, options_);
-      files.push_back(read_file(output));
+      files.push_back(write_text());
     }
     EXPECT_EQ(files[0], files[1]);
   }
