@@ -295,7 +295,9 @@ class GrownCoverage {
     for (std::size_t e = 0; e < sides_.size(); ++e) {
       const double length = length_of(graph_, graph_.edge(EdgeId(e)));
       for (const Side s : {kLeft, kRight}) {
-        Around& one = around[regions.beside[EdgeId(e)][s].value];
+        const RegionId region = regions.beside[EdgeId(e)][s];
+        if (region == regions.unbounded) continue;  // which has any number of neighbours
+        Around& one = around[region.value];
         one.border += length;
         one.is_beside_growth = one.is_beside_growth || is_new_[e];
         one.neighbours.add(s == kLeft ? sides_[e].second : sides_[e].first, length);

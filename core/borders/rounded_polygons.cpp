@@ -227,33 +227,37 @@ class Rounding {
     std::ranges::sort(pieces, {}, order);
     pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
     const auto meetings = find_meetings(pieces, most_meetings(pieces.size()));
+    if (meetings && meetings->empty()) return {};
     std::vector<std::uint32_t> found;
-    for (const std::uint32_t edge : edges) {
-      if (!has_corner(edge)) continue;
-      bool meets = !meetings;  // too many
-      if (!meets && meetings->empty()) break;
-      if (!meets) {
+    for (const bool do_ends_count : {false, true}) {
+      for (const std::uint32_t edge : edges) {
+        bool meets = !meetings;  // too many
         for_each_piece(edge, way, [&](const Segment& piece) {
-          meets = meets || is_near_any(piece, *meetings);
+          meets = meets || is_near_any(piece, *meetings, do_ends_count);
         });
+        for (const std::uint32_t vertex : {edges_[edge].upper, edges_[edge].lower}) {
+          if (meets && is_rounded(vertex)) found.push_back(vertex);
+        }
       }
-      if (!meets) continue;
-      for (const std::uint32_t vertex : {edges_[edge].upper, edges_[edge].lower}) {
-        if (is_rounded(vertex)) found.push_back(vertex);
-      }
+      // Else it is not what comes to run through there that is rounded, but what ends there.
+      if (!found.empty()) break;
     }
     std::ranges::sort(found);
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
   }
 
-  /// Of points in sweep order, which were rounded to cells: whether one lies on the segment.
-  static bool is_near_any(const Segment& segment, const std::vector<Point>& points) {
+  /// Of points in sweep order, which were rounded to cells: whether one lies on the segment, other
+  /// than at an end if these do not count.
+  static bool is_near_any(const Segment& segment, const std::vector<Point>& points,
+                          bool do_ends_count) {
     const Box box = box_of(segment);
     auto point = std::ranges::lower_bound(points, box.min_y - 1, {}, &Point::y);
     for (; point != points.end() && point->y <= box.max_y + 1; ++point) {
       const bool is_beside = point->x < box.min_x - 1 || point->x > box.max_x + 1;
-      if (!is_beside && is_near(segment, *point)) return true;
+      const bool is_end = *point == segment.first || *point == segment.second;
+      if (is_beside || (is_end && !do_ends_count)) continue;
+      if (is_near(segment, *point)) return true;
     }
     return false;
   }
