@@ -226,7 +226,7 @@ class GrownCoverage {
     for (const DrawnPolygons* feature : features_) all.push_back(&feature->polygons.rings);
     for (const Grown& growth : grown_) all.push_back(&growth.rings);
     SetMap map(all, threads_);
-    if (!map.sweep(boundary_, trapezoidation_, graph_)) {
+    if (!map.sweep(boundary_, trapezoidation_, graph_, HotCells::crossings_and_vertices)) {
       failure = map.failure();
       return std::nullopt;
     }

@@ -200,6 +200,23 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
   EXPECT_LE(disputed / pixel_area, 0.05 * static_cast<double>(after.size()));
 }
 
+// Vertices that lie beside an edge would come to lie on its other side there, as it is straight
+// elsewhere.
+TEST_P(GrowDataTest, EverythingIsValidInDegrees) {
+  const char* data = std::getenv("TRAPEZE_DATA");
+  if (data == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of real data";
+  const std::string path = (std::filesystem::path(data) / GetParam().file).string();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const TemporaryFolder folder;
+  ExportOptions options;
+  options.epsilon = testing::epsilon_of_zoom(GetParam().zoom);
+  options.grow = {16, static_cast<double>(TileId{GetParam().zoom, 0, 0}.side()) / 256};
+  const ExportReport report = export_layer(path, folder.file("out.gpkg"), options);
+  EXPECT_EQ(report.invalid, 0u);
+  EXPECT_EQ(report.skipped, 0u);
+  EXPECT_EQ(geometries_of(folder.file("out.gpkg")).size(), report.written);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Files, GrowDataTest,
     ::testing::Values(Trial{"malta_natural.fgb", 13, 3}, Trial{"malta_landuse.fgb", 12, 4},
