@@ -12,13 +12,12 @@
 #include <utility>
 
 #include "core/borders/border_lengths.h"
+#include "core/borders/dividing_edges.h"
 #include "core/borders/merging.h"
 #include "core/borders/set_map.h"
 #include "core/grid/web_mercator.h"
 
 namespace trapeze {
-
-using Sides = CoverageBuilder::Sides;
 
 namespace {
 
@@ -402,20 +401,6 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
   return filled;
 }
 
-/// Drops the edges with one feature on both sides; returns whether there are any.
-bool keep_borders(Boundary& boundary, Sides& sides) {
-  std::vector<bool> is_kept(sides.size());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    is_kept[i] = sides[i].first != sides[i].second;
-    if (is_kept[i]) sides[kept++] = sides[i];
-  }
-  if (kept == sides.size()) return false;
-  sides.resize(kept);
-  boundary.keep(is_kept);
-  return true;
-}
-
 /// Whether there are features on both sides, and others on either.
 bool parts_features(const FaceFeatures& faces, const Edge& edge) {
   const auto left = faces.of(edge.face[kLeft]);
@@ -493,16 +478,6 @@ Overlay overlay(std::span<const Rings* const> features) {
   return {std::move(outcome.overlaps), std::move(outcome.areas), std::move(outcome.failure)};
 }
 
-/// Makes `graph` that of the edges with different faces on their sides. False if there are none.
-bool CoverageBuilder::keep_what_divides(Sides& sides, TrapezoidalGraph& graph, unsigned threads) {
-  if (!keep_borders(boundary_, sides)) {
-    BorderArcs::name_faces(sides, graph);
-    return true;
-  }
-  const FaceBeyond given = [&sides](EdgeId e, FaceId) { return sides[e.value].second; };
-  return !sides.empty() && trapezoidation_.build(boundary_, given, graph, threads);
-}
-
 CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
                                        const CoverageTolerance& tolerance, TrapezoidalGraph& graph,
                                        WorkShare* share, unsigned threads, const Merging& merging) {
@@ -522,10 +497,10 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   if (!faces) return outcome;
   tell(0.6);
   Sides sides = sides_of(graph, *faces, boundary_.edges.size());
-  if (!keep_what_divides(sides, graph, threads)) return outcome;
+  if (!keep_what_divides(sides, boundary_, trapezoidation_, graph, threads)) return outcome;
   if (tolerance.widest_gap > 0) {
     outcome.filled = fill_gaps(graph, tolerance.widest_gap, sides);
-    if (!keep_what_divides(sides, graph, threads)) return outcome;
+    if (!keep_what_divides(sides, boundary_, trapezoidation_, graph, threads)) return outcome;
   }
   tell(0.8);
   const Regions regions(graph);

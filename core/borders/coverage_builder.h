@@ -90,11 +90,7 @@ class CoverageBuilder {
                         TrapezoidalGraph& graph, WorkShare* share = nullptr, unsigned threads = 1,
                         const Merging& merging = {});
 
-  /// The faces to the left and right of each edge.
-  using Sides = std::vector<std::pair<FaceId, FaceId>>;
-
  private:
-  bool keep_what_divides(Sides& sides, TrapezoidalGraph& graph, unsigned threads);
   void plan_blocks(const Merging& merging, TrapezoidalGraph& graph, unsigned threads,
                    CoverageOutcome& outcome);
 

@@ -130,7 +130,15 @@ void append_polygons(const TrapezoidalGraph& g, Polygons& polygons) {
   polygons.ends.push_back(static_cast<std::uint32_t>(polygons.rings.size()));
 }
 
-Polygons polygons_of_rings(Rings& rings) {
+std::vector<Polygons> polygons_of_each(std::vector<Rings> features) {
+  std::vector<Polygons> polygons;
+  for (Rings& rings : features) polygons.push_back(polygons_of(rings));
+  return polygons;
+}
+
+}  // namespace
+
+Polygons polygons_of(Rings& rings) {
   Polygons polygons;
   TrapezoidalGraph fresh;
   GraphBuilder builder;
@@ -141,19 +149,11 @@ Polygons polygons_of_rings(Rings& rings) {
   return polygons;
 }
 
-std::vector<Polygons> polygons_of_each(std::vector<Rings> features) {
-  std::vector<Polygons> polygons;
-  for (Rings& rings : features) polygons.push_back(polygons_of_rings(rings));
-  return polygons;
-}
-
-}  // namespace
-
 // The corners of an adapted graph may not suffice: without the topological consistency test its
 // edges may cross.
 Polygons polygons_of(const TrapezoidalGraph& graph) {
   Rings rings = rings_of(graph);
-  return polygons_of_rings(rings);
+  return polygons_of(rings);
 }
 
 std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph) {

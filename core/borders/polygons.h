@@ -42,6 +42,8 @@ struct Polygons {
 /// inside nodes. Polygons are in sweep order of their topmost vertices, and so are the holes of
 /// each. They depend only on the area that `graph` covers, not on its history.
 Polygons polygons_of(const TrapezoidalGraph& graph);
+/// The same of the area of rings, by even-odd. Cleans them in place (see clean_rings.h).
+Polygons polygons_of(Rings& rings);
 
 /// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common
 /// border in common.

@@ -90,21 +90,34 @@ SetMap::SetMap(std::span<const Rings* const> features, unsigned threads)
   borders_ = unite(pieces, sets_);
 }
 
-bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph) {
+void SetMap::fail_to_node() {
+  failure_ = "their borders cross more than " +
+             std::to_string(most_meetings(borders_.segments.size())) + " times";
+}
+
+bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
+                   HotCells cells) {
   // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
   constexpr int kQuickPasses = 3;
   constexpr int kMaxPasses = 6;
   const FaceBeyond toggle = [this](EdgeId e, FaceId left) {
     return sets_.toggled(left, borders_.owners[e.value]);
   };
+  if (cells == HotCells::crossings_and_vertices && !borders_.segments.empty()) {
+    is_noded_ = true;
+    boundary.assign_sorted(borders_.segments, threads_);
+    if (!node_borders(boundary, cells)) {
+      fail_to_node();
+      return false;
+    }
+  }
   for (int pass = 0; pass <= kMaxPasses; ++pass) {
     if (pass > 0) {
       is_noded_ = true;
-      const HotCells cells =
+      const HotCells of_pass =
           pass <= kQuickPasses ? HotCells::crossings : HotCells::crossings_and_vertices;
-      if (!node_borders(boundary, cells)) {
-        failure_ = "their borders cross more than " +
-                   std::to_string(most_meetings(borders_.segments.size())) + " times";
+      if (!node_borders(boundary, of_pass)) {
+        fail_to_node();
         return false;
       }
     }

@@ -65,8 +65,10 @@ class SetMap {
   explicit SetMap(std::span<const Rings* const> features, unsigned threads = 1);
 
   /// Makes `graph` the subdivision: its edges are those of borders(), and a face is the number of a
-  /// set. False if nothing is left, or if it failed.
-  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph);
+  /// set. False if nothing is left, or if it failed. With hot vertices, also vertices that lie
+  /// beside edges, but within a cell of them, become a part of them.
+  bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
+             HotCells cells = HotCells::crossings);
 
   const FeatureSets& sets() const { return sets_; }
   const Borders& borders() const { return borders_; }
@@ -77,6 +79,7 @@ class SetMap {
 
  private:
   bool node_borders(const Boundary& boundary, HotCells cells);
+  void fail_to_node();
 
   unsigned threads_;
   FeatureSets sets_;

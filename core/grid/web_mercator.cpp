@@ -39,4 +39,11 @@ GridPosition grid_from_lonlat(LonLat position) {
           -0.5 * std::log((1 + sine) / (1 - sine)) * kCellsPerRadian};
 }
 
+bool is_on_frame(Point a, Point b) {
+  constexpr std::int32_t kStrip = 430'000;  // cells: from 85.0449 degrees on
+  const auto is_pole = [](Point p) { return p.y <= kGridMin + kStrip || p.y >= kGridMax - kStrip; };
+  const auto is_antimeridian = [](Point p) { return p.x == kGridMin || p.x == kGridMax; };
+  return (a.x == b.x && is_antimeridian(a)) || (is_pole(a) && is_pole(b));
+}
+
 }  // namespace trapeze

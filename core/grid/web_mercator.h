@@ -33,6 +33,12 @@ struct LonLat {
 LonLat lonlat_from_grid(double x, double y);
 GridPosition grid_from_lonlat(LonLat position);
 
+/// Whether an edge lies where polygons were cut off, so that nothing ends there: along the
+/// antimeridian, and the other edges of the square. Files were cut there before, and their cuts
+/// rounded and simplified: no shore is known beyond 85.045 degrees, but Antarctica often ends at
+/// 85.05.
+bool is_on_frame(Point a, Point b);
+
 constexpr int kMaxZoom = 24;
 
 /// A tile of the XYZ scheme: 0 <= z <= kMaxZoom, 0 <= x, y < 2^z, y grows southwards.

@@ -57,9 +57,13 @@ BoundaryMap::Side BoundaryMap::side_of(std::uint32_t edge, Face face, std::uint3
 }
 
 void BoundaryMap::add(const MeshTrapezoid& trapezoid, std::uint32_t face) {
+  add_side(trapezoid.left, face, true);
+  add_side(trapezoid.right, face, false);
+}
+
+void BoundaryMap::add_side(std::uint32_t edge, std::uint32_t face, bool is_right) {
   const Face whole = Face{meshes_.size() - 1} << 32 | face;
-  sides_.push_back(side_of(trapezoid.left, whole, 1));
-  sides_.push_back(side_of(trapezoid.right, whole, 0));
+  sides_.push_back(side_of(edge, whole, is_right ? 1 : 0));
 }
 
 void BoundaryMap::find(const Box& box, double distance) {

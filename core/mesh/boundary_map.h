@@ -75,6 +75,9 @@ class BoundaryMap {
   void begin_piece(const MeshView& mesh);
   /// A trapezoid of a face of the piece.
   void add(const MeshTrapezoid& trapezoid, std::uint32_t face);
+  /// One of the sides of a face of the piece, on the right of the edge or on its left; the edge is
+  /// not horizontal.
+  void add_side(std::uint32_t edge, std::uint32_t face, bool is_right);
   /// An edge that is a side of no trapezoid, being horizontal.
   void add_edge(std::uint32_t edge) { sides_.push_back(side_of(edge, kNoFace, 0)); }
   /// Nothing ends at the edge, which has been or will be added.

@@ -107,9 +107,14 @@ void CornerRounding::begin_piece(const MeshView& mesh) {
 }
 
 void CornerRounding::add(const MeshTrapezoid& trapezoid, std::uint32_t face, bool is_sharp) {
+  add_side(trapezoid.left, face, true, is_sharp);
+  add_side(trapezoid.right, face, false, is_sharp);
+}
+
+void CornerRounding::add_side(std::uint32_t edge, std::uint32_t face, bool is_right,
+                              bool is_sharp) {
   const auto piece = static_cast<std::uint32_t>(meshes_.size() - 1);
-  sides_.push_back({piece, trapezoid.left, face, true, is_sharp});
-  sides_.push_back({piece, trapezoid.right, face, false, is_sharp});
+  sides_.push_back({piece, edge, face, is_right, is_sharp});
 }
 
 void CornerRounding::add_edge(std::uint32_t edge, bool is_sharp) {
@@ -242,11 +247,17 @@ void CornerRounding::round_corner(VertexKey key, const Edge& first, const Edge& 
   corners_.push_back(corner);
 }
 
-const CornerRounding::Corner* CornerRounding::find_corner(std::uint32_t piece,
-                                                          std::uint32_t vertex) const {
+const CornerRounding::Corner* CornerRounding::corner_at(std::uint32_t piece,
+                                                        std::uint32_t vertex) const {
   const auto key = [](const Corner& corner) { return std::pair(corner.piece, corner.vertex); };
   const auto found = std::ranges::lower_bound(corners_, std::pair(piece, vertex), {}, key);
   return found != corners_.end() && key(*found) == std::pair(piece, vertex) ? &*found : nullptr;
+}
+
+void CornerRounding::leave_sharp(std::uint32_t piece, std::span<const std::uint32_t> vertices) {
+  std::erase_if(corners_, [&](const Corner& corner) {
+    return corner.piece == piece && std::ranges::binary_search(vertices, corner.vertex);
+  });
 }
 
 void CornerRounding::trace(std::uint32_t piece, const MeshView& mesh, std::uint32_t edge,
@@ -269,8 +280,8 @@ void CornerRounding::trace(std::uint32_t piece, const MeshView& mesh, std::uint3
   };
   const MeshEdge& ends = mesh.edges[edge];
   way.clear();
-  const Corner* upper = find_corner(piece, ends.upper);
-  const Corner* lower = find_corner(piece, ends.lower);
+  const Corner* upper = corner_at(piece, ends.upper);
+  const Corner* lower = corner_at(piece, ends.lower);
   if (upper == nullptr) append(mesh.vertices[ends.upper], 0);
   if (upper != nullptr) append_half(*upper, false);
   if (lower != nullptr) append_half(*lower, true);

@@ -67,6 +67,9 @@ class CornerRounding {
   /// A trapezoid of a face: less than kNoFace, any number. A sharp one leaves the corners at its
   /// edges as they are.
   void add(const MeshTrapezoid& trapezoid, std::uint32_t face, bool is_sharp);
+  /// One of the sides of a face, on the right of the edge or on its left; the edge is not
+  /// horizontal.
+  void add_side(std::uint32_t edge, std::uint32_t face, bool is_right, bool is_sharp);
   /// An edge that is a side of no trapezoid, being horizontal; or one that is known, to make it
   /// sharp.
   void add_edge(std::uint32_t edge, bool is_sharp);
@@ -76,6 +79,11 @@ class CornerRounding {
 
   /// By piece and vertex.
   std::span<const Corner> corners() const { return corners_; }
+  /// Null if the vertex stays as it is.
+  const Corner* corner_at(std::uint32_t piece, std::uint32_t vertex) const;
+  /// Corners that stay as they are after all, at these vertices, in ascending order. Others do not
+  /// change.
+  void leave_sharp(std::uint32_t piece, std::span<const std::uint32_t> vertices);
   std::span<const Point> points_of(const Corner& corner) const {
     return std::span(points_).subspan(corner.first_point, corner.point_count);
   }
@@ -132,7 +140,6 @@ class CornerRounding {
   static std::optional<std::pair<std::uint32_t, std::uint32_t>> faces_beside(const Edge& edge,
                                                                              Point inner);
   std::uint64_t cell_of(std::int64_t x, std::int64_t y) const;
-  const Corner* find_corner(std::uint32_t piece, std::uint32_t vertex) const;
 
   std::vector<MeshView> meshes_;  // by piece
   std::vector<Side> sides_;

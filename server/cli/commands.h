@@ -79,6 +79,8 @@ struct ExportArguments {
   std::string file;
   int zoom = 0;
   double simplify = kTolerancePixels;  // pixels, as tiles are drawn
+  double smooth = 0;                   // pixels
+  double grow = 0;                     // pixels; not beside smooth
   std::string topology{kTopologyNames.name_of(Topology::strict)};
   std::string weights{kWeightNames.name_of(WeightRule::douglas_peucker)};
   CoverageArguments coverage;

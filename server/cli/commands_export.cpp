@@ -14,15 +14,23 @@ namespace {
 
 constexpr double kPixelsPerTile = 256;
 
+double cells_per_pixel(int zoom) {
+  return static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
+}
+
 /// The tolerance of a tile at this zoom: a level of the ladder, as the server draws it.
 double epsilon_of(int zoom, double pixels) {
-  const double cells_per_pixel = static_cast<double>(TileId{zoom, 0, 0}.side()) / kPixelsPerTile;
-  return epsilon_of_level(nearest_level(pixels * cells_per_pixel));
+  return epsilon_of_level(nearest_level(pixels * cells_per_pixel(zoom)));
 }
 
 ExportOptions options_from(const ExportArguments& arguments) {
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
+  if (arguments.smooth > 0 && arguments.grow > 0) {
+    throw UsageError("--grow: what grows keeps its corners: not beside --smooth");
+  }
+  options.smooth = {arguments.smooth, cells_per_pixel(arguments.zoom)};
+  options.grow = {arguments.grow, cells_per_pixel(arguments.zoom)};
   options.generalization.topology = word_or_throw("--topology", arguments.topology, kTopologyNames);
   options.generalization.weights = word_or_throw("--weights", arguments.weights, kWeightNames);
   apply(arguments.coverage, options.generalization);
@@ -41,6 +49,10 @@ void print_report(const ExportReport& report, const std::string& output) {
       "topology test; {} features left out as too small\n",
       output, report.driver, report.written, report.polygons, report.vertices, report.all_vertices,
       report.held, report.too_small);
+  print_if_any("corners rounded", report.corners.rounded);
+  print_if_any("corners drawn round, but sharp here to keep edges apart on the grid",
+               report.corners.refused);
+  print_if_any("features that are narrow somewhere, and grew there", report.grown);
   print_if_any("features that are no polygons", report.other_geometry);
   print_if_any("features smaller than the grid, or outside the world", report.empty);
   print_if_any("features skipped", report.skipped);

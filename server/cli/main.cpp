@@ -29,6 +29,7 @@
 #include "server/seed/batch_jobs.h"
 #include "server/service/server_log.h"
 #include "server/styles/parameter_table.h"
+#include "server/styles/style_parameters.h"
 #include "server/tiles/tile_request.h"
 
 namespace {
@@ -144,7 +145,9 @@ constexpr const char* kDiffFooter =
 constexpr const char* kExportFooter =
     "\nExamples:\n"
     "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg\n"
-    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n\n"
+    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n"
+    "  trapeze export landcover.gpkg --zoom 12 --smooth 8 --output smooth.gpkg\n"
+    "  trapeze export rivers.gpkg --zoom 9 --grow 3 --output wide.gpkg\n\n"
     "The polygons are those that tiles of that zoom are drawn from; attributes are kept, and the\n"
     "field trapeze_id holds the id of each feature in FILE. What is too small to be left at that\n"
     "tolerance is left out and counted. With --topology strict all polygons are valid.";
@@ -445,6 +448,22 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
         arguments.simplify =
             trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
       });
+  const auto add_reshaping = [&](const char* name, trapeze::ParameterId id, const char* help,
+                                 double& value) {
+    const double most = trapeze::style_parameter(id).max;
+    add_number(*command, name, "PX", fmt::format(fmt::runtime(help), most),
+               [&value, most](const std::string& option, const std::string& text) {
+                 value = trapeze::number_or_throw(option, text, 0, most);
+               });
+  };
+  add_reshaping("--smooth", trapeze::ParameterId::smooth,
+                "Corners rounded as tiles in a style with smooth show them: as far as so many "
+                "pixels along their edges, 0 to {}; all polygons are held in memory",
+                arguments.smooth);
+  add_reshaping("--grow", trapeze::ParameterId::grow,
+                "What is narrower than so many pixels grows as tiles in a style with grow show it, "
+                "0 to {}; not beside --smooth; all polygons are held in memory",
+                arguments.grow);
   command
       ->add_option(
           "--topology", arguments.topology,

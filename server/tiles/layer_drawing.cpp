@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/grid/plate_carree.h"
+#include "core/grid/web_mercator.h"
 #include "core/mesh/mesh_index.h"
 #include "render/mask/mask_digest.h"
 
@@ -48,16 +49,6 @@ double length_between(Point a, Point b) {
   const double x = static_cast<double>(b.x) - a.x;
   const double y = static_cast<double>(b.y) - a.y;
   return std::sqrt(x * x + y * y);
-}
-
-/// Of Web Mercator: where polygons were cut off, nothing ends: along the antimeridian, and the
-/// other edges of the square of Web Mercator. Files were cut there before, and their cuts rounded
-/// and simplified: no shore is known beyond 85.045 degrees, but Antarctica often ends at 85.05.
-bool is_on_frame(Point a, Point b) {
-  constexpr std::int32_t kStrip = 430'000;  // cells: from 85.0449 degrees on
-  const auto is_pole = [](Point p) { return p.y <= kGridMin + kStrip || p.y >= kGridMax - kStrip; };
-  const auto is_antimeridian = [](Point p) { return p.x == kGridMin || p.x == kGridMax; };
-  return (a.x == b.x && is_antimeridian(a)) || (is_pole(a) && is_pole(b));
 }
 
 /// Sorts the items and leaves one of those that are equal. Where they are dense, in the time that

@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "core/adapt/adaptable_graph.h"
 #include "core/borders/coverage_groups.h"
+#include "core/borders/grown_polygons.h"
 #include "core/borders/polygons.h"
+#include "core/borders/rounded_polygons.h"
+#include "core/grid/for_each_in_parallel.h"
 #include "core/io/export/polygon_file.h"
 #include "core/io/export/polygon_geometry.h"
 #include "core/io/export/vector_file.h"
@@ -17,6 +22,7 @@
 #include "core/io/source/feature_source.h"
 #include "core/io/source/open_source.h"
 #include "core/io/source/source_name.h"
+#include "core/layer/full_detail.h"
 #include "core/sweep/graph_builder.h"
 
 namespace trapeze {
@@ -26,12 +32,18 @@ namespace {
 // round costs little, little enough to hold.
 constexpr FeaturePipeline::RoundLimit kRound{std::size_t{1} << 25, 16384};
 
+/// Whether a style is applied to the polygons when all of them are known.
+bool is_reshaped(const ExportOptions& options) {
+  return options.smooth.radius > 0 || options.grow.width > 0;
+}
+
 /// What becomes of a polygon feature.
 struct Adapted {
   FeatureKey key;
   enum class Outcome { written, too_small, empty, skipped };
   Outcome outcome = Outcome::empty;
-  std::string reason;  // for skipping it
+  std::string reason;   // for skipping it
+  DrawnPolygons drawn;  // until they are reshaped
   PolygonGeometry result;
   std::size_t polygons = 0;
   std::size_t rings_written = 0;
@@ -39,6 +51,17 @@ struct Adapted {
   std::size_t all_vertices = 0;
   std::size_t held = 0;
   bool crosses = false;
+
+  /// Ends as these polygons; false if there are none to be written.
+  bool take(const Polygons& shape) {
+    reason = shape.failure;
+    outcome = !reason.empty() ? Outcome::skipped
+              : shape.empty() ? Outcome::too_small
+                              : Outcome::written;
+    polygons = shape.size();
+    rings_written = shape.rings.size();
+    return outcome == Outcome::written;
+  }
 };
 
 /// Adapts features to the tolerance.
@@ -52,13 +75,17 @@ class Exporter : public FeatureWorker {
     if (!built.failure.empty()) return skip(adapted, built.failure);
     if (!built.built) return;
     adapted.all_vertices = graph_.corners().size();
+    if (is_reshaped(options_)) full_detail_.add(graph_, FaceFeatures({feature.row}), feature.row);
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization);
     adaptable.adapt_to(options_.epsilon);
-    const Polygons polygons = polygons_of(adaptable.graph());
-    finish(adapted, polygons);
-    if (adapted.polygons == 0) return;
-    adapted.result = geometry_of(polygons, options_.crs);
+    Polygons polygons = polygons_of(adaptable.graph());
+    if (!finish(adapted, polygons)) return;
     adapted.held = count_held(adaptable);
+    if (is_reshaped(options_)) {
+      adapted.drawn = {feature.row, false, std::move(polygons)};
+    } else {
+      adapted.result = geometry_of(polygons, options_.crs);
+    }
   }
 
   void build_together(std::span<WaitingFeature* const> features, unsigned threads) override {
@@ -75,6 +102,8 @@ class Exporter : public FeatureWorker {
 
   /// What became of features since the last call, in any order.
   std::vector<Adapted> take_adapted() { return std::exchange(adapted_, {}); }
+  /// The features since the last call, if they are reshaped.
+  FullDetail take_full_detail() { return std::exchange(full_detail_, {}); }
 
  private:
   Adapted& begin(const FeatureKey& feature) {
@@ -91,33 +120,34 @@ class Exporter : public FeatureWorker {
   /// What the features of one graph have in common is counted with the first one that is written.
   void adapt_together(std::span<WaitingFeature* const> features, const Assembly& assembly) {
     const FaceFeatures& faces = assembly.outcome.faces;
+    std::vector<std::uint32_t> rows;
+    for (const WaitingFeature* feature : features) rows.push_back(feature->key.row);
+    const std::uint32_t number = rows[assembly.together.front()];
+    if (is_reshaped(options_)) full_detail_.add(graph_, faces.named(rows), number);
     const std::vector<Rings> outlines = rings_of_features(graph_, faces);
     const std::optional<MergePlan>& plan = assembly.outcome.plan;
     AdaptableGraph adaptable(std::exchange(graph_, {}), options_.generalization,
                              plan ? &*plan : nullptr);
     adaptable.adapt_to(options_.epsilon);
-    const std::vector<Polygons> polygons = polygons_of_features(adaptable.graph(), faces);
+    std::vector<Polygons> polygons = polygons_of_features(adaptable.graph(), faces);
     std::size_t held = count_held(adaptable);
-    std::vector<PolygonGeometry> geometries = geometries_of_neighbours(polygons, options_.crs);
+    std::vector<PolygonGeometry> geometries(polygons.size());
+    if (!is_reshaped(options_)) geometries = geometries_of_neighbours(polygons, options_.crs);
     for (const std::uint32_t i : assembly.together) {
       Adapted& adapted = begin(features[i]->key);
       adapted.all_vertices = outlines[i].points.size();
-      finish(adapted, polygons[i]);
-      if (adapted.polygons == 0) continue;
+      if (!finish(adapted, polygons[i])) continue;
       adapted.result = std::move(geometries[i]);
       adapted.held = std::exchange(held, 0);
+      if (is_reshaped(options_)) adapted.drawn = {number, false, std::move(polygons[i])};
     }
   }
 
-  static void finish(Adapted& adapted, const Polygons& polygons) {
-    if (!polygons.failure.empty()) return skip(adapted, polygons.failure);
-    adapted.outcome = Adapted::Outcome::too_small;
-    if (polygons.empty()) return;
-    adapted.outcome = Adapted::Outcome::written;
+  static bool finish(Adapted& adapted, const Polygons& polygons) {
+    if (!adapted.take(polygons)) return false;
     adapted.crosses = polygons.is_noded;
-    adapted.polygons = polygons.size();
-    adapted.rings_written = polygons.rings.size();
     adapted.vertices = polygons.rings.points.size();
+    return true;
   }
 
   std::size_t count_held(const AdaptableGraph& adaptable) const {
@@ -134,6 +164,7 @@ class Exporter : public FeatureWorker {
   GraphBuilder builder_;
   CoverageBuilder coverage_builder_;
   TrapezoidalGraph graph_;
+  FullDetail full_detail_;
   std::vector<Adapted> adapted_;
 };
 
@@ -149,8 +180,9 @@ class Export {
   ExportReport run() {
     const FeaturePipeline::Take take = [this](SourceFeature& next) { return keep(next); };
     // Any feature may be a neighbour of any other one.
-    const bool is_coverage = options_.generalization.coverage != CoverageMode::off;
-    const auto round = is_coverage ? FeaturePipeline::RoundLimit{} : kRound;
+    const bool are_all_held =
+        options_.generalization.coverage != CoverageMode::off || is_reshaped(options_);
+    const auto round = are_all_held ? FeaturePipeline::RoundLimit{} : kRound;
     bool is_more = true;
     while (is_more) {
       is_more = pipeline_.run(take, round);
@@ -188,9 +220,57 @@ class Export {
       for (Adapted& adapted : exporter.take_adapted()) round.push_back(std::move(adapted));
     }
     std::ranges::sort(round, {}, [](const Adapted& adapted) { return adapted.key.row; });
+    if (is_reshaped(options_)) reshape(round);
     for (Adapted& adapted : round) count(adapted);
     first_row_ += static_cast<std::uint32_t>(kept_.size());
     kept_.clear();
+  }
+
+  /// Has corners rounded, or what is narrow grown, of all that is written, and makes geometries of
+  /// it.
+  void reshape(std::vector<Adapted>& round) {
+    const unsigned threads = thread_count(options_.threads);
+    FullDetail all;
+    for (Exporter& exporter : exporters_) all.add(exporter.take_full_detail());
+    const std::vector<std::uint8_t> is_overlapping = all.overlapping(threads);
+    std::vector<Adapted*> written;
+    std::vector<DrawnPolygons*> polygons;
+    for (Adapted& adapted : round) {
+      if (adapted.outcome != Adapted::Outcome::written) continue;
+      adapted.drawn.lies_over_others = is_overlapping[adapted.key.row] != 0;
+      polygons.push_back(&adapted.drawn);
+      written.push_back(&adapted);
+    }
+    if (options_.smooth.radius > 0) {
+      report_.corners = round_corners(polygons, options_.smooth, threads);
+    } else {
+      const GrownPolygons grown = grow(polygons, options_.grow, threads);
+      if (!grown.failure.empty()) {
+        throw SourceError("what grows cannot be united: " + grown.failure);
+      }
+      report_.grown = grown.grown;
+    }
+    std::map<std::uint32_t, std::vector<Adapted*>> by_graph;
+    for (Adapted* adapted : written) by_graph[adapted->drawn.graph].push_back(adapted);
+    std::vector<std::vector<Adapted*>> graphs;
+    for (auto& [graph, features] : by_graph) graphs.push_back(std::move(features));
+    for_each_in_parallel(graphs.size(), threads,
+                         [&](std::size_t i) { make_geometries(graphs[i]); });
+  }
+
+  /// Of the features of a graph.
+  void make_geometries(std::span<Adapted* const> features) const {
+    std::vector<Polygons> polygons;
+    for (Adapted* adapted : features) polygons.push_back(std::move(adapted->drawn.polygons));
+    std::vector<PolygonGeometry> geometries;
+    if (features.size() > 1) {
+      geometries = geometries_of_neighbours(polygons, options_.crs);
+    } else if (!polygons.front().empty()) {
+      geometries.push_back(geometry_of(polygons.front(), options_.crs));
+    }
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (features[i]->take(polygons[i])) features[i]->result = std::move(geometries[i]);
+    }
   }
 
   void count(Adapted& adapted) {

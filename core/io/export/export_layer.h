@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/borders/grown_polygons.h"
+#include "core/borders/rounded_polygons.h"
 #include "core/io/export/export_crs.h"
 #include "core/io/load/load_report.h"
 #include "core/layer/layer_options.h"
@@ -14,7 +16,9 @@
 namespace trapeze {
 
 struct ExportOptions {
-  double epsilon = 0;  // the tolerance, in cells; 0: nothing is removed
+  double epsilon = 0;   // the tolerance, in cells; 0: nothing is removed
+  RoundingSize smooth;  // of corners; none is rounded if its radius is 0
+  GrowthSize grow;      // of what is narrow; nothing grows if its width is 0. Not beside `smooth`
   LayerOptions generalization;
   ExportCrs crs = ExportCrs::degrees;
   bool overwrite = false;  // replace an output that exists
@@ -39,6 +43,8 @@ struct ExportReport {
   std::size_t vertices = 0;        // left at the tolerance
   std::size_t all_vertices = 0;    // of the same features and the too small ones, untouched
   std::size_t held = 0;  // vertices of less weight than the tolerance that the topology test kept
+  RoundedCorners corners;
+  std::size_t grown = 0;       // features of which anything grew
   std::size_t crossed = 0;     // features that crossed themselves, for want of the test; noded
   std::size_t subdivided = 0;  // polygons that got vertices on long edges to be valid in degrees
   std::size_t unchecked = 0;   // polygons with too many holes to check whether they are so
@@ -54,6 +60,11 @@ struct ExportReport {
 /// With a coverage among the options, neighbours are adapted together, and have every edge of their
 /// common border in common; the whole source is held in memory.
 ///
+/// With `smooth`, corners are rounded as tiles show them: neighbours in common, and none where
+/// polygons lie over each other at full detail, or where another vertex is near, whose ever it is
+/// (see round_corners()). With `grow`, what is narrow is as wide as tiles show it (see grow()).
+/// With either, the whole source is held in memory.
+///
 /// Attributes keep their names and types; what the format cannot hold (lists, times of day) becomes
 /// text as in AttributeReader, and names that would clash get a number. The field `trapeze_id`
 /// holds the source's id of each feature; of a source with several layers, `trapeze_layer` tells
@@ -61,8 +72,9 @@ struct ExportReport {
 /// not depend on the number of threads.
 ///
 /// The output appears under its name only when it is complete. Throws std::runtime_error that names
-/// the path: as load_layer() for the source; and for an output that exists and is not to be
-/// overwritten, is the source itself, has another extension, or cannot be written.
+/// the path: as load_layer() for the source; if what grows cannot be united; and for an output that
+/// exists and is not to be overwritten, is the source itself, has another extension, or cannot be
+/// written.
 ///
 /// Thread-safety: may be called from several threads at once, for different outputs.
 ExportReport export_layer(const std::string& source, const std::string& output,

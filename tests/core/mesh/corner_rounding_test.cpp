@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -205,6 +206,32 @@ TEST(CornerRounding, JunctionsAndSharpFacesStay) {
     EXPECT_NE(corner.inside, face);
     EXPECT_NE(corner.outside, face);
   }
+}
+
+TEST(CornerRounding, ACornerThatIsLeftSharpChangesNoOther) {
+  const auto square = layer_of_text("0 0, 100 0, 100 100, 0 100");
+  CornerRounding corners;
+  const std::set<std::uint32_t> edges = add_all(*square, kEverywhere, corners);
+  corners.find({20, kLarger});
+  ASSERT_EQ(corners.corners().size(), 4u);
+  const std::uint32_t left = corners.corners()[1].vertex;
+  const std::uint32_t other = corners.corners()[2].vertex;
+  const std::span<const Point> points = corners.points_of(corners.corners()[2]);
+  const std::vector<Point> before(points.begin(), points.end());
+  corners.leave_sharp(0, std::vector{left});
+  EXPECT_EQ(corners.corners().size(), 3u);
+  EXPECT_EQ(corners.corner_at(0, left), nullptr);
+  ASSERT_NE(corners.corner_at(0, other), nullptr);
+  EXPECT_TRUE(std::ranges::equal(corners.points_of(*corners.corner_at(0, other)), before));
+  std::vector<PointOnWay> way;
+  int ends = 0;
+  for (const std::uint32_t edge : edges) {
+    corners.trace(0, square->mesh(), edge, way);
+    for (const PointOnWay& end : {way.front(), way.back()}) {
+      ends += end.place == square->mesh().vertices[left] ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(ends, 2);
 }
 
 TEST(CornerRounding, PlacesHaveTheAreaBetweenTheCornerAndTheCurve) {
