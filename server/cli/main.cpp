@@ -127,9 +127,12 @@ constexpr const char* kPrepareFooter =
     "\n"
     "--part builds a layer part by part, on one machine or on many, in the memory that a part "
     "takes:\n"
-    "each looks at all of FILE first, and divides it by place in the same way. Features that come\n"
-    "near each other are in one part. All parts together are served as one layer. --join makes an\n"
-    "overview of them, which low zooms need; --part 1-N/N makes it too.";
+    "each looks at all of FILE first, and divides it by place in the same way; then it reads its "
+    "own\n"
+    "features, which is fast of a FlatGeobuf with a spatial index. Features that come near each\n"
+    "other are in one part. All parts together are served as one layer. --join makes an overview "
+    "of\n"
+    "them, which low zooms need; --part 1-N/N makes it too.";
 
 constexpr const char* kDiffFooter =
     "\nExamples:\n"

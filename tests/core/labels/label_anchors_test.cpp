@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
+
+#include "tests/core/shapes/layers.h"
 
 namespace trapeze {
 namespace {
@@ -187,6 +191,33 @@ TEST(LabelAnchorsTest, AStripThatIsSeenIsFound) {
     EXPECT_GT(anchors[0].depth, 0);
     EXPECT_FALSE(is_inside(above[0], anchors[0].place.x, anchors[0].place.y));
   }
+}
+
+TEST(LabelAnchorsTest, OfWhatIsAsItWasIsTakenOver) {
+  const Rings house = rings_of({box(0, 0, 3'000, 1'000)});
+  const Rings field = rings_of({box(10'000, 0, 40'000, 9'000)});
+  const Rings pond = rings_of({box(20'000, 2'000, 26'000, 5'000)});
+  const Rings other_pond = rings_of({box(20'000, 2'000, 27'000, 5'000)});
+  const std::unique_ptr<Layer> before = layer_of({field, house, pond});
+  const LabelAnchors found(*before, LabelParts::all);
+  std::vector<LabelAnchor> marked(found.all().begin(), found.all().end());
+  ASSERT_EQ(marked.size(), 3u);
+  for (LabelAnchor& anchor : marked) anchor.depth = 1;  // so that it is seen whence they are
+
+  // In another order: the house is as it was, and so is the pond; not so what lies over the field.
+  const std::unique_ptr<Layer> after = layer_of({house, field, other_pond, pond});
+  const LabelAnchors anew(*after, LabelParts::all);
+  const LabelAnchors again(*after, KnownAnchors{before.get(), marked});
+  ASSERT_EQ(again.all().size(), anew.all().size());
+  for (std::size_t i = 0; i < again.all().size(); ++i) {
+    LabelAnchor anchor = again.all()[i];
+    const bool is_known = anchor.row == 0 || anchor.row == 3;
+    EXPECT_EQ(anchor.depth == 1, is_known) << anchor.row;
+    anchor.depth = anew.all()[i].depth;
+    EXPECT_EQ(anchor, anew.all()[i]);
+  }
+  const LabelAnchors of_nothing(*after, KnownAnchors{before.get(), {}});
+  EXPECT_TRUE(std::ranges::equal(of_nothing.all(), anew.all()));
 }
 
 TEST(LabelAnchorsTest, DegenerateRingsHaveNone) {
