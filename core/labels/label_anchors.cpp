@@ -557,9 +557,12 @@ class AnchorsByDigest {
     entries_ = for_each_feature<Entry>(
         *known.layer, threads,
         [&](std::uint32_t row, const Finder& finder, std::vector<Entry>& entries) {
-          const auto of_row =
-              std::ranges::equal_range(known.of_all_parts, row, {}, &LabelAnchor::row);
-          entries.push_back({finder.digest(), {of_row.begin(), of_row.end()}});
+          const auto first =
+              std::ranges::lower_bound(known.of_all_parts, row, {}, &LabelAnchor::row);
+          const auto end =
+              std::find_if(first, known.of_all_parts.end(),
+                           [row](const LabelAnchor& anchor) { return anchor.row != row; });
+          entries.push_back({finder.digest(), {first, end}});
         });
     std::ranges::sort(entries_, {}, &Entry::digest);
   }

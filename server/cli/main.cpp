@@ -125,14 +125,11 @@ constexpr const char* kPrepareFooter =
     "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
     "under a running server without harm; write into it by no other means.\n"
     "\n"
-    "--part builds a layer part by part, on one machine or on many, in the memory that a part "
-    "takes:\n"
-    "each looks at all of FILE first, and divides it by place in the same way; then it reads its "
-    "own\n"
-    "features, which is fast of a FlatGeobuf with a spatial index. Features that come near each\n"
-    "other are in one part. All parts together are served as one layer. --join makes an overview "
-    "of\n"
-    "them, which low zooms need; --part 1-N/N makes it too.";
+    "--part builds a layer part by part, on one machine or on many, in the memory that a part\n"
+    "takes: each looks at all of FILE first, and divides it by place in the same way; then it\n"
+    "reads its own features, which is fast of a FlatGeobuf with a spatial index. Features that\n"
+    "come near each other are in one part. All parts together are served as one layer. --join\n"
+    "makes an overview of them, which low zooms need; --part 1-N/N makes it too.";
 
 constexpr const char* kDiffFooter =
     "\nExamples:\n"
