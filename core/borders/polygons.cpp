@@ -132,6 +132,7 @@ void append_polygons(const TrapezoidalGraph& g, Polygons& polygons) {
 
 std::vector<Polygons> polygons_of_each(std::vector<Rings> features) {
   std::vector<Polygons> polygons;
+  polygons.reserve(features.size());
   for (Rings& rings : features) polygons.push_back(polygons_of(rings));
   return polygons;
 }

@@ -253,6 +253,7 @@ class Export {
     std::map<std::uint32_t, std::vector<Adapted*>> by_graph;
     for (Adapted* adapted : written) by_graph[adapted->drawn.graph].push_back(adapted);
     std::vector<std::vector<Adapted*>> graphs;
+    graphs.reserve(by_graph.size());
     for (auto& [graph, features] : by_graph) graphs.push_back(std::move(features));
     for_each_in_parallel(graphs.size(), threads,
                          [&](std::size_t i) { make_geometries(graphs[i]); });
