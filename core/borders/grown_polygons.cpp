@@ -194,7 +194,9 @@ std::vector<Grown> unite(const std::vector<Triangle>& triangles, unsigned thread
   std::vector<Grown> grown;
   std::vector<std::span<const Triangle* const>> parts;
   for (const auto& [key, own] : sorted) {
-    grown.push_back({key.second, key.first, {}});
+    Grown& one = grown.emplace_back();
+    one.feature = key.second;
+    one.is_beside_others = key.first;
     parts.push_back(own);
   }
   std::vector<std::string> failures(grown.size());
