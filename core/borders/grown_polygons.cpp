@@ -197,7 +197,7 @@ std::vector<Grown> unite(const std::vector<Triangle>& triangles, unsigned thread
     Grown& one = grown.emplace_back();
     one.feature = key.second;
     one.is_beside_others = key.first;
-    parts.push_back(own);
+    parts.emplace_back(own);
   }
   std::vector<std::string> failures(grown.size());
   for_each_in_parallel(grown.size(), threads, [&](std::size_t i) {
