@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/file/mapped_file.h"
 #include "core/io/file/prepared_file.h"
 #include "core/io/load/source_division.h"
 #include "core/io/prepared/join_parts.h"
@@ -89,7 +88,7 @@ EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
                              const LayerOptions& options, const std::string& grid) {
   if (file.empty()) return {};
   if (!std::filesystem::exists(file)) {
-    if (file != reuse) return {nullptr, nullptr, {}, "is not there"};
+    if (file != reuse) return {nullptr, nullptr, {}, "is not there", file};
     throw std::runtime_error(file + ": there is no such file to take over from");
   }
   if (!is_prepared_file(file)) {
@@ -106,15 +105,14 @@ LoadedLayer load(const std::string& file, const LoadOptions& how, const EarlierP
   return load_layer(file, options);
 }
 
-void print_reuse(const std::string& file, const EarlierPrepared& earlier,
-                 const LoadReport& report) {
-  if (file.empty()) return;
+void print_reuse(const EarlierPrepared& earlier, const LoadReport& report) {
+  if (earlier.path.empty()) return;
   if (earlier.layer == nullptr) {
-    fmt::print("  nothing is taken over: {} {}\n", file, earlier.unfit);
+    fmt::print("  nothing is taken over: {} {}\n", earlier.path, earlier.unfit);
     return;
   }
   fmt::print("  {} of {} features are as they were and taken over from {}\n", report.taken_over,
-             report.loaded, file);
+             report.loaded, earlier.path);
 }
 
 /// Before the file is read, so that a change from here on is noticed now or later.
@@ -127,12 +125,9 @@ SourceStamp stamp_or_throw(const std::string& file) {
 
 void prepare(const std::string& file, const SourceStamp& source, const LoadOptions& how,
              SkipLimit max_skipped, const std::string& output, const std::string& reuse) {
-  const std::string earlier_name = earlier_file(reuse, output);
-  const EarlierPrepared earlier = open_earlier(earlier_name, reuse, how.generalization, how.grid);
+  const EarlierPrepared earlier =
+      open_earlier(earlier_file(reuse, output), reuse, how.generalization, how.grid);
   const LoadedLayer loaded = load(file, how, earlier);
-  if (earlier.file != nullptr && !earlier.file->is_whole()) {
-    throw std::runtime_error(earlier_name + ": was written into while it was read");
-  }
   const std::string change = change_since(source, file);
   if (!change.empty()) {
     throw std::runtime_error(file + ": has changed while it was read: " + change);
@@ -145,7 +140,7 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   fmt::print("{}: {} of {} features, {} vertices, {:.1f} MB, from {}\n", output, report.loaded,
              report.features, report.vertices,
              static_cast<double>(std::filesystem::file_size(output)) / 1e6, report.path);
-  print_reuse(earlier_name, earlier, report);
+  print_reuse(earlier, report);
   for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   if (report.repaired > 0 || report.skipped > 0) {
     fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",

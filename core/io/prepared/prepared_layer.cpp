@@ -486,6 +486,9 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
   const LayerArrays arrays = arrays_of(*loaded.layer);
   const ByteWriter description = written(arrays, revision, source, loaded);
   const LabelAnchors anchors = label_anchors_of(loaded, earlier);
+  if (earlier.file != nullptr && !earlier.file->is_whole()) {
+    throw std::runtime_error(earlier.path + ": was written into while it was read");
+  }
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
   add_arrays(arrays, sections);
@@ -534,6 +537,7 @@ LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary
 EarlierPrepared open_earlier_layer(const std::string& path, const LayerOptions& options,
                                    const std::string& grid) {
   EarlierPrepared earlier;
+  earlier.path = path;
   try {
     const auto file = std::make_shared<const MappedFile>(path);
     SectionReader sections(file->bytes());

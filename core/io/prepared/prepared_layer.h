@@ -22,13 +22,15 @@ struct EarlierPrepared {
   std::shared_ptr<const MappedFile> file;      // that the layer looks at
   std::span<const LabelAnchor> label_anchors;  // in memory that the layer keeps
   std::string unfit;                           // why nothing can be; empty if there is a layer
+  std::string path;                            // of the file; empty if there is none to look at
 };
 
 /// Saves a layer that was loaded from the source of the stamp, or a part of one, under a `revision`
 /// that it is to have when it is opened. A prepared file of that name is replaced, see
 /// write_atomically; any other one is not. `grid` is the one it was built on. Where labels go is
 /// taken over from `earlier`, of features that are as they were. Throws std::runtime_error that
-/// names the path.
+/// names the path: of what is saved, or of what was taken over from if that is no longer what was
+/// opened.
 void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std::uint64_t revision,
                          const SourceStamp& source, const std::string& grid = {},
                          const EarlierPrepared& earlier = {});

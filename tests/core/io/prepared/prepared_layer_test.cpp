@@ -655,7 +655,14 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsTakenOverFromNothingIsReadBeyond) {
     std::filesystem::resize_file(prepared_, left);
     EXPECT_FALSE(earlier.file->is_whole());
     // Noted before and after.
-    load_with(kMixed, earlier);
+    const LoadedLayer after = load_with(kMixed, earlier);
+    EXPECT_THAT(
+        [&] {
+          save_prepared_layer(path("again.trapeze"), after, kRevision, stamp_source(kMixed), {},
+                              earlier);
+        },
+        ThrowsMessage<std::runtime_error>(AllOf(StartsWith(prepared_), HasSubstr("written into"))));
+    EXPECT_FALSE(std::filesystem::exists(path("again.trapeze")));
     std::vector<LayerBuilder> builders;
     builders.emplace_back(LayerOptions(), nullptr, &noted);
     FeatureTable table(std::vector<Field>{});
