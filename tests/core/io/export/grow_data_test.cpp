@@ -106,32 +106,39 @@ OGRPolygon polygon_of(const Exaggeration::Triangle& triangle) {
   return polygon;
 }
 
-class GrowDataTest : public ::testing::TestWithParam<Trial> {};
+class GrowDataTest : public ::testing::TestWithParam<Trial> {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("TRAPEZE_DATA");
+    if (data == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of real data";
+    path_ = (std::filesystem::path(data) / GetParam().file).string();
+    if (!std::filesystem::exists(path_)) GTEST_SKIP() << path_ << " is not there";
+    options_.epsilon = testing::epsilon_of_zoom(GetParam().zoom);
+    pixel_ = static_cast<double>(TileId{GetParam().zoom, 0, 0}.side()) / 256;
+  }
+
+  TemporaryFolder folder_;
+  std::string path_;
+  ExportOptions options_;
+  double pixel_ = 1;  // cells
+};
 
 // Up to what rounding to cells makes of it.
 TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
-  const char* data = std::getenv("TRAPEZE_DATA");
-  if (data == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of real data";
-  const std::string path = (std::filesystem::path(data) / GetParam().file).string();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  const TemporaryFolder folder;
-  const double pixel = static_cast<double>(TileId{GetParam().zoom, 0, 0}.side()) / 256;
   const double cell = metres_from_grid(1, 0).x;
-  ExportOptions options;
-  options.epsilon = testing::epsilon_of_zoom(GetParam().zoom);
-  options.crs = ExportCrs::web_mercator;
+  options_.crs = ExportCrs::web_mercator;
   const auto write = [&](const char* name, double width) {
-    options.grow = {width, pixel};
-    const ExportReport report = export_layer(path, folder.file(name), options);
+    options_.grow = {width, pixel_};
+    const ExportReport report = export_layer(path_, folder_.file(name), options_);
     EXPECT_EQ(report.grown > 0, width > 0);
     EXPECT_EQ(report.skipped, 0u);
-    return geometries_of(folder.file(name));
+    return geometries_of(folder_.file(name));
   };
   const Geometries before = write("before.gpkg", 0);
   const Geometries after = write("after.gpkg", GetParam().width);
   ASSERT_EQ(before.size(), after.size());
 
-  const LoadedLayer loaded = load_layer(path, {.generalization = options.generalization});
+  const LoadedLayer loaded = load_layer(path_, {.generalization = options_.generalization});
   const FeatureTable& table = loaded.layer->features();
   struct Feature {
     OGREnvelope around;
@@ -141,7 +148,7 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
     OGRMultiPolygon of_others_over_it;
   };
   std::map<std::int64_t, Feature> features;
-  const double reach = 2 * GetParam().width * pixel * cell;
+  const double reach = 2 * GetParam().width * pixel_ * cell;
   for (const auto& [id, geometry] : before) {
     OGREnvelope& around = features[id].around;
     geometry->getEnvelope(&around);
@@ -152,8 +159,8 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
     const auto found = features.find(table.id(row));
     if (found != features.end()) found->second.stays = !loaded.layer->overlaps().of(row).empty();
   }
-  for (const Exaggeration::Triangle& triangle :
-       drawn_triangles(*loaded.layer, nearest_level(options.epsilon), {GetParam().width, pixel})) {
+  for (const Exaggeration::Triangle& triangle : drawn_triangles(
+           *loaded.layer, nearest_level(options_.epsilon), {GetParam().width, pixel_})) {
     const OGRPolygon polygon = polygon_of(triangle);
     const std::int64_t id = table.id(BoundaryMap::number_of(triangle.face));
     features[id].own.addGeometry(&polygon);
@@ -168,7 +175,7 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
     }
   }
   using Geometry = std::unique_ptr<OGRGeometry>;
-  const double pixel_area = pixel * pixel * cell * cell;
+  const double pixel_area = pixel_ * pixel_ * cell * cell;
   double disputed = 0;
   for (const auto& [id, geometry] : after) {
     const Feature& feature = features.at(id);
@@ -203,18 +210,11 @@ TEST_P(GrowDataTest, EveryFeatureIsWhatIsDrawnOfIt) {
 // Vertices that lie beside an edge would come to lie on its other side there, as it is straight
 // elsewhere.
 TEST_P(GrowDataTest, EverythingIsValidInDegrees) {
-  const char* data = std::getenv("TRAPEZE_DATA");
-  if (data == nullptr) GTEST_SKIP() << "TRAPEZE_DATA does not name a folder of real data";
-  const std::string path = (std::filesystem::path(data) / GetParam().file).string();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-  const TemporaryFolder folder;
-  ExportOptions options;
-  options.epsilon = testing::epsilon_of_zoom(GetParam().zoom);
-  options.grow = {16, static_cast<double>(TileId{GetParam().zoom, 0, 0}.side()) / 256};
-  const ExportReport report = export_layer(path, folder.file("out.gpkg"), options);
+  options_.grow = {16, pixel_};
+  const ExportReport report = export_layer(path_, folder_.file("out.gpkg"), options_);
   EXPECT_EQ(report.invalid, 0u);
   EXPECT_EQ(report.skipped, 0u);
-  EXPECT_EQ(geometries_of(folder.file("out.gpkg")).size(), report.written);
+  EXPECT_EQ(geometries_of(folder_.file("out.gpkg")).size(), report.written);
 }
 
 INSTANTIATE_TEST_SUITE_P(
