@@ -101,7 +101,7 @@ struct GrowingLayer {
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
   std::vector<std::uint32_t> graph_of;  // by row: the first row of its graph
-  std::vector<FeatureOverlap> shared;   // of features of one graph
+  std::vector<FeatureOverlap> known;    // of features that are not compared
 };
 
 FeatureGrain stored(const Grain& grain) {
@@ -286,17 +286,32 @@ std::vector<Box> boxes_of(const GrowingLayer& layer) {
   return boxes;
 }
 
-/// The pairs of features with a face in common, of which both are taken over.
-void take_shared(const TakenOver& taken, std::vector<FeatureOverlap>& shared) {
-  if (taken.empty() || !taken.earlier().layer().overlaps().are_any_in_common()) return;
-  for (const FeatureOverlap& pair : taken.earlier().arrays().overlaps) {
-    const std::uint32_t row = taken.row_now(pair.row);
-    const std::uint32_t other = taken.row_now(pair.other);
-    if (!pair.is_in_common() || row == TakenOver::kNotTaken || other == TakenOver::kNotTaken) {
-      continue;
-    }
-    shared.push_back(FeatureOverlap::in_common(row, other));
+/// Whether it is known which of the features that are taken over lie over each other. How much they
+/// do depends on which is looked at first, by roundings.
+bool are_overlaps_known(const TakenOver& taken) {
+  return !taken.empty() && taken.earlier().layer().has_all_overlaps() && taken.keeps_order();
+}
+
+/// The pairs of features of which both are taken over; those with a face in common, or all.
+void take_overlaps(const TakenOver& taken, bool all, std::vector<FeatureOverlap>& overlaps) {
+  if (taken.empty()) return;
+  if (!all && !taken.earlier().layer().overlaps().are_any_in_common()) return;
+  for (FeatureOverlap pair : taken.earlier().arrays().overlaps) {
+    pair.row = taken.row_now(pair.row);
+    pair.other = taken.row_now(pair.other);
+    const bool is_taken = pair.row != TakenOver::kNotTaken && pair.other != TakenOver::kNotTaken;
+    if (is_taken && (all || pair.is_in_common())) overlaps.push_back(pair);
   }
+}
+
+/// By row, features that are not to be compared with each other: those of one graph, and all that
+/// are taken over if it is known which of them overlap.
+std::vector<std::uint32_t> kinds_to_compare(const TakenOver& taken, bool are_known,
+                                            const std::vector<std::uint32_t>& graph_of) {
+  std::vector<std::uint32_t> kinds = graph_of;
+  if (!are_known) return kinds;
+  for (const TakenRow& row : taken.rows()) kinds[row.row] = kUnused;
+  return kinds;
 }
 
 /// The dust of a layer.
@@ -552,21 +567,21 @@ void order_milestones(GrowingLayer& layer, LayerContents& to) {
 }
 
 /// Single motes first, then merged ones; returns the number of single ones.
-std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer) {
+std::uint32_t append_dust(const std::vector<Mote>& motes, GrowingLayer& layer, unsigned threads) {
   require_countable(layer.vertices.size() + 4 * motes.size(), "vertices");
   require_countable(layer.edges.size() + 2 * motes.size(), "versions of edges");
   require_countable(layer.mesh.trapezoids.size() + motes.size(), "versions of trapezoids");
-  using Key = std::tuple<bool, std::uint64_t, std::uint32_t>;
-  std::vector<Key> keys;
-  for (std::size_t i = 0; i < motes.size(); ++i) {
-    keys.emplace_back(motes[i].is_merged, order_key(motes[i]), static_cast<std::uint32_t>(i));
-  }
-  std::sort(keys.begin(), keys.end());
+  const LargeArray<KeyedIndex> order = order_by(
+      motes.size(), [&](std::size_t i) { return order_key(motes[i]); }, threads);
   std::uint32_t singles = 0;
-  for (const auto& [is_merged, key, i] : keys) {
-    append_mote(motes[i], layer.vertices, layer.edges, layer.mesh.trapezoids);
-    layer.mesh.lifespans.push_back(motes[i].lifespan);
-    singles += !is_merged;
+  for (const bool is_merged : {false, true}) {
+    for (const KeyedIndex& item : order) {
+      const Mote& mote = motes[item.index];
+      if (mote.is_merged != is_merged) continue;
+      append_mote(mote, layer.vertices, layer.edges, layer.mesh.trapezoids);
+      layer.mesh.lifespans.push_back(mote.lifespan);
+      singles += !is_merged;
+    }
   }
   return singles;
 }
@@ -663,9 +678,10 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
     if (i == 1) concatenate_outlines(stocks, taken, arrays);
   });
   for (const Stock& stock : stocks) {
-    arrays.shared.insert(arrays.shared.end(), stock.shared.begin(), stock.shared.end());
+    arrays.known.insert(arrays.known.end(), stock.shared.begin(), stock.shared.end());
   }
-  take_shared(taken, arrays.shared);
+  const bool are_known = are_overlaps_known(taken);
+  take_overlaps(taken, are_known, arrays.known);
   stocks.clear();
 
   tell(0.2);
@@ -674,12 +690,13 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   const auto horizontal_edges = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
   tell(0.5);
   const std::vector<Box> boxes = boxes_of(arrays);
+  const std::vector<std::uint32_t> kinds = kinds_to_compare(taken, are_known, arrays.graph_of);
   std::future<FeatureOverlaps> finding = std::async(launch, [&] {
     const MeshView mesh{0, arrays.vertices, arrays.edges, arrays.mesh.trapezoids};
     const GrowingMesh& all = arrays.mesh;
     return find_overlaps({mesh, std::span(all.lifespans).first(polygons),
-                          std::span(all.feature_of).first(polygons), arrays.graph_of, boxes},
-                         std::move(arrays.shared), threads);
+                          std::span(all.feature_of).first(polygons), kinds, boxes},
+                         std::move(arrays.known), threads);
   });
   const Numbering number = order_edges_and_vertices(dust.motes.size(), arrays);
   order_milestones(arrays, *layer);
@@ -690,7 +707,7 @@ std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer
   tell(0.6);
   renumber(number, arrays, threads);
   layer->size = {arrays.vertices.size(), polygons, arrays.edges.size(), 0};
-  const std::uint32_t motes = append_dust(dust.motes, arrays);
+  const std::uint32_t motes = append_dust(dust.motes, arrays, threads);
   const auto all = static_cast<std::uint32_t>(arrays.mesh.trapezoids.size());
   layer->size.motes = all - horizontal_edges;
   tell(0.7);

@@ -105,7 +105,6 @@ class Layer {
   /// Which features lie over each other.
   const OverlapTable& overlaps() const;
   /// False if there were too many to find them all: of the others, neither lies over the other.
-  /// Known only of a layer that has just been built.
   bool has_all_overlaps() const;
 
   /// True only if the ranges that were selected cover the whole box of the selection, so that it is

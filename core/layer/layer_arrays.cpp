@@ -152,6 +152,7 @@ LayerArrays arrays_of(const Layer& layer) {
   arrays.horizontal_edge_index = segment.horizontal_edges.entries();
   arrays.grains = c.grains.grains();
   arrays.overlaps = c.overlaps.pairs();
+  arrays.has_all_overlaps = c.has_all_overlaps;
   arrays.outline_points = c.outline_points;
   arrays.ring_ends = c.ring_ends;
   arrays.outline_ends = c.outline_ends;
@@ -202,6 +203,7 @@ std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<con
   layer->grains = GrainIndex(StoredArray<FeatureGrain>::looking_at(arrays.grains));
   layer->overlaps = OverlapTable(StoredArray<FeatureOverlap>::looking_at(arrays.overlaps),
                                  arrays.cells.ids.size());
+  layer->has_all_overlaps = arrays.has_all_overlaps;
   layer->features = FeatureTable(arrays.fields, arrays.cells);
   layer->view = MeshView{new_mesh_id(), layer->vertices, layer->edges, layer->trapezoids};
   layer->size = arrays.size;

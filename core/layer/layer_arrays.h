@@ -31,6 +31,7 @@ struct LayerArrays {
   std::span<const MeshIndex::Entry> merged_mote_index;
   std::span<const FeatureGrain> grains;
   std::span<const FeatureOverlap> overlaps;
+  bool has_all_overlaps = true;
   std::span<const Point> outline_points;
   std::span<const std::uint32_t> ring_ends;
   std::span<const std::uint32_t> outline_ends;

@@ -62,7 +62,7 @@ struct Common {
 class OverlapSearch {
  public:
   OverlapSearch(const OverlapInput& input, unsigned threads)
-      : input_(input), threads_(threads), is_compared_(input.graph_of.size()) {
+      : input_(input), threads_(threads), is_compared_(input.kinds.size()) {
     const auto untouched =
         static_cast<std::uint64_t>(std::ranges::count(input.lifespans, Level{0}, &Lifespan::born));
     most_steps_ = kLeastSteps + kMostStepsOf * untouched;
@@ -94,6 +94,10 @@ class OverlapSearch {
  private:
   std::span<const Item> items_of(std::uint32_t row) const {
     return std::span(items_).subspan(begins_[row], begins_[row + 1] - begins_[row]);
+  }
+  bool are_of_one_kind(std::span<const std::uint32_t> rows) const {
+    return std::ranges::all_of(
+        rows, [&](std::uint32_t row) { return input_.kinds[row] == input_.kinds[rows.front()]; });
   }
   bool is_over() const { return steps_ > most_steps_ || found_.pairs.size() >= most_pairs_; }
 
@@ -140,7 +144,7 @@ void OverlapSearch::collect_items() {
       found[piece].push_back({{box_of(input_.mesh, t), static_cast<std::uint32_t>(i), 0}, row});
     }
   });
-  const std::size_t rows = input_.graph_of.size();
+  const std::size_t rows = input_.kinds.size();
   begins_.assign(rows + 1, 0);
   for (const auto& piece : found) {
     for (const Owned& owned : piece) ++begins_[owned.row + 1];
@@ -177,7 +181,7 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
   const std::int64_t width = std::int64_t{region.max_x} - region.min_x;
   const std::int64_t height = std::int64_t{region.max_y} - region.min_y;
   steps_ += rows.size();
-  if (is_over()) return;
+  if (is_over() || are_of_one_kind(rows)) return;
   const bool is_small = rows.size() <= kFew || std::max(width, height) < 2;
   if (is_small || halvings == 0) return join_each(rows, region);
 
@@ -215,7 +219,7 @@ void OverlapSearch::join_each(std::span<const std::uint32_t> rows, const Box& re
     steps_ += rows.size() - i;
     for (std::size_t k = i + 1; k < rows.size(); ++k) {
       const auto [a, b] = std::minmax(rows[i], rows[k]);
-      if (input_.graph_of[a] == input_.graph_of[b]) continue;
+      if (input_.kinds[a] == input_.kinds[b]) continue;
       const Box place = common_part(input_.boxes[a], input_.boxes[b]);
       const bool begins_here = !place.is_empty() && place.min_x >= region.min_x &&
                                place.min_x < region.max_x && place.min_y >= region.min_y &&

@@ -81,7 +81,7 @@ struct OverlapInput {
   MeshView mesh;
   std::span<const Lifespan> lifespans;        // by trapezoid, as many as feature_of
   std::span<const std::uint32_t> feature_of;  // row, by trapezoid; others of the mesh do not count
-  std::span<const std::uint32_t> graph_of;    // by row: features of one graph are not compared
+  std::span<const std::uint32_t> kinds;       // by row: features of one kind are not compared
   std::span<const Box> boxes;                 // by row, around the feature: as many
 };
 
@@ -92,7 +92,7 @@ struct FeatureOverlaps {
 
 /// Overlaps wider than two cells, which is more than what snapping borders to the grid makes of
 /// neighbours. Does not depend on the order of trapezoids. With those that are known, of features
-/// of one graph, each once or more often. On up to `threads` threads, on which nothing depends.
+/// of one kind, each once or more often. On up to `threads` threads, on which nothing depends.
 FeatureOverlaps find_overlaps(const OverlapInput& input, std::vector<FeatureOverlap> known = {},
                               unsigned threads = 1);
 

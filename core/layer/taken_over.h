@@ -44,6 +44,8 @@ class TakenOver {
   bool empty() const { return rows_.empty(); }
   /// In order of rows now.
   std::span<const TakenRow> rows() const { return rows_; }
+  /// Whether the rows of any two are in the order in which they were.
+  bool keeps_order() const { return std::ranges::is_sorted(rows_, {}, &TakenRow::earlier); }
   /// If it is not empty.
   const EarlierLayer& earlier() const { return *earlier_; }
   /// Now, of a row of the earlier layer; kNotTaken if it is not taken over.

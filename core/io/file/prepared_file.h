@@ -20,7 +20,7 @@
 namespace trapeze {
 
 /// To be incremented when header, directory, the sections or the description in them change.
-constexpr std::uint32_t kPreparedVersion = 8;
+constexpr std::uint32_t kPreparedVersion = 9;
 
 /// As in PNG, bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};

@@ -122,6 +122,9 @@ void write_fields(const std::vector<Field>& fields, ByteWriter& out) {
 constexpr std::uint8_t kBlocksBit = 0x80;
 // That they are of classes, and the attribute follows that.
 constexpr std::uint8_t kClassesBit = 0x40;
+// That there are overlaps that were not found.
+constexpr std::uint8_t kMoreOverlapsBit = 0x20;
+constexpr std::uint8_t kCoverageBits = kBlocksBit | kClassesBit | kMoreOverlapsBit;
 
 /// A value of an enumeration whose last is `last`.
 template <typename Enum>
@@ -151,9 +154,9 @@ void write_numbers(const LayerArrays& numbers, ByteWriter& out) {
   out.add(static_cast<std::uint8_t>(numbers.options.topology));
   const bool has_blocks = numbers.options.merge > 0;
   const bool has_classes = !numbers.options.merge_by.empty();
-  out.add(static_cast<std::uint8_t>(static_cast<std::uint8_t>(numbers.options.coverage) |
-                                    (has_blocks ? kBlocksBit : 0) |
-                                    (has_classes ? kClassesBit : 0)));
+  out.add(static_cast<std::uint8_t>(
+      static_cast<std::uint8_t>(numbers.options.coverage) | (has_blocks ? kBlocksBit : 0) |
+      (has_classes ? kClassesBit : 0) | (numbers.has_all_overlaps ? 0 : kMoreOverlapsBit)));
   out.add(std::bit_cast<std::uint64_t>(numbers.options.close_gaps));
   if (has_blocks) out.add(std::bit_cast<std::uint64_t>(numbers.options.merge));
   if (has_classes) out.add_text(numbers.options.merge_by);
@@ -175,7 +178,8 @@ LayerArrays read_numbers(ByteReader& in) {
   const auto coverage = in.take<std::uint8_t>();
   const bool has_blocks = (coverage & kBlocksBit) != 0;
   numbers.options.coverage =
-      enum_of(static_cast<std::uint8_t>(coverage & ~(kBlocksBit | kClassesBit)), CoverageMode::on);
+      enum_of(static_cast<std::uint8_t>(coverage & ~kCoverageBits), CoverageMode::on);
+  numbers.has_all_overlaps = (coverage & kMoreOverlapsBit) == 0;
   numbers.options.close_gaps = std::bit_cast<double>(in.take<std::uint64_t>());
   if (has_blocks) numbers.options.merge = std::bit_cast<double>(in.take<std::uint64_t>());
   if ((coverage & kClassesBit) != 0) numbers.options.merge_by = in.take_text();

@@ -215,6 +215,19 @@ TEST(EarlierLayerTest, EachOfManyEqualFeaturesIsTakenOverOnce) {
   expect_equal(build({three[0]}, options), less);
 }
 
+TEST(EarlierLayerTest, WhatDidNotKnowAllOverlapsIsNoSourceOfThem) {
+  LayerOptions options;
+  options.coverage = CoverageMode::off;
+  const Map many(2100, random_shape(4));
+  const Map few(many.begin(), many.begin() + 20);
+  const Built before = build(many, options);
+  ASSERT_FALSE(before.layer->has_all_overlaps());
+  const Built after = build(few, options, &before);
+  EXPECT_EQ(after.taken_over, 20u);
+  EXPECT_TRUE(after.layer->has_all_overlaps());
+  EXPECT_EQ(after.layer->overlaps().pairs().size(), 20u * 19);
+}
+
 TEST(EarlierLayerTest, NothingLeftOrNothingBeforeIsNoSpecialCase) {
   const Built nothing = build({}, {});
   const Map map = sample_map(2);

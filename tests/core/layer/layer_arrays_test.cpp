@@ -135,6 +135,16 @@ TEST(LayerArrays, GiveALayerThatAnswersAsTheOneTheyWereTakenFrom) {
                                  build_without_topology_test(*built)->mesh().trapezoids));
 }
 
+TEST(LayerArrays, KnowThatOverlapsAreMissing) {
+  const auto built = sample_layer();
+  LayerArrays arrays = arrays_of(*built);
+  EXPECT_TRUE(layer_from(arrays, nullptr)->has_all_overlaps());
+  arrays.has_all_overlaps = false;
+  const auto again = layer_from(arrays, nullptr);
+  EXPECT_FALSE(again->has_all_overlaps());
+  EXPECT_FALSE(arrays_of(*again).has_all_overlaps);
+}
+
 TEST(LayerArrays, OfABuiltLayerTakeNoMoreMemoryThanTheirItems) {
   const auto layer = sample_layer();
   const LayerArrays a = arrays_of(*layer);

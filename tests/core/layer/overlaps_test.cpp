@@ -102,7 +102,7 @@ TEST(OverlapsTest, FeaturesOfOneGraphAreNotCompared) {
   const std::vector<Box> boxes = {{0, 0, 100, 100}, {20, 20, 60, 60}};
   OverlapInput input{layer->mesh(), c.lifespans, c.feature_of, apart, boxes};
   EXPECT_EQ(find_overlaps(input).pairs.size(), 2u);
-  input.graph_of = together;
+  input.kinds = together;
   EXPECT_THAT(find_overlaps(input).pairs, IsEmpty());
 }
 

@@ -201,6 +201,17 @@ TEST_F(PreparedLayerTest, OpensAsTheLayerThatWasSaved) {
   }
 }
 
+TEST_F(PreparedLayerTest, KnowsThatOverlapsAreMissing) {
+  LoadedLayer loaded = load_layer(kMixed);
+  for (const bool has_all : {true, false}) {
+    LayerArrays arrays = arrays_of(*loaded.layer);
+    arrays.has_all_overlaps = has_all;
+    loaded.layer = layer_from(arrays, loaded.layer);
+    save_prepared_layer(prepared_, loaded, kRevision, stamp_source(kMixed));
+    EXPECT_EQ(open_prepared_layer(prepared_).layer->has_all_overlaps(), has_all);
+  }
+}
+
 TEST_F(PreparedLayerTest, KnowsWhereLabelsGo) {
   const LoadedLayer loaded = prepare(kMixed, prepared_, {});
   EXPECT_TRUE(loaded.label_anchors.empty());
