@@ -118,17 +118,33 @@ FeatureClasses classify(const Classing& classing, const FeatureTable& features) 
   return classes;
 }
 
+namespace {
+
+std::string key_of(std::uint64_t revision, const Classing& classing) {
+  return fmt::format("{:016x} {}", revision, classing.key());
+}
+
+}  // namespace
+
 std::shared_ptr<const FeatureClasses> FeatureClassCache::find(std::uint64_t revision,
                                                               const Classing& classing,
                                                               const FeatureTable& features) {
   constexpr std::size_t kOverhead = 256;  // of an entry, about
-  const std::string key = fmt::format("{:016x} {}", revision, classing.key());
+  const std::string key = key_of(revision, classing);
   const std::size_t bytes = features.size() + 2 * key.size() + kOverhead;
   const auto entry = find_or_insert(key, bytes);
   std::call_once(entry->once, [&] {
     entry->classes = std::make_shared<const FeatureClasses>(classify(classing, features));
+    entry->is_made = true;
   });
   return entry->classes;
+}
+
+bool FeatureClassCache::has(std::uint64_t revision, const Classing& classing) {
+  const std::string key = key_of(revision, classing);
+  const std::lock_guard lock(mutex_);
+  const auto* entry = entries_.find(key);
+  return entry != nullptr && (*entry)->is_made;
 }
 
 std::shared_ptr<FeatureClassCache::Entry> FeatureClassCache::find_or_insert(const std::string& key,

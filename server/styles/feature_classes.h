@@ -2,6 +2,7 @@
 // by ids.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -73,8 +74,8 @@ FeatureClasses classify(const Classing& classing, const FeatureTable& features);
 
 /// Keeps the classes of the rules that were asked for last, within a budget of memory.
 ///
-/// Thread-safety: find() may be called from any thread; a call for classes that another thread is
-/// computing waits for them.
+/// Thread-safety: any thread may call any function; a call of find() for classes that another
+/// thread is computing waits for them.
 class FeatureClassCache {
  public:
   /// `budget` in bytes; what alone is larger is made every time.
@@ -83,6 +84,8 @@ class FeatureClassCache {
   /// `revision` tells the features of one layer from those of another, and from changed ones.
   std::shared_ptr<const FeatureClasses> find(std::uint64_t revision, const Classing& classing,
                                              const FeatureTable& features);
+  /// Whether find() would have nothing to compute, nor to wait for.
+  bool has(std::uint64_t revision, const Classing& classing);
   /// Bytes held.
   std::size_t memory() const;
 
@@ -90,6 +93,7 @@ class FeatureClassCache {
   struct Entry {
     std::once_flag once;
     std::shared_ptr<const FeatureClasses> classes;
+    std::atomic<bool> is_made = false;
   };
 
   std::shared_ptr<Entry> find_or_insert(const std::string& key, std::size_t bytes);

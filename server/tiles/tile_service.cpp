@@ -43,14 +43,8 @@ class NoRenderer final : public MaskRenderer {
   std::string identity_;
 };
 
-bool is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) {
-  const auto is_quick = [&plan](const LayerPaint& paint) {
-    return paint.style.classing.is_plain() &&
-           plan.dataset->layers_on_all_grids()[paint.layer].parts == nullptr;
-  };
-  return cost <= kQuickToIdentify && plan.labels.empty() && !plan.debug.any() &&
-         std::ranges::all_of(plan.layers, is_quick);
-}
+/// Rules that name more features take a while to be known again.
+constexpr std::size_t kFewIds = 1000;
 
 }  // namespace
 
@@ -60,6 +54,7 @@ TileService::TileService(TileServiceOptions options,
       renderer_(*renderers.front()),
       renderer_name_(renderer_.name()),
       renderer_identity_(renderer_.identity()),
+      classes_(TilePainter::new_class_cache()),
       workers_(renderers.size()) {
   try {
     start_workers(std::move(renderers));
@@ -70,10 +65,9 @@ TileService::TileService(TileServiceOptions options,
 }
 
 void TileService::start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers) {
-  const auto classes = TilePainter::new_class_cache();
   for (auto& renderer : renderers) {
     threads_.emplace_back(
-        [this, painter = TilePainter(std::move(renderer), classes, options_.fonts,
+        [this, painter = TilePainter(std::move(renderer), classes_, options_.fonts,
                                      options_.labels)]() mutable { work(painter); });
   }
 }
@@ -86,6 +80,19 @@ void TileService::stop_workers() {
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) thread.join();
+}
+
+bool TileService::is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) const {
+  const auto is_quick = [&](const LayerPaint& paint) {
+    const Classing& classing = paint.style.classing;
+    const ServedLayer& layer = plan.dataset->layers_on_all_grids()[paint.layer];
+    if (layer.parts != nullptr) return false;
+    if (classing.is_plain()) return true;
+    return classing.ids.size() + classing.highlighted_ids.size() <= kFewIds &&
+           classes_->has(layer.revision, classing);
+  };
+  return cost <= kQuickToIdentify && plan.labels.empty() && !plan.debug.any() &&
+         std::ranges::all_of(plan.layers, is_quick);
 }
 
 std::optional<TileAnswer> TileService::answer_at_once(const TilePlan& plan, std::uint64_t cost,
@@ -118,7 +125,8 @@ std::string TileService::identify(const TilePlan& plan) {
     }
   }
   if (identifier == nullptr) {
-    identifier = std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_));
+    identifier =
+        std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_), classes_);
   }
   std::string fingerprint = identifier->identify({&plan});
   const std::lock_guard lock(identifying_);

@@ -26,6 +26,7 @@
 #include "core/grid/name_table.h"
 #include "server/base/defaults.h"
 #include "server/labels/label_book.h"
+#include "server/styles/feature_classes.h"
 #include "server/tiles/painted_tile.h"
 #include "server/tiles/tile_cache.h"
 #include "server/tiles/tile_plan.h"
@@ -125,7 +126,8 @@ class TileService {
   /// What submit() would answer a plan of that cost which need not be drawn, found within this call
   /// where that takes less time than to hand it to a worker: a tenth of a millisecond at most.
   /// Nothing if it has to be drawn, and for all others, to be submitted: those of many trapezoids,
-  /// in several parts, with labels, marks or classes, of a file that was truncated.
+  /// in several parts, with labels or marks, in classes that no tile of late was in, of a file that
+  /// was truncated.
   std::optional<TileAnswer> answer_at_once(const TilePlan& plan, std::uint64_t cost,
                                            const Holds& holds);
 
@@ -178,6 +180,7 @@ class TileService {
   using Flights = std::vector<std::shared_ptr<Flight>>;
   using Queue = std::deque<std::shared_ptr<Flight>>;
 
+  bool is_quick_to_identify(const TilePlan& plan, std::uint64_t cost) const;
   std::string identify(const TilePlan& plan);
   void start_workers(std::vector<std::unique_ptr<MaskRenderer>> renderers);
   void stop_workers();
@@ -219,6 +222,7 @@ class TileService {
   MaskRenderer& renderer_;  // the first; its worker lives until the service ends
   const std::string renderer_name_;
   const std::string renderer_identity_;
+  const std::shared_ptr<FeatureClassCache> classes_;
   const std::size_t workers_;
   std::vector<std::thread> threads_;
 

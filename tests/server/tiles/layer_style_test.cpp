@@ -239,7 +239,10 @@ TEST(FeatureClassCacheTest, MakesThemOnceAndStaysInItsBudget) {
   FeatureClassCache cache(10'000);
   Classing classing;
   classing.ids = {1, 2, 3};
+  EXPECT_FALSE(cache.has(1, classing));
   const auto first = cache.find(1, classing, features);
+  EXPECT_TRUE(cache.has(1, classing));
+  EXPECT_FALSE(cache.has(2, classing));
   EXPECT_EQ((*first)[1], 0);
   EXPECT_EQ((*first)[0], kNotDrawn);
   EXPECT_EQ(cache.find(1, classing, features), first) << "the same, not an equal one";
@@ -250,6 +253,7 @@ TEST(FeatureClassCacheTest, MakesThemOnceAndStaysInItsBudget) {
     EXPECT_LE(cache.memory(), 10'000u);
   }
   classing.ids = {1, 2, 3};
+  EXPECT_FALSE(cache.has(1, classing));
   EXPECT_NE(cache.find(1, classing, features), first) << "it had to go";
   FeatureClassCache none(10);
   EXPECT_EQ(*none.find(1, classing, features), *first);

@@ -435,6 +435,29 @@ TEST_F(TileServiceTest, CheapTilesThatAreHeldAreAnsweredWithoutAWorker) {
   service_.reset();  // before what is told goes
 }
 
+TEST_F(TileServiceTest, TilesInClassesAreAnsweredWithoutAWorkerOnceTheClassesAreKnown) {
+  constexpr std::uint64_t kCheap = 10'000;
+  start();
+  open();
+  TilePlan tile = plan(1);
+  tile.layers.front().style.classing.ids = {1};
+  std::string asked;
+  const auto holds = [&asked](const std::string& fingerprint) {
+    asked = fingerprint;
+    return true;
+  };
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds));
+  EXPECT_TRUE(asked.empty());
+  auto promise = std::make_shared<std::promise<TileAnswer>>();
+  service_->submit(order_of(tile, TileService::Cost::cheap),
+                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
+  const std::string fingerprint = promise->get_future().get().tile.fingerprint;
+  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds));
+  EXPECT_EQ(asked, fingerprint);
+  tile.layers.front().style.classing.ids = {1, 2};
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds)) << "other classes";
+}
+
 TEST_F(TileServiceTest, CheapTilesThatAreKeptAreAnsweredWithoutAWorker) {
   const auto bytes = std::make_shared<const std::string>("bytes");
   TileServiceOptions options;
