@@ -4,12 +4,14 @@ import { attribution_nodes } from "./attribution.js";
 import { button, element, input } from "./elements.js";
 import {
   address, curl_command, image_tag, leaflet_page, maplibre_page, openlayers_page, qgis_connections,
+  seed_command,
 } from "./share_snippets.js";
 import { keep_style, shared_style } from "./share_style.js";
 import { parameters_of_layers, query_part } from "./tile_query.js";
 import { LONGEST, LONGEST_PLACE, MOST_LAYERS } from "./tile_requests.js";
 
 const COPIED_MS = 1500;
+const POSTED_TABLE = /^[0-9a-f]{40}$/; // its id; those of a configuration have names
 
 const TABS = [
   ["Leaflet", (map) => [snippet("A whole page: save it as a file and open it.", leaflet_page(map))]],
@@ -22,6 +24,7 @@ const TABS = [
     image_tag(map))]],
   ["curl", (map) => [snippet("The tile in the middle of the map, 512 pixels wide.",
     curl_command(map))]],
+  ["Archive", archive_parts],
   ["Links", link_parts],
 ];
 
@@ -138,13 +141,13 @@ export class SharePanel {
 
   /** What is on the screen, with its addresses. */
   map_() {
-    const { titles, attributions, style, place, min_zoom, max_zoom } = this.seen_;
+    const { titles, attributions, style, place, view, min_zoom, max_zoom } = this.seen_;
     const sheets = this.sheets_();
     const links = sheets.flatMap((sheet, i) => this.links_of_(sheet, sheets.length > 1 ? i + 1 : ""));
     return {
       title: titles.join(", "),
       attribution: [...new Set(attributions)].map(safe_markup).join(" | "),
-      sheets, place, min_zoom, max_zoom,
+      sheets, place, view, min_zoom, max_zoom,
       wmts: `${this.base_}wmts.xml`,
       style_name: style.document ? null : style.name ?? null,
       has_style: style.document !== null,
@@ -159,13 +162,16 @@ export class SharePanel {
 
   /** As few addresses as there can be, the lowest first. */
   sheets_() {
-    const query_of = this.query_();
+    const query_of = this.query_(this.id_ === null || this.long_.checked);
+    const lasting_of = this.query_(true);
     const sheets = [];
     const sheet_of = (names, is_lowest) => {
       // What fills the tile would hide the sheets below.
-      const parameters = [...query_of(names), ...(is_lowest ? [] : [["background", "0000"]])];
+      const above = is_lowest ? [] : [["background", "0000"]];
+      const parameters = [...query_of(names), ...above];
       const path = `${this.base_}tiles/${encoded_list(names)}`;
-      return { names, parameters, path, query: query_text_of(parameters) };
+      const lasting = [...lasting_of(names), ...above];
+      return { names, parameters, lasting, path, query: query_text_of(parameters) };
     };
     const fits = ({ names, path, query }) => names.length <= MOST_LAYERS &&
       path.length + LONGEST_PLACE + query.length <= LONGEST;
@@ -190,10 +196,9 @@ export class SharePanel {
     ].map(([name, ...rest]) => [name.trim(), ...rest]);
   }
 
-  /** From names of layers to the parameters that give them the style. */
-  query_() {
+  /** From names of layers to the parameters that give them the style; by its id unless `is_long`. */
+  query_(is_long) {
     const { name, document, styled, shared } = this.seen_.style;
-    const is_long = this.id_ === null || this.long_.checked;
     if (document && !is_long) return () => [["style", this.id_]];
     if (!document) return () => (name ? [["style", name]] : []);
     return (names) => parameters_of_layers(styled.filter((layer) => names.includes(layer.name)),
@@ -259,6 +264,20 @@ function qgis_parts(map) {
     element("p", "hint", file, ", for Load Connections."),
     element("h3", "", "WMTS: each layer by itself"),
     snippet(`Browser, WMS/WMTS, New Connection. ${style}`, map.wmts),
+  ];
+}
+
+function archive_parts(map) {
+  const is_posted = ([key, value]) => /(^|\.)values$/.test(key) && POSTED_TABLE.test(value);
+  return [
+    ...map.sheets.map((sheet, i) => snippet(
+      "On the server, where its configuration is: all tiles of what is on the screen, in one file.",
+      seed_command(map, sheet, map.sheets.length > 1 ? i + 1 : ""))),
+    ...(map.sheets.some(({ lasting }) => lasting.some(is_posted)) ? [element("p", "hint",
+      "The table that was pasted is known to this server alone: name it in the configuration first.")]
+      : []),
+    element("p", "hint", "A server that was started with files takes them instead of --config. " +
+      "An .mbtiles or a folder can be written as well, and --dry-run says how large it will be."),
   ];
 }
 

@@ -1,5 +1,7 @@
 // Texts to copy that show the map elsewhere. Pages are whole: saved as a file, they show the map.
 
+import { query_text } from "./tile_query.js";
+
 const LEAFLET = "https://unpkg.com/leaflet@1.9.4/dist";
 const OPENLAYERS = "https://unpkg.com/ol@10.11.0";
 const MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist";
@@ -8,9 +10,12 @@ const MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist";
  * @typedef {object} SharedMap
  * @property {string} title
  * @property {string} attribution  markup of text and links alone
- * @property {{path: string, query: string}[]} sheets  addresses of tiles without the part that says
- *   which tile, the lowest first; more than one where the server cannot draw all layers in one
+ * @property {{names: string[], lasting: [string, string][], path: string, query: string}[]} sheets
+ *   layers; parameters of their style that need nothing that the server keeps in memory; address of
+ *   their tiles without the part that says which tile; the lowest first, more than one where the
+ *   server cannot draw all layers in one
  * @property {{lat: number, lon: number, zoom: number}} place
+ * @property {[number, number, number, number]} view  what is on the screen: west, south, east, north
  * @property {number} min_zoom @property {number} max_zoom
  * @property {string} wmts  address
  */
@@ -107,6 +112,16 @@ export function curl_command(map) {
   return `curl -o map.png '${address(map.sheets[0], `${middle_tile(map)}@2x`)}'`;
 }
 
+/** What the screen shows, down to its zoom, into an archive of that number. */
+export function seed_command({ place, view, min_zoom }, { names, lasting }, number) {
+  const zoom = Math.max(min_zoom, Math.round(place.zoom));
+  const style = query_text(lasting).replaceAll("'", "%27");
+  return ["trapeze seed --config trapeze.toml", `--layers ${for_shell(names.join(","))}`,
+    ...(style ? [`--style ${for_shell(style)}`] : []),
+    `--zooms ${min_zoom}-${zoom}`, `--bbox=${view.map((side) => Number(side.toFixed(4))).join(",")}`,
+    `--output map${number}.pmtiles`].join(" \\\n  ");
+}
+
 /** For QGIS: Browser, XYZ Tiles, Load Connections. */
 export function qgis_connections(map) {
   const connections = map.sheets.map((sheet, i) => {
@@ -174,6 +189,11 @@ function text(value) {
 
 function attribute(value) {
   return text(value).replaceAll('"', "&quot;");
+}
+
+/** As one word of a shell, whatever it holds. */
+function for_shell(word) {
+  return /^[\w,./:-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }
 
 function round(number) {

@@ -631,6 +631,7 @@ class Viewer {
         lat: Number(lat.toFixed(5)), lon: Number(wrapped_longitude(lng).toFixed(5)),
         zoom: this.map_.getZoom(),
       },
+      view: box_in_view(this.map_),
       min_zoom: Math.min(...zooms("minzoom", 0)),
       max_zoom: Math.max(...zooms("maxzoom", MAX_ZOOM)),
     };

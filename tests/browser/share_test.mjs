@@ -181,6 +181,24 @@ test("the command for curl and the <img> fetch the tile in the middle of the map
   await page.context().close();
 });
 
+test("the command for an archive seeds what is on the screen, with the bytes that the server sends",
+  async () => {
+    const { page } = await open("#5/46/10&lake.fill=ff0000&land.filter=name%20%3D%20'island'&style=night");
+    const command = await snippet(page, "Archive");
+    assert.match(command, /--zooms 0-5 /);
+    const folder = mkdtempSync(join(tmpdir(), "trapeze-share-"));
+    const here = command.replace("trapeze seed --config trapeze.toml",
+      `"$TRAPEZE_BINARY" seed --config '${server.config_file}'`).replace("map.pmtiles", "tiles");
+    execFileSync("sh", ["-c", here], { cwd: folder, stdio: "ignore" });
+    const seeded = readFileSync(join(folder, "tiles/5/16/11.png"));
+    rmSync(folder, { recursive: true });
+    const { TileJSON } = await links(page);
+    const sent = await fetch(TileJSON.replace(".json", "/5/16/11.png"));
+    assert.deepEqual(seeded, Buffer.from(await sent.arrayBuffer()));
+    assert.ok((await share_of(page, seeded, RED)) > 0.02);
+    await page.context().close();
+  });
+
 test("every link answers, and the connection for QGIS is XML with the address of the tiles", async () => {
   const { page } = await open("#5/46/10&lake.fill=ff0000");
   for (const [name, url] of Object.entries(await links(page))) {
@@ -219,6 +237,9 @@ test("more layers than one tile can hold are several addresses, of which the low
     assert.match(tiles[1], /\/tiles\/l16,l17,l18,l19\/.*\?style=night&background=0000"/);
     assert.equal((await snippet(page, "OpenLayers")).match(/new ol\.layer\.Tile/g).length, 2);
     assert.equal((await snippet(page, "MapLibre")).match(/type: "raster", source:/g).length, 2);
+    assert.match(await snippet(page, "Archive"), /--layers l0,.*,l15 .*--output map1\.pmtiles/s);
+    assert.match(await snippet(page, "Archive", 1),
+      /--layers l16,.* --style 'style=night&background=0000' .*--output map2\.pmtiles/s);
     await page.context().close();
   });
 
@@ -273,7 +294,7 @@ test("Copy copies, arrow keys go from tab to tab, Escape closes and gives back t
 test("on a phone all of it has room, with controls for fingers", async () => {
   const { page, seen } = await open("#5/46/10&lake.fill=ff0000", PHONE);
   await save_screenshot(page, "phone-share");
-  for (const tab of ["Leaflet", "QGIS", "Links"]) {
+  for (const tab of ["Leaflet", "QGIS", "Archive", "Links"]) {
     await page.getByRole("tab", { name: tab, exact: true }).click();
     await save_screenshot(page, `phone-share-${tab.toLowerCase()}`);
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
