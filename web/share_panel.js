@@ -103,10 +103,12 @@ export class SharePanel {
 
   fill_() {
     this.choose_(this.chosen_);
-    const has_document = Boolean(this.seen_.style.document) && this.seen_.names.length > 0;
-    this.long_row_.hidden = !has_document || this.id_ === null;
-    this.note_.textContent = !has_document ? "" : this.note_for_();
-    this.note_.parentElement.hidden = !has_document;
+    this.long_row_.hidden = !this.has_document_() || this.id_ === null;
+    this.note_.textContent = this.has_document_() ? this.note_for_() : "";
+  }
+
+  has_document_() {
+    return Boolean(this.seen_.style.document) && this.seen_.names.length > 0;
   }
 
   note_for_() {
@@ -123,6 +125,7 @@ export class SharePanel {
     });
     this.body_.setAttribute("aria-labelledby", `share-tab-${chosen}`);
     const [, parts_of] = TABS[chosen];
+    this.note_.parentElement.hidden = !this.has_document_() || parts_of === archive_parts;
     this.body_.replaceChildren(...(this.seen_.names.length ? parts_of(this.map_())
       : [element("p", "hint", "All layers are off: there is nothing to show.")]));
     this.body_.scrollTop = 0;
