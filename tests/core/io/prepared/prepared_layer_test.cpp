@@ -202,12 +202,13 @@ TEST_F(PreparedLayerTest, OpensAsTheLayerThatWasSaved) {
 }
 
 TEST_F(PreparedLayerTest, KnowsThatOverlapsAreMissing) {
-  LoadedLayer loaded = load_layer(kMixed);
+  const LoadedLayer loaded = load_layer(kMixed);
   for (const bool has_all : {true, false}) {
     LayerArrays arrays = arrays_of(*loaded.layer);
     arrays.has_all_overlaps = has_all;
-    loaded.layer = layer_from(arrays, loaded.layer);
-    save_prepared_layer(prepared_, loaded, kRevision, stamp_source(kMixed));
+    LoadedLayer other = load_layer(kMixed);
+    other.layer = layer_from(arrays, nullptr);
+    save_prepared_layer(prepared_, other, kRevision, stamp_source(kMixed));
     EXPECT_EQ(open_prepared_layer(prepared_).layer->has_all_overlaps(), has_all);
   }
 }
