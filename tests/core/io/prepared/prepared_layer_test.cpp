@@ -358,8 +358,10 @@ TEST_F(PreparedLayerTest, NamesTheDamagedSection) {
 TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
   prepare(kMixed, prepared_);
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
-  EXPECT_THAT(failure_of(prepared_),
-              AllOf(StartsWith(prepared_), HasSubstr("format 9"), HasSubstr("reads 8")));
+  EXPECT_THAT(
+      failure_of(prepared_),
+      AllOf(StartsWith(prepared_), HasSubstr("format " + std::to_string(kPreparedVersion + 1)),
+            HasSubstr("reads " + std::to_string(kPreparedVersion))));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
   EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));
