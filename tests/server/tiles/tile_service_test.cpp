@@ -73,12 +73,16 @@ class TileServiceTest : public ::testing::Test {
     return {dataset_, View::of_tile({}), 1, kTransparent, {paint}};
   }
 
-  std::future<TileAnswer> submit(int shade, TileService::Cost cost = TileService::Cost::cheap) {
+  std::future<TileAnswer> submit(const TilePlan& plan,
+                                 TileService::Cost cost = TileService::Cost::cheap) {
     auto promise = std::make_shared<std::promise<TileAnswer>>();
     auto future = promise->get_future();
-    ticket_ = service_->submit(order_of(plan(shade), cost),
+    ticket_ = service_->submit(order_of(plan, cost),
                                [promise](const TileAnswer& answer) { promise->set_value(answer); });
     return future;
+  }
+  std::future<TileAnswer> submit(int shade, TileService::Cost cost = TileService::Cost::cheap) {
+    return submit(plan(shade), cost);
   }
   std::future<TileAnswer> submit_dear(int shade) { return submit(shade, TileService::Cost::dear); }
 
@@ -428,10 +432,7 @@ TEST_F(TileServiceTest, CheapTilesThatAreHeldAreAnsweredWithoutAWorker) {
   EXPECT_FALSE(service_->answer_at_once(plan(3), kCheap, holds));
   EXPECT_EQ(told, std::vector{TileOutcome::held});
   open();
-  auto promise = std::make_shared<std::promise<TileAnswer>>();
-  service_->submit(order_of(tile, TileService::Cost::cheap),
-                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
-  EXPECT_EQ(promise->get_future().get().tile.fingerprint, asked);
+  EXPECT_EQ(submit(tile).get().tile.fingerprint, asked);
   service_.reset();  // before what is told goes
 }
 
@@ -448,10 +449,7 @@ TEST_F(TileServiceTest, TilesInClassesAreAnsweredWithoutAWorkerOnceTheClassesAre
   };
   EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds));
   EXPECT_TRUE(asked.empty());
-  auto promise = std::make_shared<std::promise<TileAnswer>>();
-  service_->submit(order_of(tile, TileService::Cost::cheap),
-                   [promise](const TileAnswer& answer) { promise->set_value(answer); });
-  const std::string fingerprint = promise->get_future().get().tile.fingerprint;
+  const std::string fingerprint = submit(tile).get().tile.fingerprint;
   EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds));
   EXPECT_EQ(asked, fingerprint);
   tile.layers.front().style.classing.ids = {1, 2};
