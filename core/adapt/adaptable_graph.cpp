@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "core/graph/fetch_ahead.h"
@@ -14,6 +15,21 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffff;
+
+/// Heaps, the smallest one first.
+template <typename Candidate>
+void add_to(std::vector<Candidate>& retries, const std::type_identity_t<Candidate>& candidate) {
+  retries.push_back(candidate);
+  std::push_heap(retries.begin(), retries.end(), std::greater<>());
+}
+
+template <typename Candidate>
+Candidate pop_from(std::vector<Candidate>& retries) {
+  std::pop_heap(retries.begin(), retries.end(), std::greater<>());
+  const Candidate next = retries.back();
+  retries.pop_back();
+  return next;
+}
 
 }  // namespace
 
@@ -38,6 +54,7 @@ void PriorityStack::assign(const TrapezoidalGraph& graph, const GeneralizationOp
   }
   position_ = 0;
   main_ = {};
+  region_retries_.clear();
   put_off_.clear();
   next_put_off_ = 0;
   to_report_.reset();
@@ -104,19 +121,20 @@ void PriorityStack::weigh_regions(const MergePlan* plan, std::vector<Candidate>&
 }
 
 std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
-  // A candidate that is due already precedes those still to come.
-  const auto retry_is_next = [this](const Candidate& ahead) {
-    const Candidate& retry = main_.retries.front();
-    return retry.weight <= main_.epsilon || retry < ahead;
-  };
   while (next_put_off_ < put_off_.size()) {
-    if (!main_.retries.empty() && is_before_put_off(main_.retries.front())) return pop_retry(main_);
+    if (const Candidate* retry = next_retry(); retry != nullptr && is_before_put_off(*retry)) {
+      return pop_next_retry();
+    }
     if (const auto next = next_put_off()) return next;
   }
   if (position_ > 0) main_.epsilon = std::max(main_.epsilon, order_[position_ - 1].weight);
   const bool has_more = position_ < order_.size();
-  if (!main_.retries.empty() && (!has_more || retry_is_next(order_[position_]))) {
-    return pop_retry(main_);
+  // A candidate that is due already precedes those still to come.
+  const auto is_next = [&](const Candidate& retry) {
+    return !has_more || retry.weight <= main_.epsilon || retry < order_[position_];
+  };
+  if (const Candidate* retry = next_retry(); retry != nullptr && is_next(*retry)) {
+    return pop_next_retry();
   }
   if (!has_more) return std::nullopt;
   return pop();
@@ -149,10 +167,22 @@ LostLoop PriorityStack::lost_loop_at(CornerId c) const {
 }
 
 PriorityStack::Candidate PriorityStack::pop_retry(Lane& lane) {
-  std::pop_heap(lane.retries.begin(), lane.retries.end(), std::greater<>());
-  const Candidate next = lane.retries.back();
-  lane.retries.pop_back();
+  const Candidate next = pop_from(lane.retries);
   lane.epsilon = std::max(lane.epsilon, next.weight);
+  return next;
+}
+
+/// Of corners and regions; null if nothing is to be tried again.
+const PriorityStack::Candidate* PriorityStack::next_retry() const {
+  if (region_retries_.empty()) return main_.retries.empty() ? nullptr : &main_.retries.front();
+  if (main_.retries.empty()) return &region_retries_.front();
+  return &std::min(main_.retries.front(), region_retries_.front());
+}
+
+PriorityStack::Candidate PriorityStack::pop_next_retry() {
+  if (!is_region(next_retry()->corner)) return pop_retry(main_);
+  const Candidate next = pop_from(region_retries_);
+  main_.epsilon = std::max(main_.epsilon, next.weight);
   return next;
 }
 
@@ -188,8 +218,7 @@ void PriorityStack::fetch_candidates() const {
 }
 
 void PriorityStack::enqueue(Lane& lane, const Candidate& candidate) {
-  lane.retries.push_back(candidate);
-  std::push_heap(lane.retries.begin(), lane.retries.end(), std::greater<>());
+  add_to(lane.retries, candidate);
 }
 
 std::optional<double> PriorityStack::remove_next([[maybe_unused]] const TrapezoidalGraph& graph,
@@ -365,7 +394,7 @@ void PriorityStack::requeue_united(const RegionBorders::United& united) {
 
 void PriorityStack::requeue_region(RegionId region, double weight) {
   region_weights_[region] = weight;
-  enqueue(main_, {weight, {}, corner_for(region)});
+  add_to(region_retries_, {weight, {}, corner_for(region)});
 }
 
 void PriorityStack::wait_for(Lane& lane, CornerId corner, VertexId blocker) {

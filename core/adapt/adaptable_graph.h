@@ -110,7 +110,7 @@ class PriorityStack {
   /// while a batch is carried out.
   struct Lane {
     double epsilon = 0;              // greatest weight popped
-    std::vector<Candidate> retries;  // to be tried again, smallest first (a heap)
+    std::vector<Candidate> retries;  // corners to be tried again, smallest first (a heap)
     bool has_blocked = false;
     Counts counts;
     Batch* batch = nullptr;
@@ -145,6 +145,8 @@ class PriorityStack {
   void fetch_candidates() const;
   static void enqueue(Lane& lane, const Candidate& candidate);
   static Candidate pop_retry(Lane& lane);
+  const Candidate* next_retry() const;
+  Candidate pop_next_retry();
   bool is_region(CornerId c) const { return c.value >= weights_.size(); }
   CornerId corner_for(RegionId region) const { return CornerId(weights_.size() + region.value); }
   RegionId region_of(CornerId c) const { return RegionId(c.value - weights_.size()); }
@@ -166,7 +168,8 @@ class PriorityStack {
   LargeArray<Candidate> order_;
   std::size_t position_ = 0;
   Lane main_;
-  std::vector<PutOff> put_off_;  // by the last batch, in the sequence
+  std::vector<Candidate> region_retries_;  // as those of lanes, so that the next one is at hand
+  std::vector<PutOff> put_off_;            // by the last batch, in the sequence
   std::size_t next_put_off_ = 0;
   std::optional<PutOff> to_report_;
 

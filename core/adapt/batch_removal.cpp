@@ -287,9 +287,9 @@ BatchRemoval::BatchRemoval(PriorityStack& stack, TrapezoidalGraph& graph, unsign
 BatchRemoval::~BatchRemoval() = default;
 
 bool BatchRemoval::run(Level level, const Removed& removed) {
-  const auto& retries = stack_.main_.retries;
+  const PriorityStack::Candidate* retry = stack_.next_retry();
   const bool is_between = stack_.next_put_off_ == stack_.put_off_.size() &&
-                          (retries.empty() || retries.front().weight > stack_.main_.epsilon);
+                          (retry == nullptr || retry->weight > stack_.main_.epsilon);
   if (lanes_.size() < 2 || !is_between || stack_.position_ < looked_at_) return false;
   const std::size_t begin = stack_.position_;
   const std::size_t end = end_of_batch(level);
@@ -352,7 +352,7 @@ void BatchRemoval::gather_retries(const PriorityStack::Candidate* end) {
   using Candidate = PriorityStack::Candidate;
   std::vector<Candidate>& retries = stack_.main_.retries;
   const auto goes_to_a_lane = [&](const Candidate& retry) {
-    if (end == nullptr || !(retry < *end) || stack_.is_region(retry.corner)) return false;
+    if (end == nullptr || !(retry < *end)) return false;
     if (!graph_.corner(retry.corner).is_alive()) return false;
     if (leads_out(retry.corner)) {
       lanes_.front()->hold(retry.corner);
@@ -381,9 +381,8 @@ std::size_t BatchRemoval::end_of_batch(Level level) const {
     return level_above(candidate.weight) <= level;
   });
   const auto is_region = [this](const Candidate& c) { return stack_.is_region(c.corner); };
-  for (const Candidate& retry : stack_.main_.retries) {
-    if (is_region(retry)) end = std::lower_bound(begin, end, retry);
-  }
+  const std::vector<Candidate>& regions = stack_.region_retries_;
+  if (!regions.empty()) end = std::lower_bound(begin, end, regions.front());
   return static_cast<std::size_t>(std::find_if(begin, end, is_region) - stack_.order_.begin());
 }
 
