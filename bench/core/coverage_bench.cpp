@@ -4,9 +4,10 @@
 //
 // Building from the file to the layer, on one core and on all; the memory of graphs and of layers;
 // tiles of zooms 0 to 14 that random vertices lie in, selected and drawn; the vertices that are
-// left at each zoom, beside those that mapshaper leaves at the same tolerance. Of what was measured
-// several times the shortest counts, and of tiles the processor time: others who use the machine
-// disturb these least.
+// left at each zoom, beside those that mapshaper leaves at the same tolerance. And what building
+// blocks takes: a town with merge 4, against the same without. Of what was measured several
+// times the shortest counts, and of tiles the processor time: others who use the machine disturb
+// these least.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -39,9 +40,11 @@ constexpr int kLastZoom = 14;
 constexpr double kTolerance = 0.25;  // pixels, as requests have it if they do not say
 constexpr double kNoGaps = 0;        // that are closed
 constexpr std::array kModes = {CoverageMode::off, CoverageMode::automatic};
+constexpr std::array kMerge = {0.0, 4.0};  // pixels: as they are, and as blocks
 
 struct Options {
   std::vector<std::string> layers{"europe_countries", "us_counties", "countries"};
+  std::vector<std::string> towns{"shenzhen_buildings"};
   std::string sample = TRAPEZE_BENCH_FOLDER "/../data";
   std::string program = built_trapeze();
   std::size_t tiles = 16;
@@ -89,13 +92,19 @@ struct Pair {
   std::array<Seconds, kModes.size()> all_cores;
 };
 
-std::unique_ptr<Layer> load(const std::string& path, CoverageMode mode, unsigned threads,
-                            WeightRule rule = WeightRule::douglas_peucker) {
+std::unique_ptr<Layer> load(const std::string& path, const LayerOptions& generalization,
+                            unsigned threads) {
   LoadOptions options;
   options.threads = threads;
-  options.generalization.weights = rule;
-  options.generalization.coverage = mode;
+  options.generalization = generalization;
   return load_layer(path, options).layer;
+}
+
+LayerOptions options_of(CoverageMode mode, WeightRule rule = WeightRule::douglas_peucker) {
+  LayerOptions options;
+  options.weights = rule;
+  options.coverage = mode;
+  return options;
 }
 
 Pair build(const std::string& path, int rounds) {
@@ -103,8 +112,9 @@ Pair build(const std::string& path, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
       std::unique_ptr<Layer>& layer = pair.layers[mode];
-      pair.one_core[mode].take_shorter(timed([&] { layer = load(path, kModes[mode], 1); }));
-      pair.all_cores[mode].take_shorter(timed([&] { layer = load(path, kModes[mode], 0); }));
+      const LayerOptions options = options_of(kModes[mode]);
+      pair.one_core[mode].take_shorter(timed([&] { layer = load(path, options, 1); }));
+      pair.all_cores[mode].take_shorter(timed([&] { layer = load(path, options, 0); }));
     }
   }
   return pair;
@@ -168,15 +178,19 @@ std::array<double, kModes.size()> draw(const Pair& pair, const std::vector<TileI
   return sums;
 }
 
+void set_times(const Seconds& one_core, const Seconds& all_cores, Figure& figure) {
+  figure.set("built on one core, cpu s", one_core.cpu);
+  figure.set("built on one core, wall s", one_core.wall);
+  figure.set("built on all cores, cpu s", all_cores.cpu);
+  figure.set("built on all cores, wall s", all_cores.wall);
+}
+
 void report_build(const std::string& layer, const std::string& path, const Pair& pair,
                   std::vector<Figure>& figures) {
   const std::vector<Rings> rings = read_source_rings(path);
   for (std::size_t mode = 0; mode < kModes.size(); ++mode) {
     Figure figure("coverage/" + layer + "/" + std::string(kCoverageNames.name_of(kModes[mode])));
-    figure.set("built on one core, cpu s", pair.one_core[mode].cpu);
-    figure.set("built on one core, wall s", pair.one_core[mode].wall);
-    figure.set("built on all cores, cpu s", pair.all_cores[mode].cpu);
-    figure.set("built on all cores, wall s", pair.all_cores[mode].wall);
+    set_times(pair.one_core[mode], pair.all_cores[mode], figure);
     figure.set("graphs, MB", static_cast<double>(memory_of_graphs(rings, kModes[mode])) / 1e6);
     figure.set("layer with history, MB", static_cast<double>(pair.layers[mode]->memory()) / 1e6);
     print_line(figure);
@@ -252,8 +266,33 @@ void measure(const Options& options, const std::string& layer, std::vector<Figur
   if (Mapshaper::is_installed()) mapshaper = std::make_unique<Mapshaper>(options.program, path);
   for (const WeightRule rule : {WeightRule::douglas_peucker, WeightRule::effective_area}) {
     report_vertices("coverage/" + layer + "/" + std::string(kWeightNames.name_of(rule)),
-                    *load(path, CoverageMode::automatic, 0, rule),
-                    *load(path, CoverageMode::off, 0, rule), rule, mapshaper.get(), figures);
+                    *load(path, options_of(CoverageMode::automatic, rule), 0),
+                    *load(path, options_of(CoverageMode::off, rule), 0), rule, mapshaper.get(),
+                    figures);
+  }
+}
+
+void measure_blocks(const Options& options, const std::string& town, std::vector<Figure>& figures) {
+  const std::string path = path_of(options, town);
+  std::array<Seconds, kMerge.size()> one_core;
+  std::array<Seconds, kMerge.size()> all_cores;
+  std::array<double, kMerge.size()> bytes{};
+  for (int round = 0; round < options.rounds; ++round) {
+    for (std::size_t i = 0; i < kMerge.size(); ++i) {
+      LayerOptions generalization;
+      generalization.merge = kMerge[i];
+      std::unique_ptr<Layer> layer;
+      one_core[i].take_shorter(timed([&] { layer = load(path, generalization, 1); }));
+      all_cores[i].take_shorter(timed([&] { layer = load(path, generalization, 0); }));
+      bytes[i] = static_cast<double>(layer->memory());
+    }
+  }
+  for (std::size_t i = 0; i < kMerge.size(); ++i) {
+    Figure figure("blocks/" + town + (kMerge[i] == 0 ? "/plain" : "/merge"));
+    set_times(one_core[i], all_cores[i], figure);
+    figure.set("layer with history, MB", bytes[i] / 1e6);
+    print_line(figure);
+    figures.push_back(std::move(figure));
   }
 }
 
@@ -261,6 +300,9 @@ int run(int argc, char** argv) {
   Options options;
   CLI::App app("What it takes that neighbours share their borders (TRAPEZE_DATA)");
   app.add_option("--layer", options.layers, "Files without .fgb; countries is that of the sample")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--town", options.towns, "Likewise, of which blocks are built")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--sample", options.sample, "The folder of the sample")->capture_default_str();
@@ -279,6 +321,7 @@ int run(int argc, char** argv) {
   }
   std::vector<Figure> figures;
   for (const std::string& layer : options.layers) measure(options, layer, figures);
+  for (const std::string& town : options.towns) measure_blocks(options, town, figures);
   write_figures(figures, command_line(argc, argv), options.json);
   return 0;
 }
