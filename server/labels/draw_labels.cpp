@@ -40,7 +40,8 @@ class ColourBook {
 
 /// The row of a label over a row of a picture.
 void draw_row(const DrawnLabel& label, int row, Picture& pixels) {
-  const TextMask& mask = label.image->mask;
+  const TextMask& mask = label.image->mask();
+  const LabelImage::Look& look = label.image->look();
   const std::size_t begin =
       static_cast<std::size_t>(row - label.top) * static_cast<std::size_t>(mask.width);
   const int first = std::max(label.left, 0);
@@ -48,9 +49,9 @@ void draw_row(const DrawnLabel& label, int row, Picture& pixels) {
   for (int column = first; column < end; ++column) {
     const std::size_t i = begin + static_cast<std::size_t>(column - label.left);
     if (mask.halo[i] == 0) continue;
-    blend(pixels, column, 0, label.image->halo, mask.halo[i] / 255.0);
+    blend(pixels, column, 0, look.halo, mask.halo[i] / 255.0);
     if (mask.letters[i] == 0) continue;
-    blend(pixels, column, 0, label.image->letters, mask.letters[i] / 255.0);
+    blend(pixels, column, 0, look.letters, mask.letters[i] / 255.0);
   }
 }
 
@@ -60,7 +61,7 @@ void draw_labels(std::span<const DrawnLabel> labels, RunPicture& picture) {
   const auto height = static_cast<std::size_t>(picture.height);
   std::vector<std::vector<std::uint32_t>> by_row(height);
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    const int end = std::min(labels[i].top + labels[i].image->mask.height, picture.height);
+    const int end = std::min(labels[i].top + labels[i].image->look().height, picture.height);
     for (int row = std::max(labels[i].top, 0); row < end; ++row) {
       by_row[static_cast<std::size_t>(row)].push_back(static_cast<std::uint32_t>(i));
     }

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -78,6 +79,7 @@ struct LabelBook::Placed {
   struct Source {
     std::uint32_t layer = 0;  // among those that are labelled
     std::uint32_t row = 0;
+    Room room;
   };
   LabelPlacement placement;
   std::vector<Source> sources;  // by number of the candidate
@@ -87,6 +89,7 @@ struct LabelBook::Entry {
   std::once_flag once;
   std::shared_ptr<const LabelAnchors> anchors;
   std::shared_ptr<const Placed> placed;
+  std::atomic<bool> is_made = false;
 };
 
 // Makes the candidates of one picture's layers.
@@ -110,6 +113,7 @@ class LabelBook::Placing {
     double priority = 0;
     const LabelAnchor* anchor = nullptr;
     LabelCandidate candidate;
+    Room room;
     std::string text;
   };
 
@@ -118,7 +122,7 @@ class LabelBook::Placing {
     const FeatureTable& features = served.layer->features();
     const FeatureClassifier classifier(layer.classing, features);
     const Attributes attributes(features, layer.style->joined);
-    const Fonts& fonts = book_.fonts_for(*layer.style);
+    const Fonts& fonts = *book_.fonts_for(*layer.style);
     const auto anchors =
         book_.anchors_of(served, layer.style->all_parts ? LabelParts::all : LabelParts::largest);
     std::vector<Ranked> ranked;
@@ -130,7 +134,7 @@ class LabelBook::Placing {
       const bool has_font = room.width > 0;
       if (!has_font || room.width > kMostPixels || room.height > kMostPixels) continue;
       ranked.push_back({priority_of(layer, attributes, anchor), &anchor,
-                        candidate_of(layer, anchor, room), std::move(text)});
+                        candidate_of(layer, anchor, room), room, std::move(text)});
     }
     std::ranges::sort(ranked, [](const Ranked& a, const Ranked& b) {
       const auto key = [](const Ranked& r) {
@@ -142,7 +146,7 @@ class LabelBook::Placing {
     for (const Ranked& each : ranked) {
       if (!layer.style->repeats && !shown.insert(each.text).second) continue;
       candidates_.push_back(each.candidate);
-      sources_.push_back({number, each.anchor->row});
+      sources_.push_back({number, each.anchor->row, each.room});
     }
     extents_.clear();
   }
@@ -161,18 +165,13 @@ class LabelBook::Placing {
     return std::isnan(number) ? last : number;
   }
 
-  struct Room {
-    double width = 0;   // pixels, without halo
-    double height = 0;  // the same
-  };
-
   /// Many features say the same.
   const Room& extent_of(const LabelledLayer& layer, const std::string& text) {
     const auto [found, is_new] = extents_.try_emplace(text);
     if (is_new) {
       const LabelStyle& style = *layer.style;
       const double most = std::max(style.max_width / style.size, kLeastWidth);
-      const BrokenLines broken = broken_lines(text, most, book_.fonts_for(style));
+      const BrokenLines broken = broken_lines(text, most, *book_.fonts_for(style));
       found->second = {broken.width * style.size,
                        broken.line_height * style.size * static_cast<double>(broken.lines.size())};
     }
@@ -221,9 +220,9 @@ LabelBook::LabelBook(FontChoice fonts, std::size_t budget)
 
 LabelBook::~LabelBook() = default;
 
-const Fonts& LabelBook::fonts_for(const LabelStyle& style) const {
+const std::shared_ptr<const Fonts>& LabelBook::fonts_for(const LabelStyle& style) const {
   const auto named = fonts_.named.find(style.font);
-  return named == fonts_.named.end() ? *fonts_.usual : *named->second;
+  return named == fonts_.named.end() ? fonts_.usual : named->second;
 }
 
 std::shared_ptr<LabelBook::Entry> LabelBook::entry(const std::string& key) {
@@ -274,6 +273,7 @@ std::shared_ptr<const LabelBook::Placed> LabelBook::placed(const LabelledView& w
     set_size(key, entry,
              entry->placed->placement.memory() +
                  entry->placed->sources.capacity() * sizeof(Placed::Source));
+    entry->is_made = true;
   });
   return entry->placed;
 }
@@ -291,6 +291,13 @@ std::uint64_t LabelBook::cost_of(const LabelledView& wanted) const {
   return features * kSidesPerFeature;
 }
 
+bool LabelBook::has_placed(const LabelledView& wanted) const {
+  if (wanted.layers.empty()) return true;
+  const std::lock_guard lock(mutex_);
+  const auto* found = kept_.find(key_of(wanted));
+  return found != nullptr && (*found)->is_made;
+}
+
 const std::string& LabelBook::identity_of(const Fonts& fonts) {
   const std::lock_guard lock(mutex_);
   std::string& identity = identities_[&fonts];
@@ -300,10 +307,11 @@ const std::string& LabelBook::identity_of(const Fonts& fonts) {
 
 std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer,
                                                       const FeatureTable& features,
-                                                      std::uint32_t row, double scale) {
+                                                      std::uint32_t row, const Room& room,
+                                                      double scale) {
   const LabelStyle& style = *layer.style;
-  const Fonts& fonts = fonts_for(style);
-  const std::string text = style.text_of(features, row, fonts);
+  const std::shared_ptr<const Fonts>& fonts = fonts_for(style);
+  std::string text = style.text_of(features, row, *fonts);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {}", style.font, style.size, style.max_width,
                   style.halo_width, scale, to_hex(style.colour), to_hex(style.halo_colour), text);
@@ -311,24 +319,25 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
     const std::lock_guard lock(mutex_);
     if (const auto* found = images_.find(key)) return *found;
   }
-  const double most = std::max(style.max_width / style.size, kLeastWidth);
-  const BrokenLines broken = broken_lines(text, most, fonts);
-  const double half_width = broken.width * style.size / 2 + style.halo_width + kSlackPixels / 2;
-  const double half_height =
-      broken.line_height * style.size * static_cast<double>(broken.lines.size()) / 2 +
-      style.halo_width + kSlackEms * style.size;
-  auto image = std::make_shared<LabelImage>();
-  image->mask =
-      fonts.mask_of(broken.lines, style.size * scale, broken.line_height * style.size * scale,
-                    style.halo_width * scale, 2 * static_cast<int>(std::ceil(half_width * scale)),
-                    2 * static_cast<int>(std::ceil(half_height * scale)));
-  image->letters = style.colour;
-  image->halo = style.halo_colour;
+  const double half_width = room.width / 2 + style.halo_width + kSlackPixels / 2;
+  const double half_height = room.height / 2 + style.halo_width + kSlackEms * style.size;
+  const int width = 2 * static_cast<int>(std::ceil(half_width * scale));
+  const int height = 2 * static_cast<int>(std::ceil(half_height * scale));
   ContentHash hash;
   hash.add(key);
-  hash.add(identity_of(fonts));
-  image->identity = hash.hex();
-  const std::size_t bytes = key.size() + 2 * image->mask.letters.size() + sizeof(LabelImage);
+  hash.add(identity_of(*fonts));
+  auto draw = [fonts, text = std::move(text), size = style.size, halo = style.halo_width, scale,
+               most = std::max(style.max_width / style.size, kLeastWidth), width, height] {
+    const BrokenLines broken = broken_lines(text, most, *fonts);
+    return fonts->mask_of(broken.lines, size * scale, broken.line_height * size * scale,
+                          halo * scale, width, height);
+  };
+  auto image = std::make_shared<const LabelImage>(
+      LabelImage::Look{width, height, style.colour, style.halo_colour, hash.hex()},
+      std::move(draw));
+  const std::size_t bytes = key.size() +
+                            2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) +
+                            sizeof(LabelImage);
   const std::lock_guard lock(mutex_);
   if (const auto* found = images_.find(key)) return *found;
   return images_.insert(key, std::move(image), bytes);
@@ -354,16 +363,16 @@ std::vector<DrawnLabel> LabelBook::find(const LabelledView& wanted) {
       if (!layer.is_drawn) continue;
       const FeatureTable& features =
           wanted.dataset.layers_on_all_grids()[layer.layer].layer->features();
-      DrawnLabel label{image_of(layer, features, source.row, wanted.scale)};
+      DrawnLabel label{image_of(layer, features, source.row, source.room, wanted.scale)};
       const LabelCandidate& candidate = placed->placement.candidates()[number];
       const double column =
           (candidate.x + shift - static_cast<double>(view.origin_x)) / view.cells_per_pixel;
       const double row = (candidate.y - static_cast<double>(view.origin_y)) / view.cells_per_row();
-      const TextMask& mask = label.image->mask;
-      label.left = static_cast<int>(std::floor(column + 0.5)) - mask.width / 2;
-      label.top = static_cast<int>(std::floor(row + 0.5)) - view.first_row - mask.height / 2;
-      const bool is_seen = label.left < view.width && label.left + mask.width > 0 &&
-                           label.top < view.height && label.top + mask.height > 0;
+      const auto& [width, height, letters, halo, identity] = label.image->look();
+      label.left = static_cast<int>(std::floor(column + 0.5)) - width / 2;
+      label.top = static_cast<int>(std::floor(row + 0.5)) - view.first_row - height / 2;
+      const bool is_seen = label.left < view.width && label.left + width > 0 &&
+                           label.top < view.height && label.top + height > 0;
       if (is_seen) labels.push_back(std::move(label));
     }
   }

@@ -10,11 +10,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/labels/label_anchors.h"
@@ -33,12 +35,34 @@ struct FontChoice {
   std::map<std::string, std::shared_ptr<const Fonts>> named = {};
 };
 
-/// A label as it looks at one scale.
-struct LabelImage {
-  TextMask mask;
-  Rgba letters;
-  Rgba halo;
-  std::string identity;  // equal for those that look the same, whoever drew them
+/// A label as it looks at one scale. What it looks like is known by its identity before it is
+/// drawn.
+///
+/// Thread-safety: any number of threads may read.
+class LabelImage {
+ public:
+  struct Look {
+    int width = 0;  // of the mask, in pixels
+    int height = 0;
+    Rgba letters;
+    Rgba halo;
+    std::string identity;  // equal for those that look the same, whoever drew them
+  };
+  /// `draw` makes the mask, in whatever thread first asks for it.
+  LabelImage(Look look, std::function<TextMask()> draw)
+      : look_(std::move(look)), draw_(std::move(draw)) {}
+
+  const Look& look() const { return look_; }
+  const TextMask& mask() const {
+    std::call_once(once_, [this] { mask_ = draw_(); });
+    return mask_;
+  }
+
+ private:
+  const Look look_;
+  const std::function<TextMask()> draw_;
+  mutable std::once_flag once_;
+  mutable TextMask mask_;
 };
 
 /// Where it lies in a picture: the column and the row of its north-west pixel, which may be
@@ -74,6 +98,9 @@ class LabelBook {
   /// the labels have been placed already.
   std::uint64_t cost_of(const LabelledView& wanted) const;
 
+  /// Whether find() has nothing to place and nobody to wait for.
+  bool has_placed(const LabelledView& wanted) const;
+
   /// Bytes held, about.
   std::size_t memory() const;
 
@@ -89,10 +116,15 @@ class LabelBook {
   std::shared_ptr<const LabelAnchors> anchors_of(const ServedLayer& served, LabelParts parts);
   std::shared_ptr<Entry> entry(const std::string& key);
   void set_size(const std::string& key, std::shared_ptr<Entry> entry, std::size_t bytes);
+  /// How large a text is.
+  struct Room {
+    double width = 0;   // pixels, without halo
+    double height = 0;  // the same
+  };
   std::shared_ptr<const LabelImage> image_of(const LabelledLayer& layer,
                                              const FeatureTable& features, std::uint32_t row,
-                                             double scale);
-  const Fonts& fonts_for(const LabelStyle& style) const;
+                                             const Room& room, double scale);
+  const std::shared_ptr<const Fonts>& fonts_for(const LabelStyle& style) const;
   const std::string& identity_of(const Fonts& fonts);
 
   const FontChoice fonts_;

@@ -154,7 +154,7 @@ std::string TilePainter::fingerprint_of(const TilePlan& plan, const Sketch& sket
     drawings_[k].add_to(hash, view);
   }
   for (const DrawnLabel& label : sketch.labels) {
-    hash.add(label.image->identity);
+    hash.add(label.image->look().identity);
     hash.add(static_cast<std::uint64_t>(label.left));
     hash.add(static_cast<std::uint64_t>(label.top));
   }

@@ -91,8 +91,9 @@ bool TileService::is_quick_to_identify(const TilePlan& plan, std::uint64_t cost)
     return classing.ids.size() + classing.highlighted_ids.size() <= kFewIds &&
            classes_->has(layer.revision, classing);
   };
-  return cost <= kQuickToIdentify && plan.labels.empty() && !plan.debug.any() &&
-         std::ranges::all_of(plan.layers, is_quick);
+  return cost <= kQuickToIdentify && !plan.debug.any() &&
+         std::ranges::all_of(plan.layers, is_quick) &&
+         options_.labels->has_placed({*plan.dataset, plan.labels, plan.view, plan.scale});
 }
 
 std::optional<TileAnswer> TileService::answer_at_once(const TilePlan& plan, std::uint64_t cost,
@@ -125,8 +126,8 @@ std::string TileService::identify(const TilePlan& plan) {
     }
   }
   if (identifier == nullptr) {
-    identifier =
-        std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_), classes_);
+    identifier = std::make_unique<TilePainter>(std::make_unique<NoRenderer>(renderer_identity_),
+                                               classes_, options_.fonts, options_.labels);
   }
   std::string fingerprint = identifier->identify({&plan});
   const std::lock_guard lock(identifying_);

@@ -126,8 +126,8 @@ class TileService {
   /// What submit() would answer a plan of that cost which need not be drawn, found within this call
   /// where that takes less time than to hand it to a worker: a tenth of a millisecond at most.
   /// Nothing if it has to be drawn, and for all others, to be submitted: those of many trapezoids,
-  /// in several parts, with labels or marks, in classes that no tile of late was in, of a file that
-  /// was truncated.
+  /// in several parts, with marks, with labels that have not been placed, in classes that no tile
+  /// of late was in, of a file that was truncated.
   std::optional<TileAnswer> answer_at_once(const TilePlan& plan, std::uint64_t cost,
                                            const Holds& holds);
 

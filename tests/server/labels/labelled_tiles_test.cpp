@@ -166,7 +166,7 @@ TEST_F(LabelledTilesTest, LabelsDoNotOverlap) {
                                static_cast<std::size_t>(plan.view.height));
       for (const auto& label :
            label_book()->find({*plan.dataset, plan.labels, plan.view, plan.scale})) {
-        const TextMask& mask = label.image->mask;
+        const TextMask& mask = label.image->mask();
         for (int row = 0; row < mask.height; ++row) {
           for (int column = 0; column < mask.width; ++column) {
             const int x = label.left + column;
@@ -203,7 +203,7 @@ TEST_F(LabelledTilesTest, AroundLabelsATileIsWhatItIsWithoutThem) {
       std::vector<bool> is_masked(picture.pixels.size());
       for (const DrawnLabel& label : label_book()->find(
                {*labelled.dataset, labelled.labels, labelled.view, labelled.scale})) {
-        const TextMask& mask = label.image->mask;
+        const TextMask& mask = label.image->mask();
         for (int row = 0; row < mask.height; ++row) {
           for (int column = 0; column < mask.width; ++column) {
             const int x = label.left + column;

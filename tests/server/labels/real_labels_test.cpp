@@ -85,14 +85,14 @@ class RealLabelsTest : public ::testing::TestWithParam<File> {
 
 /// Whether two labels, with their halos, have a pixel in common.
 bool overlap(const SeenLabel& a, const SeenLabel& b) {
-  const TextMask& one = a.image->mask;
-  const TextMask& other = b.image->mask;
+  const TextMask& one = a.image->mask();
+  const TextMask& other = b.image->mask();
   const std::int64_t left = std::max(a.left, b.left);
   const std::int64_t top = std::max(a.top, b.top);
   const std::int64_t right = std::min(a.left + one.width, b.left + other.width);
   const std::int64_t bottom = std::min(a.top + one.height, b.top + other.height);
   const auto has = [](const SeenLabel& label, std::int64_t x, std::int64_t y) {
-    const TextMask& mask = label.image->mask;
+    const TextMask& mask = label.image->mask();
     return mask.halo[static_cast<std::size_t>((y - label.top) * mask.width + x - label.left)] > 0;
   };
   for (std::int64_t y = top; y < bottom; ++y) {
@@ -106,7 +106,7 @@ bool overlap(const SeenLabel& a, const SeenLabel& b) {
 void expect_none_over_another(const std::set<SeenLabel>& labels) {
   for (auto a = labels.begin(); a != labels.end(); ++a) {
     for (auto b = std::next(a); b != labels.end(); ++b) {
-      if (b->left >= a->left + a->image->mask.width) break;  // in order from west to east
+      if (b->left >= a->left + a->image->mask().width) break;  // in order from west to east
       EXPECT_FALSE(overlap(*a, *b));
     }
   }

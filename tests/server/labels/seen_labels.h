@@ -22,7 +22,7 @@ struct SeenLabel {
   std::int64_t top = 0;
   std::shared_ptr<const LabelImage> image;
 
-  auto key() const { return std::tuple(left, top, image->identity); }
+  auto key() const { return std::tuple(left, top, image->look().identity); }
   bool operator<(const SeenLabel& other) const { return key() < other.key(); }
   bool operator==(const SeenLabel& other) const { return key() == other.key(); }
 };
@@ -52,9 +52,9 @@ inline std::vector<LabelPlace> label_places(const TilePlan& plan, const View& vi
     const auto along = [&view](std::int64_t origin, int first, int pixels) {
       return static_cast<double>(origin) + (first + pixels / 2) * view.cells_per_pixel;
     };
-    const TextMask& mask = label.image->mask;
+    const TextMask& mask = label.image->mask();
     places.push_back({along(view.origin_x, label.left, mask.width),
-                      along(view.origin_y, label.top, mask.height), label.image->identity});
+                      along(view.origin_y, label.top, mask.height), label.image->look().identity});
   }
   return places;
 }

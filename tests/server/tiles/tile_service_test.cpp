@@ -8,6 +8,7 @@
 #include "render/make_renderer.h"
 #include "render/picture/channels.h"
 #include "render/picture/png.h"
+#include "server/tiles/open_fonts.h"
 #include "server/tiles/tile_painter.h"
 #include "tests/server/service/sample_site.h"
 
@@ -454,6 +455,33 @@ TEST_F(TileServiceTest, TilesInClassesAreAnsweredWithoutAWorkerOnceTheClassesAre
   EXPECT_EQ(asked, fingerprint);
   tile.layers.front().style.classing.ids = {1, 2};
   EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds)) << "other classes";
+}
+
+TEST_F(TileServiceTest, TilesWithLabelsAreAnsweredWithoutAWorkerOnceTheseArePlaced) {
+  constexpr std::uint64_t kCheap = 10'000;
+  TileServiceOptions options;
+  options.labels = std::make_shared<LabelBook>(FontChoice{open_fonts({})});
+  start(options);
+  open();
+  TileRequest request;
+  request.layers = {"rings"};
+  request.style = testing::style_of("label=name");
+  const TilePlan tile = *plan_tile(request, dataset_);
+  std::string asked;
+  const auto holds = [&asked](const std::string& fingerprint) {
+    asked = fingerprint;
+    return true;
+  };
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds));
+  EXPECT_TRUE(asked.empty());
+  const std::string fingerprint = submit(tile).get().tile.fingerprint;
+  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds));
+  EXPECT_EQ(asked, fingerprint);
+  request.style = testing::style_of("label=name&label-color=red");  // at the same places
+  EXPECT_TRUE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds));
+  EXPECT_NE(asked, fingerprint);
+  request.style = testing::style_of("label=name&label-size=20");
+  EXPECT_FALSE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds));
 }
 
 TEST_F(TileServiceTest, CheapTilesThatAreKeptAreAnsweredWithoutAWorker) {
