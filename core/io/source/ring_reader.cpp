@@ -13,6 +13,9 @@ namespace {
 constexpr ClipWindow kWorld = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
                                static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
 
+// What lies farther from the prime meridian is not brought back into the world.
+constexpr double kMostLongitude = 540;
+
 bool is_collection(OGRwkbGeometryType flat) {
   return OGR_GT_IsSubClassOf(flat, wkbGeometryCollection) != 0;
 }
@@ -151,6 +154,7 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
     feature.part_ends.push_back(static_cast<std::uint32_t>(feature.rings.size()));
     ++part;
   }
+  if (feature.rings.empty()) check_degrees(feature);
 }
 
 void RingReader::collect(const OGRGeometry& geometry, FeatureRings& feature) {
@@ -199,6 +203,17 @@ void RingReader::check_coordinates(FeatureRings& feature) const {
              !(are_within(x_, 180 + kDegreeSlack) && are_within(y_, 90 + kDegreeSlack))) {
     feature.failure = "has coordinates that are not degrees";
     feature.has_wrong_units = true;
+  }
+}
+
+// Of what lies outside of the world: whether the source means metres and says that it means
+// degrees.
+void RingReader::check_degrees(FeatureRings& feature) const {
+  const bool is_said =
+      crs_.kind == SourceCrs::Kind::degrees || crs_.kind == SourceCrs::Kind::geographic;
+  const bool can_be = are_within(x_, kMostLongitude) && are_within(y_, 90 + kDegreeSlack);
+  if (is_said && !can_be) {
+    feature.failure = "has coordinates that are not degrees, as its source says they are";
   }
 }
 

@@ -64,6 +64,7 @@ class RingReader {
   void collect_polygon(const OGRPolygon& polygon, FeatureRings& feature);
   void collect_ring(const OGRLinearRing& ring, FeatureRings& feature);
   void check_coordinates(FeatureRings& feature) const;
+  void check_degrees(FeatureRings& feature) const;
   void to_lonlat(FeatureRings& feature);
   void cut_source_edges(FeatureRings& feature);
   bool map_to_lonlat(std::vector<double>& x, std::vector<double>& y);

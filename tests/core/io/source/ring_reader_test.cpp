@@ -287,6 +287,25 @@ TEST(RingReaderTest, TakesNumbersWithoutCrsForDegreesOnlyIfTheyCanBe) {
   EXPECT_TRUE(metres.rings.empty());
 }
 
+// GeoJSON is in degrees unless it says otherwise, and metres are often written into it all the
+// same.
+TEST(RingReaderTest, SaysWhenNothingIsLeftOfAFeatureAsItsCoordinatesAreNotDegrees) {
+  const char* metres = "POLYGON((500000 5500000,501000 5500000,501000 5501000,500000 5500000))";
+  for (const char* crs : {"OGC:CRS84", "EPSG:4326", "EPSG:4258"}) {
+    SCOPED_TRACE(crs);
+    const FeatureRings feature = read(metres, crs);
+    EXPECT_THAT(feature.failure, HasSubstr("not degrees"));
+    EXPECT_TRUE(feature.rings.empty());
+  }
+  EXPECT_THAT(read("POLYGON((600 0,601 0,601 1,600 0))").failure, HasSubstr("not degrees"));
+  // These may be: they lie where no map shows them, or are too small.
+  EXPECT_EQ(read("POLYGON((0 86,1 90,2 87,0 86))").failure, "");
+  EXPECT_EQ(read("POLYGON EMPTY").failure, "");
+  // Of this there is something to draw.
+  EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").failure, "");
+  EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").rings.size(), 1u);
+}
+
 TEST(RingReaderTest, ReportsPointsThatCannotBeReprojected) {
   // Far outside of what a transverse Mercator zone can be extended to.
   const FeatureRings feature = read("POLYGON((500000 0,1e12 0,1e12 1e12,500000 0))", "EPSG:25832");
