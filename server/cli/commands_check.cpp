@@ -7,6 +7,7 @@
 #include "core/io/prepared/open_layer.h"
 #include "core/io/prepared/prepared_parts.h"
 #include "server/cli/commands.h"
+#include "server/cli/option_values.h"
 #include "server/data/load_progress.h"
 #include "server/service/process_figures.h"
 
@@ -108,6 +109,7 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
   try {
     LoadProgress progress(file);
     OpenOptions options = how;
+    options.grid = grid_in_name(file);
     options.progress = [&progress](double share) { progress.show(share); };
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {

@@ -275,10 +275,11 @@ std::string coverage_of_files() {
 
 /// Of whoever draws: which layers, and on what.
 void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
-  command.add_option("FILE", arguments.files,
-                     "Files of polygons, in any format GDAL reads, or prepared ones; each becomes "
-                     "a layer named after it, as do the parts of a layer together that have such "
-                     "a name as 'parts/*.trapeze'. Instead of the layers of the configuration.");
+  command.add_option(
+      "FILE", arguments.files,
+      "Files of polygons, in a format that GDAL reads, or prepared ones; each becomes "
+      "a layer named after it, as do the parts of a layer together that have such "
+      "a name as 'parts/*.trapeze'. Instead of the layers of the configuration.");
   command
       .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
       ->type_name("FILE");
@@ -351,7 +352,7 @@ void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   CLI::App* prepare =
       app.add_subcommand("prepare", "Save layers in files that are served without building them");
   prepare->footer(kPrepareFooter);
-  prepare->add_option("FILE", arguments.files, "Files of polygons, in any format GDAL reads");
+  prepare->add_option("FILE", arguments.files, "Files of polygons, in a format that GDAL reads");
   prepare
       ->add_option("--weights", arguments.weights,
                    fmt::format("What decides which vertices go: {}; {} if not set",

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/io/file/prepared_file.h"
+#include "core/io/source/target_grid.h"
 #include "server/base/nearest_name.h"
 #include "server/base/url.h"
 #include "server/config/load_config.h"
@@ -23,6 +25,21 @@ std::optional<Number> number_in(const std::string& text, Number min, Number max)
   const bool is_number = error == std::errc() && end == text.data() + text.size();
   if (!is_number || !(number >= min && number <= max)) return std::nullopt;
   return number;
+}
+
+bool is_target_grid(const std::string& name) {
+  try {
+    find_target_grid(name);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// "land.trapeze" of "land.EPSG-2056.trapeze".
+std::string without_grid(const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.parent_path() / path.stem().stem()).string() + path.extension().string();
 }
 
 [[noreturn]] void throw_wrong_number(const std::string& option, const std::string& takes,
@@ -150,9 +167,36 @@ void throw_wrong_style(const Problem& problem) {
                         : fmt::format("{} Given was \"{}\".", problem.detail, problem.value)));
 }
 
+std::string grid_in_name(const std::string& file) {
+  std::string word = std::filesystem::path(file).stem().extension().string();
+  const std::size_t dash = word.find('-');
+  if (dash == std::string::npos || !is_prepared_file(file)) return {};
+  word[dash] = ':';
+  const std::string name = word.substr(1);
+  return is_target_grid(name) ? name : "";
+}
+
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files) {
+  std::vector<std::string> on_mercator;
+  std::map<std::string, std::vector<std::string>> grids;  // by the file for Web Mercator
+  for (const std::string& file : files) {
+    const std::string grid = grid_in_name(file);
+    const std::string whole = grid.empty() ? "" : without_grid(file);
+    if (whole.empty() || std::ranges::find(files, whole) == files.end()) {
+      on_mercator.push_back(file);
+    } else {
+      grids[whole].push_back(grid);
+    }
+  }
   try {
-    return layers_of_files(files);
+    std::vector<LayerConfig> layers = layers_of_files(on_mercator);
+    for (LayerConfig& layer : layers) {
+      const auto more = grids.find(layer.file);
+      if (more == grids.end()) continue;
+      layer.crs.emplace_back(kBuiltCrs);
+      layer.crs.insert(layer.crs.end(), more->second.begin(), more->second.end());
+    }
+    return layers;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
   }

@@ -76,7 +76,13 @@ StyleQuery style_or_throw(const std::string& query, const std::vector<std::strin
 /// A problem with a style as a sentence for the command line.
 [[noreturn]] void throw_wrong_style(const Problem& problem);
 
-/// A layer of each file, named after it, each name once.
+/// The system whose grid a prepared file is for, as its name says: "EPSG:2056" of
+/// "land.EPSG-2056.trapeze", see prepared_on_grid(). Empty if it says none, or the file is no
+/// prepared one.
+std::string grid_in_name(const std::string& file);
+
+/// A layer of each file, named after it, each name once. A file that was prepared for another grid
+/// belongs to the layer of the one for Web Mercator, if that is named as well.
 std::vector<LayerConfig> layers_or_throw(const std::vector<std::string>& files);
 
 }  // namespace trapeze

@@ -670,7 +670,7 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           same, "the layer as it appears in URLs"),
       path<LayerConfig>(
           "file", [](auto& layer) -> auto& { return layer.file; },
-          "polygons in any format that GDAL reads, or a prepared file"),
+          "polygons in a format that GDAL reads, or a prepared file"),
       text<LayerConfig>(
           "source_layer", [](auto& layer) -> auto& { return layer.selection.layer; },
           "the layer or table of the file or database; not set: all that hold polygons"),

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/io/file/prepared_file.h"
 #include "core/layer/layer_arrays.h"
 #include "core/layer/layer_contents.h"
 #include "core/layer/untested_layer.h"
@@ -308,7 +309,11 @@ std::vector<LayerConfig> with_grids(const std::vector<LayerConfig>& layers) {
       if (name == kBuiltCrs) continue;
       LayerConfig& more = all.emplace_back(layer);
       more.grid = name;
-      if (!layer.prepared.empty()) more.prepared = prepared_on_grid(layer.prepared, name);
+      if (!layer.prepared.empty()) {
+        more.prepared = prepared_on_grid(layer.prepared, name);
+      } else if (is_prepared_file(layer.file)) {
+        more.file = prepared_on_grid(layer.file, name);
+      }
     }
   }
   return all;

@@ -8,6 +8,7 @@
 
 #include "render/make_renderer.h"
 #include "server/base/failure_words.h"
+#include "server/data/dataset.h"
 #include "server/data/layer_problems.h"
 #include "server/data/named_tables.h"
 #include "server/http/http_server.h"
@@ -48,7 +49,11 @@ class ConfigCheck {
     for (const auto& [name, style] : config_.styles) check_names("styles." + name, style);
     for (const LayerConfig& layer : config_.layers) {
       check_names(fmt::format("layer.{}.style", layer.name), layer.style);
-      check_layer(layer);
+      for (const LayerConfig& on_grid : with_grids({layer})) {
+        // A source is one for all grids.
+        const bool is_own = on_grid.grid.empty() || on_grid.file_to_open() != layer.file_to_open();
+        if (is_own) check_layer(on_grid);
+      }
     }
     if (config_.layers.empty() && findings_.problems.empty()) {
       findings_.warnings.push_back(

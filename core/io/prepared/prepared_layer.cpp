@@ -398,8 +398,9 @@ std::uint64_t fingerprint_on(const std::string& grid, const LayerOptions& option
 void check_fingerprint(const LayerOptions& options, const std::string& grid,
                        std::uint64_t fingerprint) {
   if (fingerprint_on(grid, options) == fingerprint) return;
-  throw UnfitError("was prepared by a version of Trapeze that builds layers otherwise" +
-                   (grid.empty() ? "" : ", or not for " + grid));
+  throw UnfitError(
+      "was prepared by a version of Trapeze that builds layers otherwise, or not for " +
+      (grid.empty() ? "EPSG:3857" : grid));
 }
 
 void check_source(const SourceStamp& stamp, const PreparedDemands& demands) {

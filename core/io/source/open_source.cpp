@@ -150,7 +150,7 @@ void check_readable(const std::string& path) {
     fail(path, "is broken (" + name + "): " + message);
   }
   fail(path, "is of the format " + name + ", which is not allowed; allowed are " +
-                 allowed_drivers_in_words());
+                 allowed_drivers_in_words() + ": make a copy by `ogr2ogr copy.gpkg` and its name");
 }
 
 CPLStringList options_for(const std::string& path, const CPLStringList& drivers) {

@@ -5,12 +5,16 @@
 #include <limits>
 
 #include "core/grid/web_mercator.h"
+#include "core/io/source/unwrap_longitudes.h"
 
 namespace trapeze {
 namespace {
 
 constexpr ClipWindow kWorld = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
                                static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
+
+// What lies farther from the prime meridian is not brought back into the world.
+constexpr double kMostLongitude = 540;
 
 bool is_collection(OGRwkbGeometryType flat) {
   return OGR_GT_IsSubClassOf(flat, wkbGeometryCollection) != 0;
@@ -44,29 +48,6 @@ bool are_finite(std::span<const double> values) {
 bool are_within(std::span<const double> values, double limit) {
   return std::all_of(values.begin(), values.end(),
                      [limit](double value) { return std::abs(value) <= limit; });
-}
-
-// Undoes the jumps from one side of the 180th meridian to the other in a ring that crosses it, and
-// leads a ring around a pole over that pole. Only for rings whose edges are short in longitude.
-void unwrap_longitudes(PositionRing& ring) {
-  if (ring.empty()) return;
-  double turns = 0;
-  double latitude_sum = 0;
-  double previous = ring.front().x;
-  for (Position& p : ring) {
-    const double step = p.x + turns - previous;
-    if (step > 180) turns -= 360;
-    if (step < -180) turns += 360;
-    p.x += turns;
-    previous = p.x;
-    latitude_sum += p.y;
-  }
-  const Position first = ring.front();
-  const double closing_step = first.x - previous;
-  if (std::abs(closing_step) <= 180) return;
-  const double around = first.x + (closing_step > 0 ? -360 : 360);
-  const double pole = latitude_sum < 0 ? -90 : 90;
-  ring.insert(ring.end(), {{around, first.y}, {around, pole}, {first.x, pole}});
 }
 
 constexpr double kNearSeam = 2e-5;      // degrees: two metres, to which sources round 180
@@ -173,6 +154,7 @@ void RingReader::read(const OGRGeometry& geometry, FeatureRings& feature) {
     feature.part_ends.push_back(static_cast<std::uint32_t>(feature.rings.size()));
     ++part;
   }
+  if (feature.rings.empty()) check_degrees(feature);
 }
 
 void RingReader::collect(const OGRGeometry& geometry, FeatureRings& feature) {
@@ -224,16 +206,27 @@ void RingReader::check_coordinates(FeatureRings& feature) const {
   }
 }
 
+// Of what lies outside of the world: whether the source means metres and says that it means
+// degrees.
+void RingReader::check_degrees(FeatureRings& feature) const {
+  const bool is_said =
+      crs_.kind == SourceCrs::Kind::degrees || crs_.kind == SourceCrs::Kind::geographic;
+  const bool can_be = are_within(x_, kMostLongitude) && are_within(y_, 90 + kDegreeSlack);
+  if (is_said && !can_be) {
+    feature.failure = "has coordinates that are not degrees, as its source says they are";
+  }
+}
+
 void RingReader::to_lonlat(FeatureRings& feature) {
-  const bool can_unwrap = crs_.degrees_per_unit > 0;
-  if (can_unwrap) source_x_ = x_;
+  source_x_ = x_;
+  source_y_ = y_;
   feature.failure = transform_->apply(x_, y_);
   if (!feature.failure.empty()) return;
   if (!are_finite(x_) || !are_finite(y_)) {
     feature.failure = "lies where its coordinate reference system is not defined";
     return;
   }
-  if (!can_unwrap) return;
+  if (crs_.degrees_per_unit == 0) return;
   // A datum moves a point by metres: a longitude that moved by half a turn was wrapped.
   for (std::size_t i = 0; i < x_.size(); ++i) {
     x_[i] += 360 * std::nearbyint((source_x_[i] * crs_.degrees_per_unit - x_[i]) / 360);
@@ -297,7 +290,7 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& f
   if (end - begin > 1 && x_[begin] == x_[end - 1] && y_[begin] == y_[end - 1]) --end;
   ring_.clear();
   for (std::size_t i = begin; i < end; ++i) ring_.push_back({x_[i], y_[i]});
-  if (crs_.kind == SourceCrs::Kind::projected) unwrap_longitudes(ring_);
+  if (crs_.kind == SourceCrs::Kind::projected) unwrap_ring(begin, end);
   const bool is_in_degrees =
       crs_.kind != SourceCrs::Kind::projected && crs_.kind != SourceCrs::Kind::web_mercator;
   if (is_in_degrees) lay_cuts_on_seam(ring_);
@@ -317,6 +310,15 @@ void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& f
       append_clipped(shift, rings);
     }
   }
+}
+
+void RingReader::unwrap_ring(std::size_t begin, std::size_t end) {
+  on_plane_.clear();
+  for (std::size_t i = begin; i < end; ++i) on_plane_.push_back({source_x_[i], source_y_[i]});
+  const PointMap to_lonlat = [this](std::vector<double>& x, std::vector<double>& y) {
+    return map_to_lonlat(x, y);
+  };
+  unwrap_longitudes(ring_, on_plane_, {to_lonlat, crs_.metres_per_unit});
 }
 
 void RingReader::project_ring() {

@@ -64,11 +64,13 @@ class RingReader {
   void collect_polygon(const OGRPolygon& polygon, FeatureRings& feature);
   void collect_ring(const OGRLinearRing& ring, FeatureRings& feature);
   void check_coordinates(FeatureRings& feature) const;
+  void check_degrees(FeatureRings& feature) const;
   void to_lonlat(FeatureRings& feature);
   void cut_source_edges(FeatureRings& feature);
   bool map_to_lonlat(std::vector<double>& x, std::vector<double>& y);
   void append_on_grid(FeatureRings& feature);
   void append_ring(std::size_t begin, std::size_t end, FeatureRings& feature);
+  void unwrap_ring(std::size_t begin, std::size_t end);
   void project_ring();
   void clip_latitude();
   void append_clipped(double shift, Rings& rings);
@@ -83,9 +85,12 @@ class RingReader {
   std::vector<double> y_;
   std::vector<std::size_t> ends_;
   std::vector<std::size_t> part_ends_;  // rings, in the same way
+  // Before they were transformed, if they were.
   std::vector<double> source_x_;
+  std::vector<double> source_y_;
   // Of the current ring: degrees, then cells.
   PositionRing ring_;
+  PositionRing on_plane_;  // of the source
   PositionRing clipped_;
   PositionRing scratch_;
   std::vector<PositionRing> parts_;  // of it on the grid of another system

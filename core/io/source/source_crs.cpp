@@ -79,6 +79,7 @@ SourceCrs SourceCrs::describe(const OGRSpatialReference* reference) {
   if (reference == nullptr || reference->IsEmpty() || is_undefined(*reference)) return crs;
   crs.kind = kind_of(*reference);
   crs.reference.reset(reference->Clone());
+  if (crs.kind == Kind::projected) crs.metres_per_unit = reference->GetLinearUnits();
   if (reference->IsGeographic() && has_longitude_first(*reference)) {
     crs.degrees_per_unit = reference->GetAngularUnits() * 180 / std::numbers::pi;
   }

@@ -23,6 +23,7 @@ struct SourceCrs {
   Kind kind = Kind::assumed_degrees;
   // Of a geographic CRS with longitude first: degrees in one of its units; 0 if latitude is first.
   double degrees_per_unit = 0;
+  double metres_per_unit = 0;                            // of a projected one
   std::unique_ptr<const OGRSpatialReference> reference;  // null if there is none
 
   /// `reference` may be null, or the one by which a GeoPackage says that it is not known; axis

@@ -463,6 +463,10 @@ TEST_F(ConfigCheckTest, WhatItFindsKeepsTheServerFromStarting) {
        ":3:12: ", "and effective-area are configured"},
       {"prepared = \"bad.trapeze\"\nmax_skipped = 0",
        ":4:15: ", "1 of 1 features were skipped (100 %), and at most 0 may be"},
+      {"prepared = \"map.trapeze\"\ncrs = [\"EPSG:3857\", \"EPSG:2056\"]",
+       ":3:12: ", "map.EPSG-2056.trapeze"},
+      {"file = \"map.trapeze\"\ncrs = [\"EPSG:3857\", \"EPSG:2056\"]",
+       ":3:8: ", "map.EPSG-2056.trapeze"},
       {"file = \"map.trapeze\"\nwhere = \"a = 1\"", ":3:8: ", "is prepared already"},
       {"file = \"map.geojson\"\n[server]\nweb_root = \"nosuch\"",
        ":5:12: ", "server.web_root: cannot read the folder of the viewer"},
@@ -898,6 +902,41 @@ TEST(ProgramTest, PreparesFilesThatAreServedUnderTheSameTags) {
   Program damaged(serve_arguments({folder + "/rings.trapeze"}));
   EXPECT_EQ(damaged.wait(), 1);
   EXPECT_THAT(damaged.output(), HasSubstr("rings.trapeze: is damaged"));
+  std::filesystem::remove_all(folder);
+}
+
+// As `trapeze serve prepared/*.trapeze` names them.
+TEST(ProgramTest, WhatIsPreparedForOtherGridsBelongsToTheLayerOfItsName) {
+  const std::string folder = scratch_path("prepared_on_grids");
+  std::filesystem::remove_all(folder);
+  Program prepare(
+      {"prepare", fixture("rings.geojson"), "--crs", "EPSG:3035,EPSG:5041", "--output", folder});
+  ASSERT_EQ(prepare.wait(), 0) << prepare.output();
+  const std::string mercator = folder + "/rings.trapeze";
+  const std::string lambert = folder + "/rings.EPSG-3035.trapeze";
+  {
+    Program program(serve_arguments({lambert, folder + "/rings.EPSG-5041.trapeze", mercator}));
+    const std::uint16_t port = program.port();
+    wait_until_ready(port);
+    RawClient client(port);
+    for (const char* crs : {"EPSG:3035", "EPSG:5041"}) {
+      const auto map = client.get(std::string("/map/rings.png?crs=") + crs +
+                                  "&bbox=1000000,1000000,2000000,2000000&width=64");
+      EXPECT_EQ(map.status, 200) << crs << ": " << map.body;
+    }
+    EXPECT_EQ(client.get("/tiles/rings/0/0/0.png").status, 200);
+    EXPECT_EQ(client.get("/map/rings.png?crs=EPSG:2056&bbox=0,0,9,9&width=9").status, 400);
+  }
+  Program check({"check", mercator, lambert});
+  EXPECT_EQ(check.wait(), 0) << check.output();
+  const std::string old = folder + "/rings.2024-05.trapeze";  // which is no system
+  std::filesystem::copy_file(mercator, old);
+  Program check_old({"check", old});
+  EXPECT_EQ(check_old.wait(), 0) << check_old.output();
+  Program alone(serve_arguments({lambert}));
+  EXPECT_EQ(alone.wait(), 1);
+  EXPECT_THAT(alone.output(), HasSubstr(lambert));
+  EXPECT_THAT(alone.output(), HasSubstr("or not for EPSG:3857"));
   std::filesystem::remove_all(folder);
 }
 

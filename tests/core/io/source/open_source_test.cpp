@@ -114,7 +114,8 @@ TEST_F(OpenSourceTest, RefusesVrtThatPointsElsewhere) {
 
 TEST_F(OpenSourceTest, RefusesFormatsThatAreNotOnTheList) {
   const std::string path = folder_.write("points.csv", "a,WKT\n1,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
-  EXPECT_THAT(refusal(path), AllOf(HasSubstr("CSV"), HasSubstr("not allowed")));
+  EXPECT_THAT(refusal(path),
+              AllOf(HasSubstr("CSV"), HasSubstr("not allowed"), HasSubstr("`ogr2ogr copy.gpkg`")));
 }
 
 TEST_F(OpenSourceTest, OpensNoConnectionThatAFileAsksFor) {

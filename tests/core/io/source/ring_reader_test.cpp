@@ -120,6 +120,27 @@ std::vector<Point> by_reader(const std::string& crs, const RandomPoints& points)
   return feature.rings.points;
 }
 
+std::int64_t twice_area(const FeatureRings& feature) {
+  std::int64_t area = 0;
+  for (std::size_t i = 0; i < feature.rings.size(); ++i) area += twice_area(feature.rings[i]);
+  return area;
+}
+
+// A rectangle on a plane whose edges have so many parts.
+std::string rectangle(double west, double south, double east, double north, int parts) {
+  const double x[] = {west, east, east, west, west};
+  const double y[] = {south, south, north, north, south};
+  std::string wkt = "POLYGON((";
+  for (int side = 0; side < 4; ++side) {
+    for (int i = 0; i < parts; ++i) {
+      const double share = static_cast<double>(i) / parts;
+      wkt += std::to_string(x[side] + (x[side + 1] - x[side]) * share) + " " +
+             std::to_string(y[side] + (y[side + 1] - y[side]) * share) + ",";
+    }
+  }
+  return wkt + std::to_string(west) + " " + std::to_string(south) + "))";
+}
+
 // Two roundings on the way may put a point that lies between two cells into either.
 std::size_t count_different(const std::vector<Point>& a, const std::vector<Point>& b,
                             int by_more_than) {
@@ -266,6 +287,25 @@ TEST(RingReaderTest, TakesNumbersWithoutCrsForDegreesOnlyIfTheyCanBe) {
   EXPECT_TRUE(metres.rings.empty());
 }
 
+// GeoJSON is in degrees unless it says otherwise, and metres are often written into it all the
+// same.
+TEST(RingReaderTest, SaysWhenNothingIsLeftOfAFeatureAsItsCoordinatesAreNotDegrees) {
+  const char* metres = "POLYGON((500000 5500000,501000 5500000,501000 5501000,500000 5500000))";
+  for (const char* crs : {"OGC:CRS84", "EPSG:4326", "EPSG:4258"}) {
+    SCOPED_TRACE(crs);
+    const FeatureRings feature = read(metres, crs);
+    EXPECT_THAT(feature.failure, HasSubstr("not degrees"));
+    EXPECT_TRUE(feature.rings.empty());
+  }
+  EXPECT_THAT(read("POLYGON((600 0,601 0,601 1,600 0))").failure, HasSubstr("not degrees"));
+  // These may be: they lie where no map shows them, or are too small.
+  EXPECT_EQ(read("POLYGON((0 86,1 90,2 87,0 86))").failure, "");
+  EXPECT_EQ(read("POLYGON EMPTY").failure, "");
+  // Of this there is something to draw.
+  EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").failure, "");
+  EXPECT_EQ(read("POLYGON((0 80,1 80,1 500,0 80))").rings.size(), 1u);
+}
+
 TEST(RingReaderTest, ReportsPointsThatCannotBeReprojected) {
   // Far outside of what a transverse Mercator zone can be extended to.
   const FeatureRings feature = read("POLYGON((500000 0,1e12 0,1e12 1e12,500000 0))", "EPSG:25832");
@@ -326,12 +366,50 @@ TEST(RingReaderTest, KeepsAProjectedRingAcrossTheAntimeridianTogether) {
   EXPECT_NEAR(area / (side * side), 1, 0.01);
 }
 
+// As that of the sea in a map of the world that was made of a raster.
+TEST(RingReaderTest, LeadsLongEdgesAsFarAroundTheWorldAsTheyGoOnThePlane) {
+  struct Case {
+    const char* crs;
+    double x;
+    double y;
+  };
+  for (const auto& [crs, x, y] :
+       {Case{"EPSG:3395", 20037508.34, 15e6}, Case{"EPSG:4087", 20037508.34, 8e6},
+        Case{"EPSG:6933", 17367530.44, 7e6}, Case{"EPSG:4087", 12e6, 8e6},
+        Case{"EPSG:4087", 16e6, 8e6}, Case{"+proj=eqc +lon_0=150", 15e6, 8e6},
+        Case{"+proj=eqc +lon_0=150", 19.9e6, 8e6},
+        Case{"+proj=eqc +lon_0=-100 +units=km", 15e3, 8e3}}) {
+    SCOPED_TRACE(std::string(crs) + " " + std::to_string(x));
+    const FeatureRings feature = read(rectangle(-x, -y, x, y, 1), crs);
+    const FeatureRings by_short_edges = read(rectangle(-x, -y, x, y, 20), crs);
+    ASSERT_FALSE(by_short_edges.rings.empty());
+    EXPECT_EQ(feature.rings.size(), by_short_edges.rings.size());
+    EXPECT_EQ(bounds(feature), bounds(by_short_edges));
+    EXPECT_NEAR(
+        static_cast<double>(twice_area(feature)) / static_cast<double>(twice_area(by_short_edges)),
+        1, 1e-6);
+  }
+}
+
+// Where parallels are shorter towards the poles, sides that are straight on the plane are not so in
+// the world: corners are what is compared.
+TEST(RingReaderTest, FollowsLongEdgesOnPlanesWithCurvedMeridians) {
+  for (const char* crs : {"ESRI:54009", "ESRI:54030", "EPSG:8857"}) {
+    SCOPED_TRACE(crs);
+    const FeatureRings feature = read(rectangle(-10e6, -5e6, 10e6, 5e6, 1), crs);
+    ASSERT_EQ(feature.rings.size(), 1u);
+    const Box box = bounds(feature);
+    EXPECT_EQ(box.min_x, -box.max_x);
+    EXPECT_GT(box.max_x, at(100, 0).x);
+    EXPECT_GT(static_cast<double>(twice_area(feature)),
+              2 * 1.9 * at(100, 0).x * (box.max_y - box.min_y));
+  }
+}
+
 TEST(RingReaderTest, KeepsAnOtherDatumAtTheAntimeridianTogether) {
   const FeatureRings feature = read("POLYGON((179 60,180 60,180 61,179 61,179 60))", "EPSG:4267");
-  std::int64_t area = 0;
-  for (std::size_t i = 0; i < feature.rings.size(); ++i) area += twice_area(feature.rings[i]);
   const FeatureRings wgs84 = read("POLYGON((179 60,180 60,180 61,179 61,179 60))");
-  EXPECT_NEAR(static_cast<double>(area) / static_cast<double>(twice_area(wgs84.rings[0])), 1,
+  EXPECT_NEAR(static_cast<double>(twice_area(feature)) / static_cast<double>(twice_area(wgs84)), 1,
               0.001);
 }
 
@@ -344,10 +422,8 @@ TEST(RingReaderTest, LeadsARingAroundAPoleOverThePole) {
   EXPECT_EQ(box.min_x, kGridMin);
   EXPECT_EQ(box.max_x, kGridMax);
   EXPECT_EQ(box.max_y, kGridMax);
-  std::int64_t area = 0;
-  for (std::size_t i = 0; i < feature.rings.size(); ++i) area += twice_area(feature.rings[i]);
   const double least = static_cast<double>(kGridSize) * (kGridMax - at(0, -62).y);
-  EXPECT_GT(0.5 * static_cast<double>(area), 0.5 * least);
+  EXPECT_GT(0.5 * static_cast<double>(twice_area(feature)), 0.5 * least);
 }
 
 TEST(HasPolygonsTest, LooksIntoCollections) {
