@@ -14,6 +14,8 @@ constexpr double kTurn = 360;
 // use shows three quarters of a parallel within this length, but next to a pole.
 constexpr double kLongMetres = 1e6;
 constexpr double kFarDegrees = 90;
+// Ends so near to each other are on two sides of a cut through the plane.
+constexpr double kShortMetres = 0.01;
 
 // The edges of a ring are cut in so many places at most, and in as many more for each vertex. Once
 // around the world takes 40, and next to a pole some 30 more; far from where a system is used its
@@ -41,9 +43,10 @@ double shorter_way(const Vertex& from, const Vertex& to) {
 std::optional<double> way_on_plane(const Vertex& from, const Vertex& to, const SourcePlane& plane,
                                    std::size_t& cuts) {
   const double step = shorter_way(from, to);
-  const double length =
-      std::hypot(to.on_plane.x - from.on_plane.x, to.on_plane.y - from.on_plane.y);
-  if (std::abs(step) <= kFarDegrees && length * plane.metres_per_unit <= kLongMetres) return step;
+  const double metres = plane.metres_per_unit * std::hypot(to.on_plane.x - from.on_plane.x,
+                                                           to.on_plane.y - from.on_plane.y);
+  if (std::abs(step) <= kFarDegrees && metres <= kLongMetres) return step;
+  if (metres <= kShortMetres) return step;
   if (cuts == 0) return std::nullopt;
   --cuts;
   const Position middle = {(from.on_plane.x + to.on_plane.x) / 2,
