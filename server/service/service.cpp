@@ -156,7 +156,10 @@ Service::Service(const Config& config, LayerSource source)
                          : fmt::format("the layers are at {}catalog",
                                        local_url(config.server.address, server_->port()));
   if (const auto zooms = parse_zooms(config.changes.zooms)) {
-    changes_ = std::make_unique<ChangeLog>(ChangeLog::Options{*zooms, config.changes.command});
+    ChangeLog::Options what;
+    what.zooms = *zooms;
+    what.command = config.changes.command;
+    changes_ = std::make_unique<ChangeLog>(std::move(what));
   }
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(
