@@ -17,6 +17,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kEnd{200};  // of reading: more is not waited for
+
 /// The viewer of the program, or of a folder that is named in its place.
 StaticFiles open_viewer(const std::string& root) {
   if (root.empty()) return StaticFiles(viewer_files());
@@ -230,6 +232,13 @@ void Service::run() {
   }
   end_admin();
   reloader_->rethrow_failure();
+}
+
+bool Service::finish() {
+  if (reloader_->end(kEnd)) return true;
+  if (changes_ != nullptr) changes_->end_command();
+  if (access_log_ != nullptr) access_log_->flush();
+  return false;
 }
 
 void Service::reload() {
