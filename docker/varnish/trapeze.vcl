@@ -90,6 +90,11 @@ sub vcl_backend_response {
     if (beresp.status == 503 && bereq.retries < 2) {
         return (retry);
     }
+    # It has not been given the style or the table that the tile is of, which clients have posted to one of
+    # the others.
+    if (beresp.status == 404 && bereq.retries < 3) {
+        return (retry);
+    }
     if (beresp.status >= 500 || beresp.status == 429) {
         set beresp.uncacheable = true;
         return (deliver);

@@ -14,4 +14,9 @@ std::string failure_words(const std::exception& error) {
   return error.what();
 }
 
+std::string failure_words(const std::exception& error, const std::string& file) {
+  std::string words = failure_words(error);
+  return words == error.what() ? words : file + ": " + words;
+}
+
 }  // namespace trapeze

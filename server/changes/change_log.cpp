@@ -13,19 +13,32 @@
 #include "server/base/failure_words.h"
 #include "server/base/json_text.h"
 #include "server/changes/run_command.h"
+#include "server/tiles/layer_style.h"
 
 namespace trapeze {
 namespace {
 
 constexpr std::size_t kMostSteps = 32;
-constexpr std::size_t kMostTiles = 100'000;  // of one zoom, layer and step
 
 std::string text_of(const TileId& tile) {
   return fmt::format("{}/{}/{}", tile.z, tile.x, tile.y);
 }
 
+/// Leaves out zooms from the first on of which more tiles are listed.
+void limit_tiles(std::size_t most_tiles, ChangedLayer& layer) {
+  std::map<int, std::size_t> tiles_of;
+  for (const TileId& tile : layer.tiles.tiles) ++tiles_of[tile.z];
+  for (const auto& [zoom, tiles] : tiles_of) {
+    if (tiles <= most_tiles) continue;
+    layer.is_everything = layer.is_everything || zoom == layer.tiles.zooms.first;
+    layer.tiles.is_complete = false;
+    if (!layer.is_everything) layer.tiles.zooms.last = zoom - 1;
+    return;
+  }
+}
+
 /// The changes of several steps that follow each other, as if they were one.
-void add(const ChangedLayer& more, ChangedLayer& sum) {
+void add(const ChangedLayer& more, std::size_t most_tiles, ChangedLayer& sum) {
   sum.is_everything = sum.is_everything || more.is_everything;
   sum.tiles.is_complete = sum.tiles.is_complete && more.tiles.is_complete;
   sum.tiles.zooms.last = std::min(sum.tiles.zooms.last, more.tiles.zooms.last);
@@ -34,9 +47,24 @@ void add(const ChangedLayer& more, ChangedLayer& sum) {
   const auto place = [](const TileId& tile) { return std::tuple(tile.z, tile.y, tile.x); };
   std::ranges::sort(tiles, {}, place);
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  limit_tiles(most_tiles, sum);
   std::erase_if(tiles, [&](const TileId& tile) {
     return sum.is_everything || tile.z > sum.tiles.zooms.last;
   });
+}
+
+void add(const std::vector<ChangedLayer>& more, std::size_t most_tiles,
+         std::map<std::string, ChangedLayer>& sum) {
+  for (const ChangedLayer& layer : more) {
+    const auto [there, is_new] = sum.emplace(layer.name, layer);
+    if (!is_new) add(layer, most_tiles, there->second);
+  }
+}
+
+std::vector<ChangedLayer> in_order(std::map<std::string, ChangedLayer> by_name) {
+  std::vector<ChangedLayer> layers;
+  for (auto& [name, layer] : by_name) layers.push_back(std::move(layer));
+  return layers;
 }
 
 /// The ids of the table that the layer's own style joins, in all languages; empty if it joins none.
@@ -52,25 +80,38 @@ std::string table_of(const ServedLayer& layer) {
   return ids;
 }
 
-/// Whether the values have changed by which it is coloured: anywhere, as classes are of all of
-/// them.
-bool has_other_values(const ServedLayer& before, const ServedLayer& after) {
-  return table_of(before) != table_of(after);
+/// Whether its tiles may look different although its features are the same, where a request says
+/// nothing: its own style has changed, its zooms, the colour that it has without a fill, or, as
+/// classes are of all of them, any of the values by which it is coloured.
+bool is_shown_otherwise(const ServedLayer& before, std::size_t position_before,
+                        const ServedLayer& after, std::size_t position_after) {
+  const LayerConfig& old = before.config;
+  const LayerConfig& now = after.config;
+  return old.style.canonical_text() != now.style.canonical_text() || old.min_zoom != now.min_zoom ||
+         old.max_zoom != now.max_zoom ||
+         default_fill(old, position_before) != default_fill(now, position_after) ||
+         table_of(before) != table_of(after);
 }
 
 }  // namespace
 
 ChangeLog::ChangeLog(Options options) : options_(std::move(options)) {
-  thread_ = std::thread([this] { work(); });
+  comparing_ = std::thread([this] { compare_steps(); });
+  if (!options_.command.empty()) telling_ = std::thread([this] { tell_command(); });
 }
 
 ChangeLog::~ChangeLog() {
+  end_command();
+  comparing_.join();
+}
+
+void ChangeLog::end_command() {
   {
     const std::lock_guard lock(mutex_);
     is_stopping_ = true;
   }
   wake_.notify_all();
-  thread_.join();
+  if (telling_.joinable()) telling_.join();
 }
 
 void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<const Dataset> after) {
@@ -83,32 +124,50 @@ void ChangeLog::note(std::shared_ptr<const Dataset> before, std::shared_ptr<cons
   {
     const std::lock_guard lock(mutex_);
     steps_.push_back(std::move(step));
-    if (steps_.size() > kMostSteps) steps_.pop_front();
+    if (steps_.size() > kMostSteps) drop_oldest();
   }
   wake_.notify_all();
 }
 
-void ChangeLog::work() {
+/// One that has not been compared yet becomes one with the next, so that the command is told of
+/// both.
+void ChangeLog::drop_oldest() {
+  const Step& oldest = *steps_.front();
+  if (!oldest.is_taken) {
+    Step& next = *steps_[1];  // which has not been taken either
+    next.since = oldest.since;
+    next.before = oldest.before;
+  }
+  steps_.pop_front();
+}
+
+void ChangeLog::compare_steps() {
   while (true) {
     std::shared_ptr<Step> step;
     {
       std::unique_lock lock(mutex_);
       const auto next = [this] {
-        return std::ranges::find_if(steps_, [](const auto& each) { return !each->is_compared; });
+        return std::ranges::find_if(steps_, [](const auto& each) { return !each->is_taken; });
       };
       wake_.wait(lock, [&] { return is_stopping_ || next() != steps_.end(); });
       if (is_stopping_) return;
       step = *next();
+      step->is_taken = true;
     }
     std::vector<ChangedLayer> layers = compare(*step);
     {
       const std::lock_guard lock(mutex_);
-      step->layers = layers;
+      if (!options_.command.empty()) {
+        if (!untold_) untold_ = Sum{step->since, {}, {}};
+        untold_->generation = step->generation;
+        add(layers, options_.most_tiles, untold_->layers);
+      }
+      step->layers = std::move(layers);
       step->is_compared = true;
       step->before = nullptr;
       step->after = nullptr;
     }
-    if (!options_.command.empty()) run_command(step->since, step->generation, layers);
+    wake_.notify_all();
   }
 }
 
@@ -125,7 +184,8 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
     layer.name = name;
     layer.tiles.zooms = options_.zooms;
     if (before && after &&
-        has_other_values(step.before->layers()[*before], step.after->layers()[*after])) {
+        is_shown_otherwise(step.before->layers()[*before], *before, step.after->layers()[*after],
+                           *after)) {
       layer.is_everything = true;
     } else if (before && after) {
       if (step.before->layers()[*before].revision == step.after->layers()[*after].revision)
@@ -134,7 +194,7 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
       request.tile.layers = {name};
       request.zooms = options_.zooms;
       request.certainty = Certainty::candidates;
-      request.most_tiles = kMostTiles;
+      request.most_tiles = options_.most_tiles;
       try {
         auto found = changed_tiles(request, step.before, step.after);
         layer.is_everything = !found;
@@ -157,16 +217,29 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
   return layers;
 }
 
-void ChangeLog::run_command(const std::string& since, const std::string& generation,
-                            const std::vector<ChangedLayer>& layers) {
+void ChangeLog::tell_command() {
+  while (true) {
+    Sum changes;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return is_stopping_ || untold_; });
+      if (is_stopping_) return;
+      changes = *std::exchange(untold_, std::nullopt);
+    }
+    run_command(changes);
+  }
+}
+
+void ChangeLog::run_command(const Sum& changes) {
   const auto is_stopping = [this] {
     const std::lock_guard lock(mutex_);
     return is_stopping_;
   };
   try {
     const int status = trapeze::run_command(
-        options_.command, {{"TRAPEZE_SINCE", since}, {"TRAPEZE_GENERATION", generation}},
-        change_lines(layers), is_stopping);
+        options_.command,
+        {{"TRAPEZE_SINCE", changes.since}, {"TRAPEZE_GENERATION", changes.generation}},
+        change_lines(in_order(changes.layers)), is_stopping);
     if (status != 0) spdlog::error("the command for changes ended with {}", status);
   } catch (const std::exception& error) {
     spdlog::error("the command for changes cannot be run: {}", failure_words(error));
@@ -183,14 +256,9 @@ ChangeLog::Answer ChangeLog::between(std::string_view since, std::string_view ge
   std::map<std::string, ChangedLayer> by_name;
   for (auto step = std::prev(first.base()); step != steps_.end(); ++step) {
     if (!(*step)->is_compared) return {Answer::State::pending, {}};
-    for (const ChangedLayer& layer : (*step)->layers) {
-      const auto [sum, is_new] = by_name.emplace(layer.name, layer);
-      if (!is_new) add(layer, sum->second);
-    }
+    add((*step)->layers, options_.most_tiles, by_name);
     if ((*step)->generation != generation) continue;
-    Answer answer{Answer::State::known, {}};
-    for (auto& [name, layer] : by_name) answer.layers.push_back(std::move(layer));
-    return answer;
+    return {Answer::State::known, in_order(std::move(by_name))};
   }
   return {Answer::State::pending, {}};  // it is served, and will be noted at once
 }

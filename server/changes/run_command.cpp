@@ -2,6 +2,7 @@
 
 #include <spawn.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <csignal>
@@ -26,10 +27,17 @@ constexpr std::chrono::seconds kGrace{1};
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// A file without a name that holds the text: who does not read it is waited for all the same.
+/// A file in memory that holds the text: who does not read it is waited for all the same, and no
+/// folder has to be there that can be written into.
 File file_of(const std::string& text) {
-  File file(std::tmpfile(), std::fclose);
-  if (file == nullptr) throw_error(errno, "a temporary file");
+  const int descriptor = memfd_create("changes", MFD_CLOEXEC);
+  if (descriptor < 0) throw_error(errno, "a temporary file");
+  File file(fdopen(descriptor, "w+"), std::fclose);
+  if (file == nullptr) {
+    const int error = errno;
+    close(descriptor);
+    throw_error(error, "a temporary file");
+  }
   const bool is_written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size() &&
                           std::fflush(file.get()) == 0;
   if (!is_written) throw_error(errno, "writing a temporary file");

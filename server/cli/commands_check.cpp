@@ -6,6 +6,7 @@
 #include "core/io/export/list_faults.h"
 #include "core/io/prepared/open_layer.h"
 #include "core/io/prepared/prepared_parts.h"
+#include "server/base/failure_words.h"
 #include "server/cli/commands.h"
 #include "server/cli/option_values.h"
 #include "server/data/load_progress.h"
@@ -114,7 +115,7 @@ bool check_file(const std::string& file, const OpenOptions& how, SkipLimit max_s
     loaded = open_layer(file, options);
   } catch (const std::exception& error) {
     // Reported here and not by main, so that the files after this one are checked too.
-    fmt::print(stderr, "trapeze: {}\n", error.what());
+    fmt::print(stderr, "trapeze: {}\n", failure_words(error, file));
     return false;
   }
   print_report(loaded);

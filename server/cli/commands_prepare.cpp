@@ -19,6 +19,7 @@
 #include "core/io/prepared/prepared_parts.h"
 #include "core/io/source/source_stamp.h"
 #include "core/io/source/target_grid.h"
+#include "server/base/failure_words.h"
 #include "server/cli/commands.h"
 #include "server/config/load_config.h"
 #include "server/data/dataset.h"
@@ -274,7 +275,7 @@ int run_prepare(const PrepareArguments& arguments) {
         }
       } catch (const std::exception& error) {
         // Reported here and not by main, so that the files after this one are prepared too.
-        fmt::print(stderr, "trapeze: {}\n", error.what());
+        fmt::print(stderr, "trapeze: {}\n", failure_words(error, layer.file));
         is_all_prepared = false;
       }
     }

@@ -112,8 +112,9 @@ LayerSource layer_source(const ServeArguments& arguments, const Config& running)
 }
 
 [[noreturn]] void end_now(ServerLog& log) {
-  // Reading a large file cannot be interrupted, and its result is not needed any more. The
-  // thread that reads must not meet objects that are being destroyed: so none are.
+  // Neither reading a large file nor waiting for a database can be interrupted, and what comes of
+  // it is not needed any more. The thread that reads must not meet objects that are being
+  // destroyed: so none are.
   spdlog::info("stopped while loading");
   log.flush();
   std::quick_exit(0);
@@ -157,7 +158,7 @@ int run_serve(const ServeArguments& arguments) {
   Service service(config, layer_source(arguments, config));
   service.act_on_signals();
   service.run();
-  if (service.is_loading()) end_now(log);
+  if (!service.finish()) end_now(log);
   spdlog::info("stopped");
   return 0;
 }

@@ -6,7 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -730,6 +733,15 @@ int run(int argc, char** argv) {
   return trapeze::run_render(render);
 }
 
+/// That of a command, or of a failure if not all of its results could be written, as to a disk that
+/// is full.
+int status_with_results(int status) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::cerr << "trapeze: standard output cannot be written: " << std::strerror(errno) << '\n';
+  return status == 0 ? kFailed : status;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -737,7 +749,7 @@ int main(int argc, char** argv) {
     trapeze::return_large_arrays();
     spdlog::set_default_logger(spdlog::stderr_logger_mt("trapeze"));
     spdlog::set_pattern(trapeze::kServerLogPattern);
-    return run(argc, argv);
+    return status_with_results(run(argc, argv));
   } catch (const trapeze::UsageError& error) {
     std::cerr << "trapeze: " << error.what() << '\n';
     return kWrongUsage;

@@ -412,6 +412,10 @@ Dataset::Dataset(std::vector<ServedLayer> layers, std::shared_ptr<const NamedTab
     hash.add(layer.config.name);
     if (!layer.config.grid.empty()) hash.add(layer.config.grid);
     hash.add(layer.revision);
+    hash.add(layer.config.style.canonical_text());
+    for (const int zoom : {layer.config.min_zoom, layer.config.max_zoom}) {
+      hash.add(static_cast<std::uint64_t>(zoom));
+    }
   }
   for (const auto& [name, named] : this->tables()) {
     hash.add(name);

@@ -130,8 +130,8 @@ class Dataset {
   std::vector<std::string> grids() const;
   /// Those of the configuration.
   const NamedTables& tables() const;
-  /// Hex digits that change when any layer's or table's name or contents change, and only then:
-  /// equal on every machine that serves the same data.
+  /// Hex digits that change when any layer's or table's name or contents, or a layer's own style or
+  /// zooms change, and only then: equal on every machine that serves the same data.
   const std::string& generation() const { return generation_; }
 
  private:

@@ -108,4 +108,8 @@ void AccessLog::reopen() {
   }
 }
 
+void AccessLog::flush() {
+  writer_->flush(std::chrono::seconds(1));
+}
+
 }  // namespace trapeze

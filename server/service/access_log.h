@@ -36,6 +36,9 @@ class AccessLog {
   /// goes on with the old one.
   void reopen();
 
+  /// Waits until all lines have been written, but no longer than a second.
+  void flush();
+
  private:
   const std::string target_;
   const LogFormat format_;

@@ -4,6 +4,7 @@
 #include "server/data/named_tables.h"
 #include "server/data/source_files.h"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(1000);  // without a watch, only to tidy up
 constexpr auto kRest = std::chrono::seconds(5);          // before a live layer is read whole again
+constexpr auto kLongAnswer = std::chrono::seconds(10);   // of a database: then it is told
 
 }  // namespace
 
@@ -23,6 +25,24 @@ constexpr auto kRest = std::chrono::seconds(5);          // before a live layer 
 struct Reloader::Retired {
   std::mutex mutex;
   std::vector<std::shared_ptr<const Dataset>> datasets;
+};
+
+/// As long as it lives, a database is being asked.
+class Reloader::Asking {
+ public:
+  Asking(Reloader& reloader, const std::string& layer) : reloader_(reloader) {
+    const std::lock_guard lock(reloader_.mutex_);
+    reloader_.question_ = Question{layer, Clock::now()};
+  }
+  ~Asking() {
+    const std::lock_guard lock(reloader_.mutex_);
+    reloader_.question_.reset();
+  }
+  Asking(const Asking&) = delete;
+  Asking& operator=(const Asking&) = delete;
+
+ private:
+  Reloader& reloader_;
 };
 
 Reloader::Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileService& tiles,
@@ -39,16 +59,21 @@ Reloader::Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileServ
       retired_(std::make_shared<Retired>()) {}
 
 void Reloader::start() {
+  has_ended_ = false;
   thread_ = std::thread([this] { work(); });
 }
 
 Reloader::~Reloader() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_stopping_ = true;
-  }
-  wake_.notify_all();
+  end(std::chrono::milliseconds(0));
   if (thread_.joinable()) thread_.join();
+  if (watching_.joinable()) watching_.join();
+}
+
+bool Reloader::end(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  is_stopping_ = true;
+  wake_.notify_all();
+  return wake_.wait_for(lock, patience, [this] { return has_ended_; });
 }
 
 void Reloader::reload() {
@@ -66,10 +91,19 @@ void Reloader::rethrow_failure() const {
 
 std::string Reloader::last_problem() const {
   const std::lock_guard lock(mutex_);
-  return problem_;
+  return problem_.empty() ? database_problem_ : problem_;
 }
 
 void Reloader::work() {
+  follow();
+  {
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Reloader::follow() {
   if (!load_first()) return give_up_();
   is_loaded_();
   return_free_memory();  // what building took, here and below
@@ -127,7 +161,10 @@ void Reloader::serve(const std::vector<LayerConfig>& layers) {
   state_read_ = state_of_files(files_);  // before reading: what changes meanwhile is seen later
   std::vector<LiveLayer> live;
   for (const LayerConfig& layer : layers) {
-    if (!layer.live_query.empty()) live.emplace_back(layer);  // before it is read, likewise
+    if (layer.live_query.empty()) continue;
+    if (!watching_.joinable()) watching_ = std::thread([this] { watch_databases(); });
+    const Asking asking(*this, layer.name);
+    live.emplace_back(layer);  // before it is read, likewise
   }
   const auto before = data_.get();
   std::shared_ptr<const Dataset> loaded =
@@ -150,6 +187,7 @@ void Reloader::begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dat
     loaded = std::make_shared<const Dataset>(std::move(layers));
   }
   live_ = std::move(live);
+  if (live_.empty()) note_of_databases("");  // of those that were asked until now
 }
 
 bool Reloader::follow_live() {
@@ -162,6 +200,7 @@ bool Reloader::follow_live() {
   for (ServedLayer& layer : layers) {
     if (layer.config.live_query.empty()) continue;
     try {
+      const Asking asking(*this, layer.config.name);
       if (auto next = live->next()) {
         layer = *std::move(next);
         has_changed = true;
@@ -171,16 +210,39 @@ bool Reloader::follow_live() {
     }
     ++live;
   }
-  if (problem != live_problem_) {
-    if (!problem.empty()) spdlog::error("what has changed is not known: {}", problem);
-    note(problem);
-    live_problem_ = problem;
-  }
+  note_of_databases(problem);
   if (has_changed) {
     publish(std::make_shared<const Dataset>(std::move(layers)));
     if (changes_ != nullptr) changes_->note(before, data_.get());
   }
   return std::ranges::none_of(live_, [](const LiveLayer& each) { return each.is_worn(); });
+}
+
+void Reloader::note_of_databases(const std::string& problem) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (problem == database_problem_) return;
+    database_problem_ = problem;
+  }
+  if (problem.empty()) {
+    spdlog::info("what has changed in databases is known again");
+  } else {
+    spdlog::error("what has changed is not known: {}", problem);
+  }
+}
+
+/// Tells of a question that is not answered: the thread that waits for the answer cannot.
+void Reloader::watch_databases() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kTick, [this] { return is_stopping_; })) {
+    if (!question_ || question_->is_told || Clock::now() < question_->since + kLongAnswer) continue;
+    question_->is_told = true;
+    database_problem_ = fmt::format(
+        "layer \"{}\": its database has not answered for {} s; until it does, no layer is read "
+        "again",
+        question_->layer, std::chrono::seconds(kLongAnswer).count());
+    spdlog::error("what has changed is not known: {}", database_problem_);
+  }
 }
 
 void Reloader::publish(std::shared_ptr<const Dataset> loaded) {

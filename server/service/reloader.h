@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -51,7 +52,7 @@ class Reloader {
   Reloader(LayerSource source, Pace pace, CurrentDataset& data, TileService& tiles,
            Metrics& metrics, ChangeLog* changes, std::function<void()> give_up,
            std::function<void()> is_loaded);
-  /// Waits for the end of what is being read.
+  /// Waits for the end of what is being read, as end() does but for as long as it takes.
   ~Reloader();
   Reloader(const Reloader&) = delete;
   Reloader& operator=(const Reloader&) = delete;
@@ -63,6 +64,10 @@ class Reloader {
 
   /// Reads the layers again, soon.
   void reload();
+
+  /// Reads no layers any more, and waits for what is being read or asked of a database, but no
+  /// longer than that. False if it takes longer: it cannot be interrupted.
+  bool end(std::chrono::milliseconds patience);
 
   /// Whether layers are being read at this moment.
   bool is_loading() const { return is_loading_; }
@@ -76,8 +81,16 @@ class Reloader {
  private:
   using Clock = std::chrono::steady_clock;
   struct Retired;
+  /// Asked of the database of a layer, and not answered yet.
+  struct Question {
+    std::string layer;
+    Clock::time_point since;
+    bool is_told = false;  // that it takes long
+  };
+  class Asking;
 
   void work();
+  void follow();
   bool load_first();
   void load_again();
   void serve(const std::vector<LayerConfig>& layers);
@@ -90,6 +103,8 @@ class Reloader {
   void begin_live(std::vector<LiveLayer> live, std::shared_ptr<const Dataset>& loaded);
   /// Takes up what has changed in databases. False if a layer has to be read whole again.
   bool follow_live();
+  void note_of_databases(const std::string& problem);
+  void watch_databases();
   void forget_retired();
   void note(const std::string& problem);
 
@@ -112,16 +127,19 @@ class Reloader {
   Clock::time_point last_look_;
   Clock::time_point last_load_;
   std::vector<LiveLayer> live_;
-  std::string live_problem_;
 
   std::atomic<bool> is_loading_ = true;
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable wake_;
   bool is_asked_ = false;
   bool is_stopping_ = false;
-  std::string problem_;
+  bool has_ended_ = true;         // the thread, or it has not been started
+  std::string problem_;           // with reading the layers
+  std::string database_problem_;  // with asking what has changed
+  std::optional<Question> question_;
   std::exception_ptr failure_;
   std::thread thread_;
+  std::thread watching_;  // databases that do not answer; runs once there is a live layer
 };
 
 }  // namespace trapeze

@@ -17,6 +17,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kEnd{200};  // of reading: more is not waited for
+
 /// The viewer of the program, or of a folder that is named in its place.
 StaticFiles open_viewer(const std::string& root) {
   if (root.empty()) return StaticFiles(viewer_files());
@@ -156,7 +158,10 @@ Service::Service(const Config& config, LayerSource source)
                          : fmt::format("the layers are at {}catalog",
                                        local_url(config.server.address, server_->port()));
   if (const auto zooms = parse_zooms(config.changes.zooms)) {
-    changes_ = std::make_unique<ChangeLog>(ChangeLog::Options{*zooms, config.changes.command});
+    ChangeLog::Options what;
+    what.zooms = *zooms;
+    what.command = config.changes.command;
+    changes_ = std::make_unique<ChangeLog>(std::move(what));
   }
   if (config.admin.port != 0) open_admin(config);
   reloader_ = std::make_unique<Reloader>(
@@ -227,6 +232,13 @@ void Service::run() {
   }
   end_admin();
   reloader_->rethrow_failure();
+}
+
+bool Service::finish() {
+  if (reloader_->end(kEnd)) return true;
+  if (changes_ != nullptr) changes_->end_command();
+  if (access_log_ != nullptr) access_log_->flush();
+  return false;
 }
 
 void Service::reload() {
