@@ -379,8 +379,9 @@ void LayerDrawing::find_growth(double scale, std::span<const DrawnPiece> pieces,
       add_if_cut(edge);
     });
   }
-  tools.exaggeration.find({style().grow * scale, view_.shorter_side()}, view_.box(),
-                          tools.cancellation);
+  // Outlines reach into the picture from as far away.
+  const Box box = has_lines() ? box_around(view_, style().stroke.reach(scale)) : view_.box();
+  tools.exaggeration.find({style().grow * scale, view_.shorter_side()}, box, tools.cancellation);
 }
 
 void LayerDrawing::grow(double scale, std::span<const DrawnPiece> pieces,
