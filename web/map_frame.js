@@ -30,7 +30,19 @@ export function make_map() {
 export function make_pane(map, name) {
   const pane = map.createPane(name);
   pane.style.zIndex = 200; // where Leaflet has its own tiles
+  map.on("move resize", () => align_to_screen(map, pane));
   return pane;
+}
+
+/**
+ * Leaflet puts tiles on whole pixels of the page, which on many screens have 1.25, 1.5 or 2.75 pixels of the
+ * screen: where two tiles meet within one of those, a line would show. So the pane is moved by less than one.
+ */
+function align_to_screen(map, pane) {
+  const ratio = window.devicePixelRatio;
+  const aligned = (pixels) => Math.round(pixels * ratio) / ratio;
+  const { x, y } = L.DomUtil.getPosition(map.getPane("mapPane")).subtract(map.getPixelOrigin());
+  pane.style.translate = Number.isInteger(ratio) ? "" : `${aligned(x) - x}px ${aligned(y) - y}px`;
 }
 
 /**

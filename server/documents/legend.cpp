@@ -240,6 +240,7 @@ std::string legend_json(const std::vector<LayerLegend>& legend) {
 // Pixels at scale 1.
 constexpr int kMargin = 6;
 constexpr int kRowHeight = 16;
+constexpr int kLayerGap = 8;  // above and below a layer of several classes
 constexpr int kSwatchWidth = 20;
 constexpr int kSwatchHeight = 12;
 constexpr int kSwatchGap = 6;
@@ -258,14 +259,25 @@ struct LegendRow {
   std::string label;
   const LegendEntry* entry = nullptr;  // null for a title
   const LayerLegend* layer = nullptr;
+  int top = 0;  // in pixels at scale 1
 };
 
 std::vector<LegendRow> rows_of(const std::vector<LayerLegend>& legend) {
   std::vector<LegendRow> rows;
+  int top = kMargin;
+  const auto add = [&](const LayerLegend& layer, const std::string& label,
+                       const LegendEntry* entry) {
+    rows.push_back({label, entry, &layer, top});
+    top += kRowHeight;
+  };
+  bool is_below_classes = false;
   for (const LayerLegend& layer : legend) {
-    // The only entry of a layer is labelled with its title.
-    if (layer.entries.size() > 1) rows.push_back({layer.heading(), nullptr, &layer});
-    for (const LegendEntry& entry : layer.entries) rows.push_back({entry.label, &entry, &layer});
+    // The only entry of a layer is labelled with its title, and is none of the classes above it.
+    const bool has_classes = layer.entries.size() > 1;
+    if (!rows.empty() && (has_classes || is_below_classes)) top += kLayerGap;
+    if (has_classes) add(layer, layer.heading(), nullptr);
+    for (const LegendEntry& entry : layer.entries) add(layer, entry.label, &entry);
+    is_below_classes = has_classes;
   }
   return rows;
 }
@@ -380,7 +392,7 @@ void copy_into(const Picture& part, int left, int top, Picture& picture) {
 
 /// In pixels at scale 1.
 int height_of(const std::vector<LegendRow>& rows) {
-  return static_cast<int>(rows.size()) * kRowHeight + 2 * kMargin;
+  return (rows.empty() ? kMargin : rows.back().top + kRowHeight) + kMargin;
 }
 
 /// Labels as wide as there is room, by row.
@@ -418,12 +430,11 @@ Picture draw_legend(const std::vector<LegendRow>& rows, const Fonts& fonts, int 
   Swatch swatch(scale);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const LegendRow& row = rows[i];
-    const int top = kMargin + static_cast<int>(i) * kRowHeight;
     if (row.entry != nullptr) {
       copy_into(swatch.draw(row.entry->paint, *row.layer), kMargin * scale,
-                (top + (kRowHeight - kSwatchHeight) / 2) * scale, picture);
+                (row.top + (kRowHeight - kSwatchHeight) / 2) * scale, picture);
     }
-    fonts.draw(labels[i], left_of_label(row) * scale, (top + kBaseLine) * scale,
+    fonts.draw(labels[i], left_of_label(row) * scale, (row.top + kBaseLine) * scale,
                {kTextSize * scale, kInk}, picture);
   }
   return picture;

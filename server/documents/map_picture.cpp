@@ -97,15 +97,17 @@ Problem bad_value(std::string_view parameter, const std::string& value, std::str
 
 Problem bad_window(const std::string& value) {
   return bad_value("bbox", value,
-                   fmt::format("west, south, east and north, separated by commas, in degrees or as "
-                               "crs says, not narrower than a centimetre and at most {} worlds "
-                               "away",
-                               kMostWorlds));
+                   fmt::format("west, south, east and north, separated by commas, south less than "
+                               "north, in degrees, of which the map has those up to latitude "
+                               "{:.4f}, or as crs says, not narrower than a centimetre and at most "
+                               "{} worlds away",
+                               kMaxLatitude, kMostWorlds));
 }
 
-Problem too_large() {
+Problem too_large(int width, int height) {
   return {400, fmt::format("A picture is at most {} pixels wide and high.", kMaxPicturePixels),
-          "width", "", fmt::format("1 to {}", kMaxPicturePixels)};
+          width > height ? "width" : "height", fmt::format("{} x {}", width, height),
+          fmt::format("1 to {}", kMaxPicturePixels)};
 }
 
 Result<MapSystemPtr> system_of(const DocumentRequest& request) {
@@ -155,7 +157,7 @@ Result<PictureSize> size_of(const WindowSides& sides, const DocumentRequest& req
 
 /// All of a request but its style.
 Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
-  const auto name = parse_picture_name(request.path[1]);
+  const auto name = parse_picture_name(request.path[1], kPattern);
   if (!name) return name.problem();
   auto layers = parse_layer_list(name->stem);
   if (!layers) return std::move(layers).problem();
@@ -170,25 +172,38 @@ Result<WindowRequest> parse_with_box(const DocumentRequest& request) {
       request.path[1],    *system};
 }
 
+Problem not_around_a_place(std::string_view parameter, const std::string& value) {
+  return {400,
+          fmt::format("The parameter {} goes with a box, {}: a picture around a place is in Web "
+                      "Mercator, and its address has its size.",
+                      parameter, kPattern.substr(0, kPattern.find(' '))),
+          std::string(parameter), value, "/map/{layers}.png?bbox=W,S,E,N"};
+}
+
 Result<WindowRequest> parse_with_centre(const DocumentRequest& request) {
   auto layers = parse_layer_list(request.path[1]);
   if (!layers) return std::move(layers).problem();
+  for (const std::string_view name : kOwnParameters) {
+    if (const std::string* value = request.find(name)) return not_around_a_place(name, *value);
+  }
   const auto centre = parse_centre(request.path[2]);
-  const auto name = parse_picture_name(request.path[3]);
+  const auto name = parse_picture_name(request.path[3], kPattern);
   if (!name) return name.problem();
   const auto size = parse_size(name->stem);
   if (!centre || !size) {
-    return Problem{
-        400,
-        fmt::format("A picture is named by longitude, latitude and zoom, and by its width "
-                    "and height, from 1 to {} pixels: {}.",
-                    kMaxPicturePixels, kPattern),
-        centre ? "width x height" : "lon,lat,zoom", request.path[centre ? 3 : 2],
-        centre ? "512x384" : "14.5,35.9,11"};
+    const std::string takes =
+        centre ? fmt::format("width and height, each from 1 to {} pixels, such as 512x384",
+                             kMaxPicturePixels)
+               : fmt::format(
+                     "longitude from -360 to 360, latitude from -{0:.4f} to {0:.4f} and "
+                     "zoom from 0 to {1}, such as 14.5,35.9,11",
+                     kMaxLatitude, kMaxZoom);
+    return Problem{400, fmt::format("The address of a picture takes {}: {}.", takes, kPattern),
+                   centre ? "width x height" : "lon,lat,zoom", request.path[centre ? 3 : 2], takes};
   }
   const int width = size->width * name->scale;
   const int height = size->height * name->scale;
-  if (std::max(width, height) > kMaxPicturePixels) return too_large();
+  if (std::max(width, height) > kMaxPicturePixels) return too_large(width, height);
   const auto view = view_around(centre->place, centre->zoom, width, height, name->scale);
   return WindowRequest{*std::move(layers), view,           static_cast<double>(name->scale), {},
                        name->format,       request.path[2]};
@@ -248,7 +263,7 @@ Result<View> map_view(const WindowSides& sides, const DocumentRequest& request, 
   if (!size) return size.problem();
   const int width = size->width * scale;
   const int height = size->height * scale;
-  if (std::max(width, height) > kMaxPicturePixels) return too_large();
+  if (std::max(width, height) > kMaxPicturePixels) return too_large(width, height);
   const auto view = view_of_window(sides, width, height, projection);
   const std::string* box = request.find("bbox");
   if (!view) return bad_window(box == nullptr ? std::string() : *box);
@@ -261,11 +276,8 @@ Result<WindowRequest> parse_map_picture(const DocumentRequest& request) {
   if (is_styled) take_style(unstyled.path, unstyled.query);
   auto parsed = parse_unstyled(unstyled);
   if (!parsed) return parsed;
-  auto styled = request.styles.read(std::move(unstyled.query));
-  if (!styled) {
-    if (is_styled) styled.problem().status = 404;
-    return std::move(styled).problem();
-  }
+  auto styled = request.styles.read(std::move(unstyled.query), is_styled ? 404 : 400);
+  if (!styled) return std::move(styled).problem();
   auto style = styled->style_for(parsed->layers, kOwnParameters);
   if (!style) return std::move(style).problem();
   parsed->style = *std::move(style);

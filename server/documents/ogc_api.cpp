@@ -83,6 +83,12 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
       layers.problem().parameter = "collections";
       return std::move(layers).problem();
     }
+    for (const std::string& name : *layers) {
+      if (request.dataset.find(name)) continue;
+      Problem problem = unknown_layer(name, request.dataset);
+      problem.parameter = "collections";
+      return problem;
+    }
     resource.layers = *std::move(layers);
     resource.selection = fmt::format("collections={}", fmt::join(resource.layers, ","));
     return resource;

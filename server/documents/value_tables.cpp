@@ -4,12 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "server/base/json_text.h"
 #include "server/data/layer_summary.h"
 #include "server/documents/catalog.h"
+#include "server/styles/colour_ramps.h"
 #include "server/styles/filter.h"
+#include "server/styles/style_parameters.h"
 
 namespace trapeze {
 namespace {
@@ -27,11 +33,40 @@ Json summary_json(std::string_view id, const ValueTable& table) {
   return json;
 }
 
+/// A class for each of the commonest words that are short enough for an address, as `classes` takes
+/// them; empty if there are none.
+std::string example_classes(const ValueTable& table) {
+  constexpr std::size_t kMaxClasses = 8;
+  constexpr std::size_t kMaxWord = 40;  // bytes
+  std::map<std::string_view, std::size_t> counts;
+  for (std::uint32_t row = 0; row < table.size(); ++row) {
+    const Value value = table.value(row);
+    const auto* word = std::get_if<std::string_view>(&value);
+    if (word != nullptr && word->size() <= kMaxWord && !has_control_character(*word)) {
+      ++counts[*word];
+    }
+  }
+  std::vector<std::pair<std::string_view, std::size_t>> commonest(counts.begin(), counts.end());
+  std::ranges::stable_sort(commonest, std::greater(), &decltype(commonest)::value_type::second);
+  commonest.resize(std::min(commonest.size(), kMaxClasses));
+  if (commonest.empty()) return {};
+  const std::vector<Rgba> colours = ramp_colours("Set2", commonest.size()).value();
+  std::vector<ColourClass> classes;
+  for (std::size_t i = 0; i < commonest.size(); ++i) {
+    classes.push_back({ColourClass::Kind::value, std::string(commonest[i].first), colours[i]});
+  }
+  return format_value(classes);
+}
+
 /// As a query has it, without the '?'.
 std::string example_query(std::string_view id, const ValueTable& table, const std::string& join) {
-  std::string query = fmt::format("values={}&join={}&color-by=value", id, percent_encode(join));
-  if (table.type() != FieldType::text) query += "&breaks=quantile:5&ramp=YlGnBu";
-  return query;
+  const std::string query = fmt::format("values={}&join={}", id, percent_encode(join));
+  if (table.type() != FieldType::text) {
+    return query + "&color-by=value&breaks=quantile:5&ramp=YlGnBu";
+  }
+  const std::string classes = example_classes(table);
+  if (classes.empty()) return query;
+  return fmt::format("{}&color-by=value&classes={}", query, percent_encode(classes));
 }
 
 Result<Json> join_json(std::string_view id, const std::shared_ptr<const ValueTable>& table,

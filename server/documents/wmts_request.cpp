@@ -174,10 +174,9 @@ Result<StyleQuery> style_of(const TileParts& parts, std::span<const std::string>
                             const StyleBook& styles) {
   std::vector<QueryPair> query = parts.others;
   if (!parts.style.empty()) query.emplace_back("style", parts.style);
-  const auto styled = styles.read(std::move(query));
+  const auto styled = styles.read(std::move(query), 404);
   if (!styled) {
     Problem problem = styled.problem();
-    problem.status = 404;
     problem.parameter = "Style";
     problem.code = ows::kInvalidParameterValue;
     return problem;

@@ -605,7 +605,7 @@ Problem unknown_property(std::string_view parameter, const std::string& property
     names += fmt::format("{}{}", names.empty() ? "" : ", ", kJoinedName);
   }
   if (names.empty()) names = "none: the layer has no properties";
-  return {400, fmt::format("There is no property \"{}\" to {} by.", property, parameter),
+  return {400, fmt::format("There is no property \"{}\" for {}.", property, parameter),
           std::string(parameter), property, names};
 }
 

@@ -69,7 +69,7 @@ StyleBook::StyleBook(std::map<std::string, StyleQuery> named, std::size_t budget
       fonts_(std::make_shared<const std::vector<std::string>>(std::move(fonts))),
       posted_(budget) {}
 
-Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
+Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query, int status_of_unknown) const {
   const auto is_style = [](const QueryPair& pair) { return pair.first == "style"; };
   const auto asked = std::ranges::find_if(query, is_style);
   if (asked == query.end()) return StyledQuery{std::move(query), nullptr, {}, tables_, fonts_};
@@ -79,17 +79,17 @@ Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query) const {
   }
   if (name == kDefaultName) return StyledQuery{std::move(query), nullptr, {}, tables_, fonts_};
   auto style = find(name);
-  if (style == nullptr) return unknown(name);
+  if (style == nullptr) return unknown(name, status_of_unknown);
   return StyledQuery{std::move(query), std::move(style), name, tables_, fonts_};
 }
 
-Problem StyleBook::unknown(const std::string& name) const {
+Problem StyleBook::unknown(const std::string& name, int status) const {
   std::string takes = "an id that POST /styles has given";
   if (!named_.empty()) takes = fmt::format("one of {}, or {}", fmt::join(names(), ", "), takes);
   std::vector<std::string> known = names();
   known.emplace_back(kDefaultName);
   return {
-      400,
+      status,
       fmt::format("There is no style of that name{} Posted styles are given up when others need "
                   "their place: post it again.",
                   suggestion_or_stop(name, known)),

@@ -62,9 +62,9 @@ class StyleBook {
                      std::shared_ptr<const ValueBook> tables = nullptr,
                      std::vector<std::string> fonts = {});
 
-  /// The query with the style that its `style` names. The problem, 400, is a style that there is
-  /// not.
-  Result<StyledQuery> read(std::vector<QueryPair> query) const;
+  /// The query with the style that its `style` names. The problem is a style that there is not, of
+  /// that status, or one that is named twice, 400.
+  Result<StyledQuery> read(std::vector<QueryPair> query, int status_of_unknown = 400) const;
 
   /// The id of a style that is posted.
   static std::string id_of(const StyleQuery& style);
@@ -92,7 +92,7 @@ class StyleBook {
   static constexpr std::size_t kMaxStyleLength = std::size_t{1} << 20;
 
  private:
-  Problem unknown(const std::string& name) const;
+  Problem unknown(const std::string& name, int status) const;
 
   const std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> named_;
   const std::shared_ptr<const ValueBook> tables_;  // null: none

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 #include <tuple>
 
 #include "core/graph/topology.h"
@@ -657,9 +658,9 @@ Problem unknown_name(const QueryPair& pair, std::span<const std::string> layers,
           fmt::format("one of {}; {} may be anything", fmt::join(known, ", "), kFreeParameter)};
 }
 
-Problem given_twice(const StyleParameter& parameter, const QueryPair& pair) {
+Problem given_twice(const QueryPair& pair, const std::string& takes) {
   return {400, fmt::format("The parameter {} is given more than once.", pair.first), pair.first,
-          pair.second, describe_values(parameter) + ", once"};
+          pair.second, takes + ", once"};
 }
 
 Problem wrong_value(const StyleParameter& parameter, const QueryPair& pair) {
@@ -806,13 +807,18 @@ Result<StyleQuery> StyleQuery::parse(std::span<const QueryPair> pairs,
                                      std::span<const std::string> layers,
                                      std::span<const std::string_view> others) {
   StyleQuery query;
+  std::set<std::string_view> others_given;
   for (const QueryPair& pair : pairs) {
     if (pair.first == kFreeParameter) continue;
-    if (std::ranges::find(others, pair.first) != others.end()) continue;
+    if (std::ranges::find(others, pair.first) != others.end()) {
+      if (!others_given.insert(pair.first).second) return given_twice(pair, "one value");
+      continue;
+    }
     const auto [layer, parameter] = resolve_name(pair.first, layers);
     if (parameter == nullptr) return unknown_name(pair, layers, others);
     if (parameter->id == ParameterId::style) continue;
-    if (query.find_setting(layer, parameter->id) != nullptr) return given_twice(*parameter, pair);
+    if (query.find_setting(layer, parameter->id) != nullptr)
+      return given_twice(pair, describe_values(*parameter));
     auto value = parse_parameter(*parameter, pair.second);
     if (!value) return wrong_value(*parameter, pair);
     query.settings_.push_back({std::string(layer), parameter->id, std::move(*value)});

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "core/grid/plate_carree.h"
@@ -84,6 +85,18 @@ void add(const Digest& digest, ContentHash& hash) {
 /// The number of a feature's class; 0 if all are drawn alike.
 std::uint8_t number_of(const FeatureClasses* classes, std::uint32_t row) {
   return classes == nullptr ? std::uint8_t{0} : (*classes)[row];
+}
+
+/// What is seen of a border on both of its sides is there once, with the greater share.
+void take_once(std::vector<SeenEdge>& seen) {
+  const auto piece = [](const SeenEdge& of) {
+    return std::tuple(of.edge, of.from.x, of.from.y, of.to.x, of.to.y);
+  };
+  std::ranges::sort(seen, [&](const SeenEdge& a, const SeenEdge& b) {
+    return std::tuple(piece(a), -a.share) < std::tuple(piece(b), -b.share);
+  });
+  const auto same = std::ranges::unique(seen, {}, piece);
+  seen.erase(same.begin(), same.end());
 }
 
 }  // namespace
@@ -366,8 +379,9 @@ void LayerDrawing::find_growth(double scale, std::span<const DrawnPiece> pieces,
       add_if_cut(edge);
     });
   }
-  tools.exaggeration.find({style().grow * scale, view_.shorter_side()}, view_.box(),
-                          tools.cancellation);
+  // Outlines reach into the picture from as far away.
+  const Box box = has_lines() ? box_around(view_, style().stroke.reach(scale)) : view_.box();
+  tools.exaggeration.find({style().grow * scale, view_.shorter_side()}, box, tools.cancellation);
 }
 
 void LayerDrawing::grow(double scale, std::span<const DrawnPiece> pieces,
@@ -678,7 +692,8 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
                               DrawingTools& tools) const {
   const MeshView& mesh = layer_->mesh();
   lines.point_of_vertex.clear();
-  lines.point_of_place.clear();
+  lines.points.numbers.clear();
+  lines.seen_points.numbers.clear();
   sort_and_part(lines.sides);
   for (const std::uint32_t side : lines.sides) {
     const MeshEdge& edge = mesh.edges[side];
@@ -698,16 +713,17 @@ void LayerDrawing::take_sides(const Box& box, const InkOfLoops& ink, Lines& line
     lines.edges.push_back(line);
   }
   lines.sides.clear();
+  if (lines.seen_points.is_joined) take_once(lines.seen);
   for (const SeenEdge& seen : lines.seen) {
-    const auto first = static_cast<std::uint32_t>(lines.seen_points.size());
-    OutlineEdge line{first, first + 1};
+    OutlineEdge line;
     if (!take_edge(seen.edge, seen.from, seen.to, box, ink, line)) continue;
     line.ink *= seen.share;
     if (is_projected()) {
       project_seen(line, seen, lines, tools);
       continue;
     }
-    lines.seen_points.insert(lines.seen_points.end(), {seen.from, seen.to});
+    line.from = lines.seen_points.at(seen.from);
+    line.to = lines.seen_points.at(seen.to);
     lines.seen_edges.push_back(line);
   }
   lines.seen.clear();
@@ -722,8 +738,8 @@ void LayerDrawing::take_points(OutlineEdge& line, Lines& lines) const {
 
 std::uint32_t LayerDrawing::Lines::point_of(std::uint32_t vertex, Point place) {
   const auto [found, is_new] =
-      point_of_vertex.emplace(vertex, static_cast<std::uint32_t>(points.size()));
-  if (is_new) points.push_back(place);
+      point_of_vertex.emplace(vertex, static_cast<std::uint32_t>(points.points.size()));
+  if (is_new) points.points.push_back(place);
   return found->second;
 }
 
@@ -735,21 +751,30 @@ void LayerDrawing::project_side(const OutlineEdge& line, Lines& lines, DrawingTo
   if (tools.way.empty()) return;
   const auto point_at = [&lines](const PlateCarreeMesh::PointOnWay& end, std::uint32_t vertex) {
     if (end.share == 0 || end.share == 1) return lines.point_of(vertex, end.place);
-    lines.points.push_back(end.place);
-    return static_cast<std::uint32_t>(lines.points.size() - 1);
+    lines.points.points.push_back(end.place);
+    return static_cast<std::uint32_t>(lines.points.points.size() - 1);
   };
   const std::uint32_t first = point_at(tools.way.front(), line.from);
   const std::uint32_t last = point_at(tools.way.back(), line.to);
-  append_way(line, length_between(from, to), first, last, tools.way, lines.points, lines.edges);
+  append_way(line, length_between(from, to), first, last, tools.way, lines.points.points,
+             lines.edges);
 }
 
-std::uint32_t LayerDrawing::Lines::point_at(Point place) {
-  const auto key = std::uint64_t{static_cast<std::uint32_t>(place.x)} << 32 |
-                   static_cast<std::uint32_t>(place.y);
-  const auto [found, is_new] =
-      point_of_place.emplace(key, static_cast<std::uint32_t>(points.size()));
-  if (is_new) points.push_back(place);
-  return found->second;
+std::uint32_t LayerDrawing::PointsByPlace::at(Point place) {
+  const auto next = static_cast<std::uint32_t>(points.size());
+  if (is_joined) {
+    const auto key = std::uint64_t{static_cast<std::uint32_t>(place.x)} << 32 |
+                     static_cast<std::uint32_t>(place.y);
+    const auto [found, is_new] = numbers.emplace(key, next);
+    if (!is_new) return found->second;
+  }
+  points.push_back(place);
+  return next;
+}
+
+void LayerDrawing::PointsByPlace::clear() {
+  points.clear();
+  numbers.clear();
 }
 
 // With the halves of the curves at both ends, where it meets the other edge that is rounded there;
@@ -761,14 +786,9 @@ void LayerDrawing::trace_side(const OutlineEdge& line, std::uint32_t edge, Lines
   const double length = length_between(mesh.vertices[line.from], mesh.vertices[line.to]);
   const auto append = [&](std::span<const PointOnWay> way) {
     if (way.size() < 2) return;
-    if (has_growth()) {
-      const std::uint32_t first = lines.point_at(way.front().place);
-      const std::uint32_t last = lines.point_at(way.back().place);
-      return append_way(line, length, first, last, way, lines.points, lines.edges);
-    }
-    const auto first = static_cast<std::uint32_t>(lines.points.size());
-    lines.points.insert(lines.points.end(), {way.front().place, way.back().place});
-    append_way(line, length, first, first + 1, way, lines.points, lines.edges);
+    const std::uint32_t first = lines.points.at(way.front().place);
+    const std::uint32_t last = lines.points.at(way.back().place);
+    append_way(line, length, first, last, way, lines.points.points, lines.edges);
   };
   std::vector<PointOnWay>& way = tools.traced_way;
   if (has_growth()) {
@@ -790,11 +810,10 @@ void LayerDrawing::project_seen(const OutlineEdge& line, const SeenEdge& seen, L
                                 DrawingTools& tools) const {
   tools.plate_carree.cut(seen.from, seen.to, tools.way);
   if (tools.way.empty()) return;
-  const auto first = static_cast<std::uint32_t>(lines.seen_points.size());
-  lines.seen_points.insert(lines.seen_points.end(),
-                           {tools.way.front().place, tools.way.back().place});
-  append_way(line, length_between(seen.from, seen.to), first, first + 1, tools.way,
-             lines.seen_points, lines.seen_edges);
+  const std::uint32_t first = lines.seen_points.at(tools.way.front().place);
+  const std::uint32_t last = lines.seen_points.at(tools.way.back().place);
+  append_way(line, length_between(seen.from, seen.to), first, last, tools.way,
+             lines.seen_points.points, lines.seen_edges);
 }
 
 /// Appends a line along the way, which was so long, from its first point to its last, with new ones
@@ -826,7 +845,7 @@ void LayerDrawing::append_way(const OutlineEdge& line, double length, std::uint3
 
 std::span<const Point> LayerDrawing::points_of(const Lines& lines) const {
   const bool has_own = has_pieces_ || is_projected() || has_round_corners() || has_growth();
-  return has_own ? std::span<const Point>(lines.points) : layer_->mesh().vertices;
+  return has_own ? std::span<const Point>(lines.points.points) : layer_->mesh().vertices;
 }
 
 // Of the piece of an edge between two points: its ink and its dashes. False if it is not seen here.
@@ -862,10 +881,12 @@ LayerDrawing::Lines& LayerDrawing::lines_of(Rgba colour) {
   if (line_count_ == lines_.size()) lines_.emplace_back();
   Lines& lines = lines_[line_count_++];
   lines.colour = colour;
+  // Lines with round ends need no joins.
+  const bool is_joined = style().stroke.join != LineJoin::round;
+  lines.points.is_joined = lines.seen_points.is_joined = is_joined;
   lines.sides.clear();
   lines.edges.clear();
   lines.points.clear();
-  lines.point_of_place.clear();
   lines.seen.clear();
   lines.seen_points.clear();
   lines.seen_edges.clear();
@@ -933,7 +954,7 @@ void LayerDrawing::draw_details(const View& picture, double scale, DrawingTools&
       tools.stroker.draw(points, edges, style().stroke, tools.cancellation);
     };
     draw(points_of(lines), lines.edges);
-    if (!lines.seen_edges.empty()) draw(lines.seen_points, lines.seen_edges);
+    if (!lines.seen_edges.empty()) draw(lines.seen_points.points, lines.seen_edges);
     tools.stroker.finish(lines.mask);
   }
 }
@@ -1032,7 +1053,7 @@ void LayerDrawing::add_lines_to(ContentHash& hash) const {
     const Lines& lines = lines_[i];
     hash.add(to_hex(lines.colour));
     add(outline_digest(points_of(lines), lines.edges, stroke, view_), hash);
-    add(outline_digest(lines.seen_points, lines.seen_edges, stroke, view_), hash);
+    add(outline_digest(lines.seen_points.points, lines.seen_edges, stroke, view_), hash);
   }
 }
 

@@ -165,6 +165,16 @@ class LayerDrawing {
     void add_part(const MeshView& mesh, const TrapezoidPart& part);
     void project(const View& view);
   };
+  // Points that edges between them have in common if they are joined.
+  struct PointsByPlace {
+    std::vector<Point> points;
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by place, of the piece at hand
+    bool is_joined = false;
+
+    /// The number of the point there: a new one if there is none, or if points are not joined.
+    std::uint32_t at(Point place);
+    void clear();
+  };
   // Outlines of one colour.
   struct Lines {
     Rgba colour;
@@ -172,19 +182,17 @@ class LayerDrawing {
     std::vector<std::uint32_t> sides;
     std::vector<OutlineEdge> edges;
     // Of several pieces, in plate carree, with rounded corners, and where something has grown, the
-    // edges are between points of their own, some of which are vertices; by the numbers of those of
-    // the piece at hand, and by where they are.
-    std::vector<Point> points;
+    // edges are between points of their own, some of which are vertices: by the numbers of those of
+    // the piece at hand, too.
+    PointsByPlace points;
     std::unordered_map<std::uint32_t, std::uint32_t> point_of_vertex;
-    std::unordered_map<std::uint64_t, std::uint32_t> point_of_place;
     // Of features that others lie over: what is seen of them, between points of its own.
     std::vector<SeenEdge> seen;  // of the piece at hand
-    std::vector<Point> seen_points;
+    PointsByPlace seen_points;
     std::vector<OutlineEdge> seen_edges;
     Mask mask;
 
     std::uint32_t point_of(std::uint32_t vertex, Point place);
-    std::uint32_t point_at(Point place);
   };
 
   // A trapezoid with the feature that it is a part of, and the class of that.

@@ -12,8 +12,6 @@
 namespace trapeze {
 namespace {
 
-constexpr std::string_view kTilePattern =
-    "/tiles/{layers}[/{tile matrix set}]/{z}/{x}/{y}[@{1-4}x].{png,webp}";
 constexpr std::string_view kTileJsonPattern = "/tiles/{layers}[@{1-4}x].json";
 constexpr std::string_view kPng = ".png";
 constexpr std::string_view kWebp = ".webp";
@@ -132,10 +130,10 @@ Result<std::vector<std::string>> parse_layer_list(std::string_view list) {
   }
 }
 
-Result<PictureName> parse_picture_name(std::string_view name) {
+Result<PictureName> parse_picture_name(std::string_view name, std::string_view pattern) {
   const bool is_webp = name.ends_with(kWebp);
   if (!is_webp && !name.ends_with(kPng)) {
-    return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", kTilePattern)};
+    return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", pattern)};
   }
   if (is_webp && !has_webp()) {
     return Problem{400, "This server was built without WebP: ask for .png.", "format", "webp",
@@ -216,11 +214,8 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
   }
   const bool is_styled = has_style(*path);
   if (is_styled) take_style(*path, *query);
-  auto styled = styles.read(std::move(*query));
-  if (!styled) {
-    if (is_styled) styled.problem().status = 404;
-    return std::move(styled).problem();
-  }
+  auto styled = styles.read(std::move(*query), is_styled ? 404 : 400);
+  if (!styled) return std::move(styled).problem();
   if (path->size() == 5 || path->size() == 6) return parse_tile(*path, *styled, sets);
   if (path->size() == 2 && path->back().ends_with(kJson)) {
     return parse_tile_json(path->back(), *styled);

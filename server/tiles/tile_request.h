@@ -62,13 +62,19 @@ Result<TilesRequest> parse_tiles_target(const Target& target, const StyleBook& s
 /// Parses names separated by commas; each is taken once, bottom first.
 Result<std::vector<std::string>> parse_layer_list(std::string_view list);
 
+/// What addresses of tiles look like, for messages.
+inline constexpr std::string_view kTilePattern =
+    "/tiles/{layers}[/{tile matrix set}]/{z}/{x}/{y}[@{1-4}x].{png,webp}";
+
 /// The name of a picture, in parts: views into the text that it was parsed from.
 struct PictureName {
   std::string_view stem;  // "7" of "7@2x.png"
   int scale = 1;
   TileFormat format = TileFormat::png;
 };
-Result<PictureName> parse_picture_name(std::string_view name);
+/// `pattern` is what such addresses look like, for the problem, 400.
+Result<PictureName> parse_picture_name(std::string_view name,
+                                       std::string_view pattern = kTilePattern);
 
 /// From a path with /s/{style} after its second segment to the same without it, and the name of the
 /// style to the query: from {...}/{layers}/s/{style}/{...}, and from

@@ -203,12 +203,16 @@ test("on an upright tablet the panel is folded, so that both sides of a comparis
   await page.context().close();
 });
 
-test("on a phone all of it is within the window, and nothing lies over another thing", async () => {
-  const { page, seen, offer } = await open("", PHONE);
+/** What is shown of `parts` is within the window, and nothing of it lies over another thing. */
+async function assert_in_window_and_apart(page, parts) {
+  const window = page.viewportSize();
   const boxes = [];
-  for (const part of ["#panel", "#try", "#legend", ".leaflet-control-zoom"]) {
+  for (const part of parts) {
     const box = await page.locator(part).boundingBox();
-    assert.ok(box.x >= 0 && box.x + box.width <= 390 && box.y + box.height <= 844, part);
+    if (box === null) continue;
+    const is_within = box.x >= 0 && box.y >= 0 && box.x + box.width <= window.width &&
+      box.y + box.height <= window.height;
+    assert.ok(is_within, part);
     boxes.push({ part, ...box });
   }
   boxes.forEach((a, i) => boxes.slice(i + 1).forEach((b) => {
@@ -216,6 +220,14 @@ test("on a phone all of it is within the window, and nothing lies over another t
       a.y + a.height <= b.y || b.y + b.height <= a.y;
     assert.ok(is_apart, `${a.part} and ${b.part}`);
   }));
+}
+
+test("on a phone all of it is within the window, and nothing lies over another thing", async () => {
+  const { page, seen, offer } = await open("", PHONE);
+  for (const part of ["#panel", "#try", "#legend", ".leaflet-control-zoom"]) {
+    assert.ok(await page.locator(part).isVisible(), part);
+  }
+  await assert_in_window_and_apart(page, ["#panel", "#try", "#legend", ".leaflet-control-zoom"]);
   await save_screenshot(page, "phone-first-sight");
   for (const trial of TRIALS) {
     await offer.getByRole("button", { name: trial }).tap();
@@ -228,3 +240,18 @@ test("on a phone all of it is within the window, and nothing lies over another t
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
 });
+
+for (const viewport of [{ width: 844, height: 390 }, { width: 667, height: 375 }, { width: 568, height: 320 }]) {
+  test(`so it is on a phone of ${viewport.width} x ${viewport.height} that lies on its side`, async () => {
+    const { page, seen, offer } = await open("", { ...PHONE, viewport });
+    const parts = ["#panel", "#try", "#legend", ".leaflet-control-zoom"];
+    assert.ok(await offer.isVisible());
+    await assert_in_window_and_apart(page, parts);
+    await save_screenshot(page, `phone-on-its-side-${viewport.width}`);
+    await offer.getByRole("button", { name: "Close" }).tap();
+    await assert_in_window_and_apart(page, parts);
+    assert.ok(await page.locator("#legend").isVisible());
+    assert_nothing_went_wrong(server, seen);
+    await page.context().close();
+  });
+}

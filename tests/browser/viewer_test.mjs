@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import {
-  PHONE, assert_nothing_went_wrong, at_rest, hash_of, new_page, of_layer, pixels_of_colour, save_screenshot,
-  shown_tiles, start_browser_and_server, tiles_drawn,
+  DESKTOP, PHONE, assert_nothing_went_wrong, at_rest, hash_of, new_page, of_layer, pixels_of_colour,
+  save_screenshot, shown_tiles, start_browser_and_server, tiles_drawn,
 } from "./served_viewer.mjs";
 
 // Chromium says this of every answer that is not 2xx; some tests make such answers on purpose.
@@ -234,6 +234,33 @@ test("a phone gets dense tiles, a folded panel and controls for fingers", async 
   await save_screenshot(page, "phone-layers");
   assert_nothing_went_wrong(server, seen);
   await page.context().close();
+});
+
+test("tiles meet on whole pixels of screens that have 1.5 or 2.75 for one", async () => {
+  for (const deviceScaleFactor of [1.5, 2.75]) {
+    const { page, seen } = await new_page(browser, { ...DESKTOP, deviceScaleFactor });
+    await page.goto(`${server.base}#4/10.1/20.2`);
+    await tiles_drawn(page);
+    for (let step = 0; step < 3; ++step) {
+      const off = await page.evaluate(() =>
+        Math.max(...[...document.querySelectorAll("img.leaflet-tile")].map((tile) => {
+          const { left, top } = tile.getBoundingClientRect();
+          return Math.max(...[left, top].map((side) => {
+            const pixels = side * window.devicePixelRatio;
+            return Math.abs(pixels - Math.round(pixels));
+          }));
+        })));
+      assert.ok(off < 0.05, `${deviceScaleFactor}, step ${step}: ${off}`);
+      await page.mouse.move(500, 500);
+      await page.mouse.down();
+      await page.mouse.move(513, 507, { steps: 3 });
+      await page.mouse.up();
+      await at_rest(page);
+      await tiles_drawn(page);
+    }
+    assert_nothing_went_wrong(server, seen);
+    await page.context().close();
+  }
 });
 
 test("nothing that a catalog says becomes markup", async () => {

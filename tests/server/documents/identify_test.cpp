@@ -31,6 +31,11 @@ class IdentifyTest : public ::testing::Test {
   testing::SampleSite sample_;
 };
 
+TEST_F(IdentifyTest, TheZoomIsGivenOnce) {
+  EXPECT_EQ(sample_.get("/identify/rings/-60,0?z=4").status, 200);
+  EXPECT_EQ(sample_.get("/identify/rings/-60,0?z=4&z=5").status, 400);
+}
+
 TEST_F(IdentifyTest, TellsTheAttributesAndTheIdOfTheSource) {
   const auto response = sample_.get("/identify/rings/-60,0");
   ASSERT_EQ(response.status, 200);

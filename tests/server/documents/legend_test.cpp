@@ -60,6 +60,18 @@ TEST_F(LegendTest, NamesTheLayersTopmostFirstWithTheirColours) {
   EXPECT_EQ(json["layers"][1]["entries"][0]["fill"], "#00ff00");
 }
 
+TEST_F(LegendTest, ALayerOfOneColourIsPartedFromTheClassesAboveIt) {
+  const int one_colour_each = picture("/legend/rings,west.png").height;
+  const std::string classes = "?rings.color-by=name&rings.classes=small:00f";
+  EXPECT_EQ(picture("/legend/rings.png").height, 16 + 12);
+  EXPECT_EQ(one_colour_each, 2 * 16 + 12);
+  // A title, the class, and others; and the other layer below them.
+  const Picture parted = picture("/legend/west,rings.png" + classes);
+  EXPECT_EQ(parted.height, 4 * 16 + 8 + 12);
+  EXPECT_EQ(parted.at(16, 6 + 3 * 16 + 4), (Rgba{255, 255, 255, 255}));
+  EXPECT_EQ(parted.at(16, 6 + 3 * 16 + 8 + 8), (Rgba{127, 127, 255, 255}));
+}
+
 TEST_F(LegendTest, ThePictureShowsTheColoursOnWhite) {
   const Picture picture = this->picture("/legend/rings,west.png");
   EXPECT_EQ(picture.at(0, 0), (Rgba{255, 255, 255, 255}));

@@ -226,6 +226,12 @@ TEST_F(MapPictureTest, TellsWhatIsWrong) {
       {"/map/rings/0,0,1/10x.png", 400},
       {"/map/rings/0,0,1/0x10.png", 400},
       {"/map/rings/0,0,1/10x10x10.png", 400},
+      {"/map/rings.png?bbox=1,2,3,4&width=5&width=6", 400},
+      {"/map/rings.png?bbox=1,2,3,4&bbox=1,2,3,4", 400},
+      {"/map/rings/s/night.png?bbox=1,2,3,4&style=night", 400},
+      {"/map/rings/0,0,1/10x10.png?bbox=1,2,3,4", 400},
+      {"/map/rings/0,0,1/10x10.png?width=5", 400},
+      {"/map/rings/0,0,1/10x10.png?crs=EPSG:4326", 400},
       {"/map", 404},
       {"/map/rings/0,0,1", 404},
       {"/map/a/b/c/d/e/f", 404},
@@ -237,6 +243,20 @@ TEST_F(MapPictureTest, TellsWhatIsWrong) {
   }
   EXPECT_THAT(*sample_.get("/map/rings.png?bbox=1,2,3,4&width=2049&height=2048").body,
               HasSubstr("at most 4194304 pixels"));
+}
+
+TEST_F(MapPictureTest, WhatIsWrongIsSaid) {
+  for (const auto& [target, words] : std::vector<std::pair<std::string, std::string>>{
+           {"/map/rings.gif?bbox=1,2,3,4", "/map/{layers}.png"},
+           {"/map/rings.png?bbox=1,4,3,2", "south less than north"},
+           {"/map/rings.png?bbox=1,86,3,87", "85.0511"},
+           {"/map/rings/0,86,1/10x10.png", "latitude from -85.0511 to 85.0511"},
+           {"/map/rings/0,0,25/10x10.png", "zoom from 0 to 24"},
+           {"/map/rings/0,0,1/10x0.png", "from 1 to 16384"},
+           {"/map/rings@4x.png?bbox=1,2,3,4&width=9&height=16384", "36 x 65536"},
+           {"/map/rings/0,0,1/10x10.png?crs=EPSG:4326", "The parameter crs goes with a box"}}) {
+    EXPECT_THAT(*sample_.get(target).body, HasSubstr(words)) << target;
+  }
 }
 
 TEST_F(MapPictureTest, LargePicturesAreTheSameAsThoseInOnePiece) {

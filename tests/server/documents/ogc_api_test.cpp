@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr std::string_view kHost = "http://maps.example:8080";
@@ -91,7 +92,11 @@ TEST_F(OgcApiTest, TheDatasetIsAllLayersOrThoseChosen) {
             *sample_.get("/tiles/west/0/0/0.png").body);
   const auto tileset = json("/ogc/map/tiles/WebMercatorQuad?collections=west,rings&fill=red");
   EXPECT_THAT(link(tileset, "item"), EndsWith("?collections=west,rings&fill=ff0000ff"));
-  EXPECT_EQ(sample_.get(tiles + "?collections=nosuch").status, 404);
+  for (const std::string& path : {tiles, std::string("/ogc/map/tiles/WebMercatorQuad")}) {
+    const auto unknown = sample_.get(path + "?collections=west,nosuch");
+    EXPECT_EQ(unknown.status, 404);
+    EXPECT_THAT(*unknown.body, HasSubstr("There is no layer \\\"nosuch\\\""));
+  }
   EXPECT_EQ(sample_.get(tiles + "?collections=").status, 400);
 }
 

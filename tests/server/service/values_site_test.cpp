@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "render/picture/png.h"
 #include "server/config/load_config.h"
@@ -185,6 +186,27 @@ TEST_F(ValuesSiteTest, TellsWhatMatchesAndNamesTheFirstKeysThatDoNot) {
   std::string tiles = told["joins"][0]["tiles"];
   tiles = tiles.substr(tiles.find('?') + 1);
   EXPECT_NE(colour(tiles, 0), colour(tiles, 1));
+}
+
+TEST_F(ValuesSiteTest, TilesThatItNamesHaveAClassForEachOfTheCommonestWords) {
+  std::string table = "code,word\n";
+  const std::vector<std::string> words = {"'a', b:c", "*", "null", "d&e=f",
+                                          "long " + std::string(60, 'x')};
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    table += fmt::format("C{},\"{}\"\n", i, words[i]);
+  }
+  const auto response = post(table, "?layer=columns&join=code", "text/csv");
+  ASSERT_EQ(response.status, 201);
+  std::string tiles = Json::parse(*response.body)["joins"][0]["tiles"];
+  tiles = tiles.substr(tiles.find('?') + 1);
+  std::set<std::string> colours;
+  for (int i = 0; i < 5; ++i) colours.insert(to_hex(colour(tiles, i)));
+  EXPECT_EQ(colours.size(), 5u) << "the last has none, and the fill";
+
+  const auto long_ones =
+      post("code,word\nC0," + std::string(60, 'x') + "\n", "?layer=columns&join=code", "text/csv");
+  tiles = Json::parse(*long_ones.body)["joins"][0]["tiles"];
+  EXPECT_EQ(tiles.find("color-by"), std::string::npos) << "nothing that would be refused";
 }
 
 TEST_F(ValuesSiteTest, PartsTheSameEverywhereAndTellsTheNumbers) {

@@ -284,6 +284,7 @@ TEST_F(StyleRoutesTest, WhatIsWrongIsSaid) {
   EXPECT_EQ(site_.get("/tiles/rings/s/nosuch/0/0/0.png").status, 404);
   EXPECT_EQ(site_.get("/tiles/rings/0/0/0.png?style=nosuch").status, 400);
   EXPECT_EQ(site_.get("/legend/rings.png?style=nosuch").status, 400);
+  EXPECT_EQ(site_.get("/tiles/rings/s/night/0/0/0.png?style=night").status, 400);
   EXPECT_EQ(site_.handle({"POST", "/catalog", "maps.example:8080", {}, "{}"}).status, 405);
   EXPECT_EQ(site_.handle({"PUT", "/styles", "maps.example:8080", {}, "{}"}).header("Allow"),
             "GET, HEAD, OPTIONS, POST");

@@ -81,6 +81,15 @@ TEST(StyleParametersTest, NamesThatAreReadElsewhereArePassedOver) {
   EXPECT_FALSE(StyleQuery::parse(pairs, kLayers));
 }
 
+TEST(StyleParametersTest, NamesThatAreReadElsewhereComeOnce) {
+  const std::vector<QueryPair> pairs = {{"z", "7"}, {"fill", "red"}, {"z", "7"}};
+  constexpr std::array<std::string_view, 1> kOthers = {"z"};
+  const auto parsed = StyleQuery::parse(pairs, kLayers, kOthers);
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.problem().status, 400);
+  EXPECT_EQ(parsed.problem().parameter, "z");
+}
+
 TEST(StyleParametersTest, ALayersOwnSettingGoesBeforeTheOneForAll) {
   const auto parsed = parse("fill=red&lakes.fill=blue");
   const auto& query = *parsed;

@@ -92,6 +92,7 @@ class GrowPicturesTest : public ::testing::Test {
         served("wide", layer_of({rings_of(rectangle(40.3, 40, 90, 90.7)),
                                  rings_of(turned(rectangle(160, 160, 30, 20), middle, 0.2))})));
     layers.push_back(served("islet", layer_of({rings_of(rectangle(100, 100, 0.05, 0.05))})));
+    layers.push_back(served("post", layer_of({rings_of(rectangle(134, 20, 0.4, 100))})));
     layers.push_back(served("land", land()));
     dataset_ = std::make_shared<const Dataset>(std::move(layers));
     site_.data().set(dataset_);
@@ -172,16 +173,22 @@ TEST_F(GrowPicturesTest, AreasGrowWithTheNumber) {
 }
 
 TEST_F(GrowPicturesTest, TilesFitTogether) {
-  for (const char* layer : {"village", "land"}) {
-    const std::string name = layer;
-    const std::string classes =
-        name == "land" ? "&color-by=kind&classes=field:fc0,river:00f" : "&stroke=black";
-    const std::string wider = name == "land" ? "" : "&stroke-width=2";
-    const Picture whole = tile(name + "/1/0/0@2x", "grow=3" + classes);
+  struct Drawn {
+    std::string layer;
+    std::string style;
+    std::string at_next_zoom;
+  };
+  const std::string classes = "&color-by=kind&classes=field:fc0,river:00f";
+  for (const auto& [name, style, at_next_zoom] :
+       {Drawn{"village", "&stroke=black&stroke-width=1", "&stroke=black&stroke-width=2"},
+        Drawn{"village", "&stroke=black&stroke-width=9", "&stroke=black&stroke-width=18"},
+        Drawn{"land", classes, classes}}) {
+    SCOPED_TRACE(name + style);
+    const Picture whole = tile(name + "/1/0/0@2x", "grow=3" + style);
     for (int y = 0; y < 2; ++y) {
       for (int x = 0; x < 2; ++x) {
         const std::string at = "/2/" + std::to_string(x) + "/" + std::to_string(y);
-        const Picture part = tile(name + at, "grow=6" + wider + classes);
+        const Picture part = tile(name + at, "grow=6" + at_next_zoom);
         for (int row = 0; row < 256; ++row) {
           for (int column = 0; column < 256; ++column) {
             const Rgba one = part.at(column, row);
@@ -237,6 +244,13 @@ TEST_F(GrowPicturesTest, AnOutlineFollowsTheMovedBoundary) {
   const Picture picture = tile("strip/0/0/0", "grow=12&fill-opacity=0&stroke=000&stroke-width=2");
   EXPECT_NEAR(area(picture), 2 * 2 * (120 + 12), 6);
   EXPECT_EQ(picture.at(128, 128).a, 0) << "the boundary as it was is drawn";
+}
+
+TEST_F(GrowPicturesTest, AnOutlineReachesInFromTheNextTileAsFarAsItHasMoved) {
+  // The post begins 12 pixels beyond the tile, and after it has grown 9.4 pixels; its ink is light.
+  const std::string query = "fill-opacity=0&stroke=000&stroke-width=32";
+  EXPECT_EQ(tile("post/1/0/0", query).at(250, 160).a, 0);
+  EXPECT_GT(tile("post/1/0/0", query + "&grow=6").at(250, 160).a, 20);
 }
 
 TEST_F(GrowPicturesTest, TheTagOfATileTellsWhatHasGrownInIt) {

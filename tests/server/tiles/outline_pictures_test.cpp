@@ -60,7 +60,9 @@ class OutlinePicturesTest : public ::testing::Test {
       if (coverage == CoverageMode::off) builders.front().add(rows.back(), feature);
     }
     if (coverage != CoverageMode::off) {
-      ASSERT_TRUE(builders.front().add_coverage(rows, rings).apart.empty());
+      for (const std::uint32_t i : builders.front().add_coverage(rows, rings).apart) {
+        builders.front().add(rows[i], features[i]);
+      }
     }
     ServedLayer served;
     served.config.name = served.config.title = "rings";
@@ -147,6 +149,66 @@ TEST_F(OutlinePicturesTest, ATileAtTwiceTheScaleIsAsItsFourChildren) {
     testing::expect_children_are_alike(parent, {tile("1/0/0", query), tile("1/1/0", query),
                                                 tile("1/0/1", query), tile("1/1/1", query)});
   }
+}
+
+Rings polygon(std::vector<Point> points) {
+  Rings rings;
+  rings.points = std::move(points);
+  rings.close_ring();
+  return rings;
+}
+
+constexpr std::array<const char*, 3> kJoins = {"bevel", "miter", "round"};
+
+/// The columns from the western edge to that one are alike.
+void expect_alike_up_to(int end, const Picture& a, const Picture& b) {
+  for (int row = 0; row < a.height; ++row) {
+    for (int column = 0; column < end; ++column) {
+      ASSERT_EQ(a.at(column, row), b.at(column, row)) << column << " " << row;
+    }
+  }
+}
+
+TEST_F(OutlinePicturesTest, CornersOfWhatLiesUnderOthersAreJoined) {
+  serve({polygon({at(60, 60), at(60, 120), at(120, 120), at(120, 60)}),
+         polygon({at(110, 80), at(110, 100), at(150, 100), at(150, 80)})});
+  for (const std::string join : kJoins) {
+    const std::string query = "fill=fff&stroke=000&stroke-width=12&stroke-linejoin=" + join;
+    for (const auto& [name, end] : {std::pair("0/0/0", 100), {"WorldCRS84Quad/0/0/0", 100}}) {
+      SCOPED_TRACE(join + name);
+      const Picture alone = tile(name, query + "&ids=0");
+      EXPECT_GT(ink_of(alone), 3000);
+      expect_alike_up_to(end, tile(name, query), alone);
+    }
+  }
+}
+
+TEST_F(OutlinePicturesTest, CornersOfABorderThatLiesUnderOthersAreJoined) {
+  serve({polygon({at(40, 40), at(40, 160), at(80, 160), at(60, 120), at(90, 80), at(70, 40)}),
+         polygon({at(70, 40), at(90, 80), at(60, 120), at(80, 160), at(160, 160), at(160, 40)}),
+         polygon({at(50, 150), at(50, 170), at(150, 170), at(150, 150)})},
+        CoverageMode::automatic);
+  for (const std::string join : kJoins) {
+    SCOPED_TRACE(join);
+    const std::string query = "fill=fff&stroke=000&stroke-width=10&stroke-linejoin=" + join;
+    const Picture all = tile("0/0/0", query);
+    const Picture without_what_lies_over = tile("0/0/0", query + "&ids=0,1");
+    for (int row = 0; row < 135; ++row) {
+      for (int column = 0; column < 256; ++column) {
+        ASSERT_EQ(all.at(column, row), without_what_lies_over.at(column, row))
+            << column << " " << row;
+      }
+    }
+  }
+}
+
+TEST_F(OutlinePicturesTest, CornersThatStaySharpAreJoined) {
+  // The second lies in the triangle in which the inner corner of the first would be rounded.
+  serve({polygon({at(60, 60), at(60, 120), at(90, 120), at(90, 90), at(120, 90), at(120, 60)}),
+         polygon({at(93, 93), at(93, 96), at(96, 93)})});
+  const std::string query = "stroke=000&stroke-width=12&smooth=14&stroke-linejoin=";
+  EXPECT_EQ(tile("0/0/0", query + "miter").at(84, 84).a, 255);
+  EXPECT_EQ(tile("0/0/0", query + "round").at(84, 84).a, 0);
 }
 
 /// From the western edge of the world to the eastern one, up to a parallel in the south.
