@@ -14,7 +14,8 @@ namespace trapeze {
 
 struct TilePlan;
 
-/// Of the pictures of tiles: raised whenever the bytes of any tile become others.
+/// Of the pictures of tiles: raised whenever the bytes of any tile become others although it is
+/// drawn from the same, so that nothing else of its fingerprint changes.
 constexpr int kPictureVersion = 1;
 
 /// Milliseconds that each step took. What tiles that are drawn together share is shared out evenly.
