@@ -68,17 +68,18 @@ class ColourReducer::Neighbourhood {
 
   /// Numbers are added in ascending order, from 0 on.
   void add(const Channels& channels) {
-    std::uint32_t& first = first_[place_of(channels.r, channels.g)];
+    std::uint32_t& first = first_[place_of(channels.r / kWidth, channels.g / kWidth)];
     next_.push_back(std::exchange(first, static_cast<std::uint32_t>(next_.size())));
   }
 
-  /// Calls visit(number) for all colours none of whose channels is further away than kReach, and
+  /// Calls visit(number) for all colours none of whose channels is further away than `reach`, and
   /// for others. Those for which it returns false are taken out.
   template <typename Visit>
-  void for_each_near(const Channels& channels, const Visit& visit) {
-    for (int r = channels.r - kReach; r <= channels.r + kReach; r += kReach) {
-      for (int g = channels.g - kReach; g <= channels.g + kReach; g += kReach) {
-        if (r < 0 || g < 0 || r >= kSide * kReach || g >= kSide * kReach) continue;
+  void for_each_near(const Channels& channels, int reach, const Visit& visit) {
+    const auto first_of = [reach](int channel) { return std::max(channel - reach, 0) / kWidth; };
+    const auto last_of = [reach](int channel) { return std::min(channel + reach, 255) / kWidth; };
+    for (int r = first_of(channels.r); r <= last_of(channels.r); ++r) {
+      for (int g = first_of(channels.g); g <= last_of(channels.g); ++g) {
         std::uint32_t* link = &first_[place_of(r, g)];
         while (*link != kNone) {
           std::uint32_t& next = next_[*link];
@@ -93,13 +94,10 @@ class ColourReducer::Neighbourhood {
   }
 
  private:
-  static constexpr int kReach = 2 * kMostChange + 1;
-  static constexpr int kSide = 255 / kReach + 1;
+  static constexpr int kWidth = 2 * kMostChange + 1;
+  static constexpr int kSide = 255 / kWidth + 1;
 
-  static std::size_t place_of(int r, int g) {
-    const int place = r / kReach * kSide + g / kReach;
-    return static_cast<std::size_t>(place);
-  }
+  static std::size_t place_of(int r, int g) { return static_cast<std::size_t>(r * kSide + g); }
 
   std::array<std::uint32_t, std::size_t{kSide} * kSide> first_;
   std::vector<std::uint32_t> next_;  // by number
@@ -250,7 +248,7 @@ bool ColourReducer::gather(const Given& given, int most_change) {
     if (made_.size() >= kPaletteColours) return false;
     const Channels& around = left[first].channels;
     near.clear();
-    all_left.for_each_near(around, [&](std::uint32_t k) {
+    all_left.for_each_near(around, 2 * most_change, [&](std::uint32_t k) {
       const bool is_left = becomes[k] == kNone && k != first;
       const bool fits = difference(left[k].channels, around).most <= 2 * most_change;
       if (is_left && fits) near.push_back(k);
@@ -287,7 +285,7 @@ std::uint32_t ColourReducer::nearest(Neighbourhood& kept, const Channels& channe
                                      int most_change) const {
   std::uint32_t nearest = kNone;
   std::tuple least{most_change + 1, 0, kNone};
-  kept.for_each_near(channels, [&](std::uint32_t k) {
+  kept.for_each_near(channels, most_change, [&](std::uint32_t k) {
     const bool are_opaque_alike = (new_channels_[k].a == 255) == (channels.a == 255);
     const Difference apart = difference(new_channels_[k], channels);
     const std::tuple distance{apart.most, apart.sum, k};
