@@ -25,6 +25,15 @@ class Canvas {
     touched_.touch(i, static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
     return values_.data() + i * static_cast<std::size_t>(width_);
   }
+  /// The same for the columns that touched() is of, which are those of several rows.
+  std::uint8_t* row(int row, std::uint64_t touched) {
+    const auto i = static_cast<std::size_t>(row);
+    touched_.touch(i, touched);
+    return values_.data() + i * static_cast<std::size_t>(width_);
+  }
+  std::uint64_t touched(int begin, int end) const {
+    return touched_.bits_of(static_cast<std::size_t>(begin), static_cast<std::size_t>(end) - 1);
+  }
   /// Ends the mask.
   void finish(Mask& mask);
 

@@ -34,13 +34,6 @@ struct Row {
   explicit Row(std::size_t columns) { std::fill_n(changes.data(), words_for(columns), 0); }
 };
 
-/// A bit for each byte that is not 0.
-[[gnu::always_inline]] inline std::uint8_t set_bytes(std::uint64_t bytes) {
-  constexpr std::uint64_t kLow = 0x7f7f7f7f7f7f7f7f;
-  const std::uint64_t highest = (((bytes & kLow) + kLow) | bytes) & ~kLow;
-  return static_cast<std::uint8_t>(((highest >> 7) * 0x0102040810204080) >> 56);
-}
-
 /// What a span of columns begins with: the sum of all differences before it, and the value there.
 struct Before {
   std::int32_t sum = 0;

@@ -16,6 +16,13 @@ constexpr std::size_t words_for(std::size_t pixels) {
   return (pixels + 63) / 64;
 }
 
+/// A bit for each of eight bytes that is not 0, the lowest first.
+[[gnu::always_inline]] inline std::uint8_t set_bytes(std::uint64_t bytes) {
+  constexpr std::uint64_t kLow = 0x7f7f7f7f7f7f7f7f;
+  const std::uint64_t highest = (((bytes & kLow) + kLow) | bytes) & ~kLow;
+  return static_cast<std::uint8_t>(((highest >> 7) * 0x0102040810204080) >> 56);
+}
+
 /// Sets the bits of the pixels from `begin` up to the one before `end`, and clears no bit.
 /// Precondition: begin < end.
 inline void set_bits(std::size_t begin, std::size_t end, std::span<std::uint64_t> bits) {

@@ -132,10 +132,16 @@ class Stroker::Pen {
         canvas_(canvas) {
     if (!stroke.is_dashed()) return;
     for (std::size_t i = 0; i + 1 < stroke.dashes.size(); i += 2) {
-      dashes_.push_back({period_, stroke.dashes[i] * scale});
+      const Dash dash{period_, stroke.dashes[i] * scale};
+      dashes_.push_back(dash);
+      dashes_of_blocks_.push_back(
+          {in_block(static_cast<float>(dash.begin)), in_block(static_cast<float>(dash.length))});
       period_ += (stroke.dashes[i] + stroke.dashes[i + 1]) * scale;
       inked_ += stroke.dashes[i] * scale;
     }
+    period_of_blocks_ = in_block(static_cast<float>(period_));
+    periods_per_pixel_ = in_block(static_cast<float>(1 / period_));
+    inked_of_blocks_ = in_block(static_cast<float>(inked_));
   }
 
   double half() const { return half_; }
@@ -152,7 +158,8 @@ class Stroker::Pen {
     if (rows.is_empty() || columns.is_empty()) return;
     const RoundLine round(line, *this);
     if (columns.end - columns.begin <= 2 * kBlock) {
-      for (int row = rows.begin; row < rows.end; ++row) draw_round_row(round, row, columns);
+      const Blocks blocks(columns, canvas_);
+      for (int row = rows.begin; row < rows.end; ++row) draw_round_row(round, row, blocks);
       return;
     }
     const Slab near(line.dy, -reach(), reach());
@@ -161,8 +168,9 @@ class Stroker::Pen {
       double max = columns.end - line.from.x;
       near.narrow(-(row + 0.5 - line.from.y) * line.dx, min, max);
       if (min > max) continue;
-      draw_round_row(round, row,
-                     columns_between(min + line.from.x, max + line.from.x, canvas_.width()));
+      const Columns near_columns =
+          columns_between(min + line.from.x, max + line.from.x, canvas_.width());
+      if (!near_columns.is_empty()) draw_round_row(round, row, Blocks(near_columns, canvas_));
     }
   }
 
@@ -229,6 +237,12 @@ class Stroker::Pen {
     double begin;
     double length;
   };
+  struct DashOfBlocks {
+    Floats begin;
+    Floats length;
+  };
+
+  static Floats in_block(float number) { return Floats{} + number; }
 
   static double half_pixel_along(const Line& line) {
     return std::max(std::abs(line.rate), kLeastRate) / 2;
@@ -263,9 +277,11 @@ class Stroker::Pen {
         : line(of),
           steps_along(kSteps * static_cast<float>(of.dx)),
           steps_off(kSteps * static_cast<float>(of.dy)),
-          reach(Floats{} + static_cast<float>(pen.reach())),
-          most(Floats{} + pen.most_),
-          ink_255(Floats{} + of.ink * 255) {}
+          reach(in_block(static_cast<float>(pen.reach()))),
+          most(in_block(pen.most_)),
+          ink_255(in_block(of.ink * 255)),
+          rate(in_block(static_cast<float>(of.rate))),
+          half_pixel(in_block(static_cast<float>(half_pixel_along(of)))) {}
 
     const Line& line;
     Floats steps_along;
@@ -273,41 +289,70 @@ class Stroker::Pen {
     Floats reach;
     Floats most;
     Floats ink_255;
+    // Of dashes.
+    Floats rate;
+    Floats half_pixel;
+  };
+  // How far pixels of a block are before the line and behind it; negative where they are not.
+  struct Beyond {
+    Floats before;
+    Floats behind;
   };
 
-  // What is not near the line gets nothing: so whole blocks of columns are drawn at once, wherever
-  // they begin.
-  void draw_round_row(const RoundLine& round, int row, Columns columns) {
+  // Columns as they are drawn, which are at least one. What is not near the line gets nothing: so
+  // whole blocks are drawn, wherever they begin; of the last one, what lies beyond the columns may
+  // be written too.
+  struct Blocks {
+    Blocks(Columns of, const Canvas& canvas)
+        : columns(of),
+          last(std::max(canvas.width() - kBlock, 0)),
+          touched(canvas.touched(std::min(of.begin, last),
+                                 std::min(of.end + kBlock, canvas.width()))) {}
+
+    Columns columns;
+    int last;  // column where a block may begin
+    std::uint64_t touched;
+  };
+
+  void draw_round_row(const RoundLine& round, int row, const Blocks& blocks) {
+    const Columns columns = blocks.columns;
     values_ += static_cast<std::uint64_t>(columns.end - columns.begin);
     const Line& line = round.line;
     const double y = row + 0.5 - line.from.y;
-    if (columns.is_empty()) return;
-    const int last = std::max(canvas_.width() - kBlock, 0);
-    // Of the last block, what lies beyond the columns may be written too.
-    const int end = std::min(columns.end + kBlock, canvas_.width());
-    std::uint8_t* const out = canvas_.row(row, std::min(columns.begin, last), end);
+    const double along_of_row = y * line.dy;
+    const double beside_of_row = y * line.dx;
+    std::uint8_t* const out = canvas_.row(row, blocks.touched);
     for (int block = columns.begin; block < columns.end; block += kBlock) {
-      const int begin = std::min(block, last);
-      // Of the first pixel: how far along the line it is.
+      const int begin = std::min(block, blocks.last);
       const double x = begin + 0.5 - line.from.x;
-      const double along = x * line.dx + y * line.dy;
-      Floats values = values_of_block(round, along, y * line.dx - x * line.dy);
-      if (!dashes_.empty()) values *= dash_shares(line, along);
+      // Of the first pixel: how far along the line it is.
+      const double along = x * line.dx + along_of_row;
+      const Beyond beyond{static_cast<float>(-along) - round.steps_along,
+                          static_cast<float>(along - line.length) + round.steps_along};
+      Floats values = values_of_block(round, beyond, beside_of_row - x * line.dy);
+      if (are_none(values)) continue;
+      if (!dashes_.empty()) values *= dash_shares(round, along, beyond);
       cover(values, out + begin);
     }
   }
 
-  // Of pixels side by side, the first of which is so far along the line, and beside it; up to 255.
-  static Floats values_of_block(const RoundLine& round, double along, double beside) {
+  // Of pixels side by side, the first of which is so far beside the line; up to 255.
+  static Floats values_of_block(const RoundLine& round, const Beyond& beyond, double beside) {
     constexpr Floats kNone{};
-    const Floats before = static_cast<float>(-along) - round.steps_along;
-    const Floats behind = static_cast<float>(along - round.line.length) + round.steps_along;
-    const Floats outside = before > behind ? before : behind;
-    const Floats beyond = outside > kNone ? outside : kNone;
+    const Floats outside = beyond.before > beyond.behind ? beyond.before : beyond.behind;
+    const Floats from_end = outside > kNone ? outside : kNone;
     const Floats off = static_cast<float>(beside) - round.steps_off;
-    const Floats covered = round.reach - root_of(off * off + beyond * beyond);
+    const Floats covered = round.reach - root_of(off * off + from_end * from_end);
     const Floats share = covered > kNone ? covered : kNone;
     return round.ink_255 * (share < round.most ? share : round.most);
+  }
+
+  // Of values that are not negative.
+  static bool are_none(Floats values) {
+    std::uint64_t bits[2];
+    static_assert(sizeof bits == sizeof values);
+    std::memcpy(bits, &values, sizeof values);
+    return (bits[0] | bits[1]) == 0;
   }
 
   static Floats root_of(Floats squares) {
@@ -316,35 +361,31 @@ class Stroker::Pen {
     return roots;
   }
 
-  // The same of dash_share(), for pixels side by side.
-  Floats dash_shares(const Line& line, double along) const {
+  // The same of dash_share(), for pixels side by side, the first of which is so far along the line.
+  Floats dash_shares(const RoundLine& round, double along, const Beyond& beyond) const {
     constexpr Floats kNone{};
     if (period_ < kLeastPeriod) return kNone + static_cast<float>(inked_ / period_);
     // Numbers stay small if they are counted from the period in which the first pixel lies.
-    const double place = line.along + along * line.rate;
+    const double place = round.line.along + along * round.line.rate;
     const double first = place - std::floor(place / period_) * period_;
-    const Floats steps = kSteps * static_cast<float>(line.dx);
-    const Floats before = static_cast<float>(-along) - steps;
-    const Floats behind = static_cast<float>(along - line.length) + steps;
-    const Floats on_line =
-        steps + (before > kNone ? before : kNone) - (behind > kNone ? behind : kNone);
-    const Floats places = static_cast<float>(first) + on_line * static_cast<float>(line.rate);
-    const auto half_pixel = static_cast<float>(half_pixel_along(line));
-    return (inked_up_to(places + half_pixel) - inked_up_to(places - half_pixel)) / (2 * half_pixel);
+    const Floats on_line = round.steps_along + (beyond.before > kNone ? beyond.before : kNone) -
+                           (beyond.behind > kNone ? beyond.behind : kNone);
+    const Floats places = static_cast<float>(first) + on_line * round.rate;
+    return (inked_up_to(places + round.half_pixel) - inked_up_to(places - round.half_pixel)) /
+           (2.0f * round.half_pixel);
   }
 
   Floats inked_up_to(Floats along) const {
-    const Floats quotient = along * static_cast<float>(1 / period_);
+    const Floats quotient = along * periods_per_pixel_;
     const Floats towards_zero =
         __builtin_convertvector(__builtin_convertvector(quotient, Ints), Floats);
     const Floats periods = towards_zero > quotient ? towards_zero - 1.0f : towards_zero;
-    const Floats rest = along - periods * static_cast<float>(period_);
-    Floats inked = periods * static_cast<float>(inked_);
-    for (const Dash& dash : dashes_) {
-      const Floats length = Floats{} + static_cast<float>(dash.length);
-      const Floats begun = rest - static_cast<float>(dash.begin);
+    const Floats rest = along - periods * period_of_blocks_;
+    Floats inked = periods * inked_of_blocks_;
+    for (const DashOfBlocks& dash : dashes_of_blocks_) {
+      const Floats begun = rest - dash.begin;
       const Floats part = begun > Floats{} ? begun : Floats{};
-      inked += part < length ? part : length;
+      inked += part < dash.length ? part : dash.length;
     }
     return inked;
   }
@@ -403,6 +444,11 @@ class Stroker::Pen {
   std::vector<Dash> dashes_;  // of one period; empty: no gaps
   double period_ = 0;
   double inked_ = 0;  // length of the dashes of a period
+  // The same for blocks of pixels.
+  std::vector<DashOfBlocks> dashes_of_blocks_;
+  Floats period_of_blocks_{};
+  Floats periods_per_pixel_{};
+  Floats inked_of_blocks_{};
   Canvas& canvas_;
   std::uint64_t values_ = 0;  // computed so far
 };

@@ -35,9 +35,14 @@ class TouchedColumns {
   }
   /// The columns from `first` to `last`.
   void touch(std::size_t row, std::size_t first, std::size_t last) {
+    touch(row, bits_of(first, last));
+  }
+  /// The same for columns that are those of several rows.
+  void touch(std::size_t row, std::uint64_t bits) { by_row_[row] |= bits; }
+  std::uint64_t bits_of(std::size_t first, std::size_t last) const {
     const std::uint64_t from_first = ~std::uint64_t{0} << (first >> shift_);
     const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - (last >> shift_));
-    by_row_[row] |= from_first & to_last;
+    return from_first & to_last;
   }
   /// The bits of a row, which are then cleared; see for_each_touched().
   std::uint64_t take(std::size_t row) { return std::exchange(by_row_[row], 0); }

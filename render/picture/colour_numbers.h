@@ -28,9 +28,7 @@ class ColourNumbers {
 
   /// From 0 on. Of several origins a colour keeps the first of the enumeration.
   std::uint32_t number_of(Rgba colour, Origin origin) {
-    const std::uint64_t bits = bits_of(colour);
-    std::uint32_t& number =
-        numbers_.find(hash_of({&bits, 1}), [&](std::uint32_t i) { return colours_[i] == colour; });
+    std::uint32_t& number = numbers_.find(hash_of(colour), is_same);
     if (number == NumberTable::kNone) {
       number = static_cast<std::uint32_t>(colours_.size());
       colours_.push_back(colour);
@@ -40,12 +38,25 @@ class ColourNumbers {
     return number;
   }
 
+  /// Of a colour that has been met; else NumberTable::kNone.
+  std::uint32_t look_up(Rgba colour) const { return numbers_.look_up(hash_of(colour), is_same); }
+
   std::size_t size() const { return colours_.size(); }
   // By number.
   const std::vector<Rgba>& colours() const { return colours_; }
   const std::vector<Origin>& origins() const { return origins_; }
 
  private:
+  // No two colours have the same upper half, which is all that the table keeps of a hash: each step
+  // can be undone. So there is nothing left to compare.
+  static std::uint64_t hash_of(Rgba colour) {
+    std::uint32_t bits = bits_of(colour);
+    bits = (bits ^ bits >> 16) * 0x7feb352d;
+    bits = (bits ^ bits >> 15) * 0x846ca68b;
+    return std::uint64_t{bits ^ bits >> 16} << 32;
+  }
+  static bool is_same(std::uint32_t) { return true; }
+
   NumberTable numbers_;
   std::vector<Rgba> colours_;
   std::vector<Origin> origins_;

@@ -41,20 +41,12 @@ void Composer::compose(std::span<const PaintedLayer> layers, int width, int heig
 // Chooses colours; the sum of the changes of all channels of all pixels that are on no edge.
 double Composer::colour(int along_edges, int of_others) {
   mixture_colours_.colour(along_edges);
-  const ColourNumbers& colours = mixture_colours_.colours();
-  const std::span<const std::uint32_t> numbers = mixture_colours_.numbers();
-  pixels_.assign(colours.size(), 0);
-  for (std::size_t i = 0; i < numbers.size(); ++i) pixels_[numbers[i]] += mixtures_.pixels[i];
-  return static_cast<double>(
-      reducer_.reduce(colours.colours(), colours.origins(), pixels_, of_others));
+  return static_cast<double>(reducer_.reduce(mixture_colours_.colours(), mixture_colours_.origins(),
+                                             mixtures_.pixels, of_others));
 }
 
 void Composer::write(RunPicture& picture) {
-  becomes_.clear();
-  for (const std::uint32_t colour : mixture_colours_.numbers()) {
-    becomes_.push_back(reducer_.becomes()[colour]);
-  }
-  recolour(mixtures_.runs, mixtures_.row_end, becomes_, picture);
+  recolour(mixtures_.runs, mixtures_.row_end, reducer_.becomes(), picture);
   picture.colours = reducer_.colours();
   picture.origins = reducer_.origins();
 }

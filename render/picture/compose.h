@@ -10,7 +10,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "render/picture/colour.h"
 #include "render/picture/mixture_colours.h"
@@ -49,8 +48,6 @@ class Composer {
   MixtureFinder finder_;
   MixtureColours mixture_colours_;
   ColourReducer reducer_;
-  std::vector<std::uint32_t> pixels_;   // by colour of a mixture
-  std::vector<std::uint32_t> becomes_;  // by mixture: index of a colour of the picture
 };
 
 }  // namespace trapeze

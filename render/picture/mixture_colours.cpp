@@ -1,6 +1,7 @@
 #include "render/picture/mixture_colours.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -13,8 +14,81 @@ namespace {
 
 constexpr float kRounding = 0.1f / 255;
 
-bool is_whole(std::uint8_t value) {
-  return static_cast<std::uint8_t>(value + 1) <= 1;  // nothing or all
+constexpr std::size_t kBytes = sizeof(std::uint64_t);
+constexpr std::uint64_t kLowBits = 0x7f7f7f7f7f7f7f7f;  // all but the highest one of each byte
+
+/// The highest bits of those bytes that are neither 0 nor 255.
+std::uint64_t partial_bytes(std::uint64_t bytes) {
+  const std::uint64_t changes = (bytes ^ bytes >> 1) & kLowBits;  // from bit to bit
+  return (changes + kLowBits) & ~kLowBits;
+}
+
+/// The highest bits of those bytes that are not 0.
+std::uint64_t set_bytes(std::uint64_t bytes) {
+  return (((bytes & kLowBits) + kLowBits) | bytes) & ~kLowBits;
+}
+
+void set_highest_bit(std::size_t byte, std::span<std::uint64_t> words) {
+  words[byte / kBytes] |= std::uint64_t{0x80} << byte % kBytes * 8;
+}
+
+/// Whether the layer has nothing but lines over one class, each of which lies over what is below
+/// whatever that is.
+bool is_plain(const PictureParts::Layer& layer) {
+  const PaintedLayer& painted = *layer.painted;
+  const bool is_separable = layer.lines.empty() || painted.opacity == 1;
+  return layer.classes.size() <= 1 && is_separable && painted.pattern == nullptr;
+}
+
+/// Lays a plain layer over what is below it where it does not meet that in a way that is known.
+/// share_of(channel) is a Number.
+template <typename Number, typename ShareOf>
+PaintOf<Number> with_plain_layer(const PictureParts::Layer& layer, PaintOf<Number> sum,
+                                 const ShareOf& share_of) {
+  const auto opacity = static_cast<float>(layer.painted->opacity);
+  for (const PictureParts::Part& only : layer.classes) {
+    if (only.colour.a == 0) continue;
+    sum = over(to_paint(only.colour, Number(share_of(only.channel)), opacity), sum);
+  }
+  for (const PictureParts::Part& line : layer.lines) {
+    sum = over(to_paint(line.colour, Number(share_of(line.channel))), sum);
+  }
+  return sum;
+}
+
+/// Of all layers, over the background.
+template <typename Number>
+PaintOf<Number> over_background(const PaintOf<Number>& sum, const PaintOf<Number>& background) {
+  return mixed(sum, 1.0f, background, 1.0f - sum.covered + sum.beneath);
+}
+
+// Several mixtures at once, by the vector extensions of g++ and clang: the same operations in the
+// same order, and so the same colours, as one by one.
+constexpr std::size_t kLanes = 4;
+using Floats __attribute__((vector_size(kLanes * sizeof(float)))) = float;
+using Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t)))) = std::int32_t;
+
+PaintOf<Floats> in_all_lanes(const Paint& paint) {
+  const auto in_all = [](float number) { return Floats{} + number; };
+  return {in_all(paint.r),       in_all(paint.g),       in_all(paint.b),      in_all(paint.a),
+          in_all(paint.covered), in_all(paint.beneath), in_all(paint.classes)};
+}
+
+std::array<Rgba, kLanes> to_rgba(const PaintOf<Floats>& paint) {
+  const Floats scale = 1.0f / paint.a;  // not looked at where that is transparent
+  const auto to_bytes = [](Floats shares) {
+    return __builtin_convertvector(to_byte_and_half(shares), Ints);
+  };
+  const Ints r = to_bytes(paint.r * scale);
+  const Ints g = to_bytes(paint.g * scale);
+  const Ints b = to_bytes(paint.b * scale);
+  const Ints a = to_bytes(paint.a);
+  std::array<Rgba, kLanes> colours;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const auto byte = [i](Ints bytes) { return static_cast<std::uint8_t>(bytes[i]); };
+    colours[i] = a[i] == 0 ? kTransparent : Rgba{byte(r), byte(g), byte(b), byte(a)};
+  }
+  return colours;
 }
 
 }  // namespace
@@ -22,9 +96,15 @@ bool is_whole(std::uint8_t value) {
 void MixtureColours::begin(const PictureParts& parts, const Mixtures& mixtures, Rgba background) {
   parts_ = &parts;
   mixtures_ = &mixtures;
-  background_ = to_paint(background, 1);
-  words_.resize(mixtures.words_each);
-  values_ = reinterpret_cast<std::uint8_t*>(words_.data());
+  background_ = to_paint(background, 1.0f);
+  are_layers_plain_ = std::ranges::all_of(parts.layers(), is_plain);
+  channel_bits_.assign(mixtures.words_each, 0);
+  relation_bits_.assign(mixtures.words_each, 0);
+  const std::size_t channels = parts.channel_count();
+  for (std::size_t i = 1; i < channels; ++i) set_highest_bit(i, channel_bits_);
+  for (std::size_t i = channels; i < parts.value_count(); i += 2) {
+    set_highest_bit(i, relation_bits_);
+  }
   edges_.clear();
   edge_words_.clear();
   edge_numbers_.clear();
@@ -49,22 +129,64 @@ double MixtureColours::change_along_edges(int most_change) {
 }
 
 void MixtureColours::colour(int most_change) {
-  colours_.clear();
-  numbers_.resize(kinds_.size());
+  colours_.resize(kinds_.size());
+  origins_.resize(kinds_.size());
   if (most_change > 0) set_steps(most_change);
+  wanted_.clear();
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Kind& kind = kinds_[i];
     const bool is_exact = most_change == 0 || kind.edge == kNone ||
                           !is_close_once_rounded(edges_[kind.edge], kind.value);
-    numbers_[i] = is_exact ? colours_.number_of(exact_colour(i), kind.origin)
-                           : colour_along(edges_[kind.edge], kind.value);
+    if (!is_exact) {
+      colour_along(edges_[kind.edge], i);
+    } else if (kind.is_exact_known) {
+      set_exact(i, kind.exact);
+    } else if (are_layers_plain_ && !kind.has_meetings) {
+      wanted_.push_back(static_cast<std::uint32_t>(i));
+    } else {
+      values_ = mixtures_->values_of(i);
+      set_exact(i, to_rgba(mixture_at_hand()));
+    }
+  }
+  find_exact_in_lanes(wanted_);
+}
+
+void MixtureColours::set_exact(std::size_t mixture, Rgba colour) {
+  Kind& kind = kinds_[mixture];
+  kind.exact = colour;
+  kind.is_exact_known = true;
+  colours_[mixture] = colour;
+  origins_[mixture] = kind.origin;
+}
+
+// Of mixtures without meetings, of plain layers.
+void MixtureColours::find_exact_in_lanes(std::span<const std::uint32_t> mixtures) {
+  const PaintOf<Floats> background = in_all_lanes(background_);
+  std::array<const std::uint8_t*, kLanes> values{};
+  const auto share_of = [&values](std::uint32_t channel) {
+    const Ints here{values[0][channel], values[1][channel], values[2][channel], values[3][channel]};
+    return __builtin_convertvector(here, Floats) / 255.0f;
+  };
+  for (std::size_t first = 0; first < mixtures.size(); first += kLanes) {
+    // Lanes that are left over have the last mixture, too.
+    const auto in_lane = [&](std::size_t i) {
+      return mixtures[std::min(first + i, mixtures.size() - 1)];
+    };
+    for (std::size_t i = 0; i < kLanes; ++i) values[i] = mixtures_->values_of(in_lane(i));
+    PaintOf<Floats> sum;
+    for (const PictureParts::Layer& layer : parts_->layers()) {
+      sum = with_plain_layer(layer, sum, share_of);
+    }
+    const std::array colours = to_rgba(over_background(sum, background));
+    for (std::size_t i = 0; i < kLanes; ++i) set_exact(in_lane(i), colours[i]);
   }
 }
 
 MixtureColours::Kind MixtureColours::kind_of(std::size_t mixture) {
   take_values(mixture);
   Kind kind;
-  kind.origin = partial_.empty() && meeting_count_ == 0 ? Origin::flat : Origin::mixed;
+  kind.has_meetings = meeting_count_ > 0;
+  kind.origin = partial_count_ == 0 && !kind.has_meetings ? Origin::flat : Origin::mixed;
   if (!is_edge_at_hand()) return kind;
   const std::uint32_t edge = edge_at_hand();
   if (!edges_[edge].is_on_line) return kind;
@@ -74,21 +196,28 @@ MixtureColours::Kind MixtureColours::kind_of(std::size_t mixture) {
 }
 
 void MixtureColours::take_values(std::size_t mixture) {
-  std::memcpy(words_.data(), mixtures_->values_of(mixture), words_.size() * sizeof words_[0]);
-  partial_.clear();
-  const std::uint32_t channels = parts_->channel_count();
-  for (std::uint32_t channel = 1; channel < channels; ++channel) {
-    if (!is_whole(values_[channel])) partial_.push_back(channel);
-  }
+  values_ = mixtures_->values_of(mixture);
+  partial_count_ = 0;
   meeting_count_ = 0;
-  for (std::size_t i = channels; i < parts_->value_count(); i += 2) {
-    meeting_count_ += values_[i] != 0 ? 1 : 0;
+  const std::size_t first_word = mixture * mixtures_->words_each;
+  for (std::size_t i = 0; i < mixtures_->words_each; ++i) {
+    const std::uint64_t word = mixtures_->words[first_word + i];
+    for (std::uint64_t rest = partial_bytes(word) & channel_bits_[i]; rest != 0; rest &= rest - 1) {
+      const auto byte = static_cast<std::size_t>(std::countr_zero(rest)) / 8;
+      if (partial_count_ < partial_.size()) {
+        partial_[partial_count_] = static_cast<std::uint32_t>(i * kBytes + byte);
+      }
+      ++partial_count_;
+    }
+    for (std::uint64_t rest = set_bytes(word) & relation_bits_[i]; rest != 0; rest &= rest - 1) {
+      ++meeting_count_;
+    }
   }
 }
 
 bool MixtureColours::is_edge_at_hand() const {
-  if (partial_.size() == 1) return meeting_count_ == 0;
-  if (partial_.size() != 2 || meeting_count_ > 1) return false;
+  if (partial_count_ == 1) return meeting_count_ == 0;
+  if (partial_count_ != 2 || meeting_count_ > 1) return false;
   const int both = values_[partial_[0]] + values_[partial_[1]];
   if (std::abs(both - 255) > 1) return false;
   if (meeting_count_ == 0) return true;
@@ -101,8 +230,11 @@ bool MixtureColours::is_edge_at_hand() const {
 // Edges are told from each other by all values but those of the masks whose edges they are, which
 // get values that are no mixture's for that.
 std::uint32_t MixtureColours::edge_at_hand() {
+  const std::size_t size = mixtures_->words_each;
+  words_.resize(size);
+  std::memcpy(words_.data(), values_, size * sizeof words_[0]);
+  values_ = reinterpret_cast<const std::uint8_t*>(words_.data());
   const auto values = exchange_values({1, 2});
-  const std::size_t size = words_.size();
   std::uint32_t& number = edge_numbers_.find(hash_of(words_), [&](std::uint32_t edge) {
     return std::ranges::equal(words_, std::span(edge_words_).subspan(edge * size, size));
   });
@@ -151,18 +283,20 @@ void MixtureColours::set_steps(int most_change) {
     edge.first_step = colours;
     colours += edge.steps + 1;
   }
-  step_colours_.assign(colours, kNone);
+  step_mixtures_.assign(colours, kNone);
 }
 
-std::uint32_t MixtureColours::colour_along(const Edge& edge, std::uint8_t value) {
-  const std::uint32_t step = edge.nearest_step(value);
-  std::uint32_t& colour = step_colours_[edge.first_step + step];
-  if (colour == kNone) {
-    const Paint mixture = edge.between(static_cast<float>(step) * edge.step);
+void MixtureColours::colour_along(const Edge& edge, std::size_t mixture) {
+  const std::uint32_t step = edge.nearest_step(kinds_[mixture].value);
+  std::uint32_t& first = step_mixtures_[edge.first_step + step];
+  if (first == kNone) {
+    first = static_cast<std::uint32_t>(mixture);
+    colours_[mixture] = to_rgba(edge.between(static_cast<float>(step) * edge.step));
     const bool is_side = step == 0 || step == edge.steps;
-    colour = colours_.number_of(to_rgba(mixture), is_side ? Origin::flat : Origin::edge);
+    origins_[mixture] = is_side ? Origin::flat : Origin::edge;
   }
-  return colour;
+  colours_[mixture] = colours_[first];
+  origins_[mixture] = origins_[first];
 }
 
 // Where a colour lets others through, its opacity is rounded apart from what it is made of, which
@@ -176,18 +310,10 @@ bool MixtureColours::is_close_once_rounded(const Edge& edge, std::uint8_t value)
   return difference(one, other).most <= kMostChange;
 }
 
-Rgba MixtureColours::exact_colour(std::size_t mixture) {
-  Kind& kind = kinds_[mixture];
-  if (!kind.is_exact_known) {
-    take_values(mixture);
-    kind.exact = to_rgba(mixture_at_hand());
-    kind.is_exact_known = true;
-  }
-  return kind.exact;
-}
-
+// In the copy of the values at hand.
 std::array<std::uint8_t, 2> MixtureColours::exchange_values(std::array<std::uint8_t, 2> values) {
-  for (std::size_t i = 0; i < partial_.size(); ++i) std::swap(values_[partial_[i]], values[i]);
+  auto* copy = reinterpret_cast<std::uint8_t*>(words_.data());
+  for (std::size_t i = 0; i < partial_count_; ++i) std::swap(copy[partial_[i]], values[i]);
   return values;
 }
 
@@ -202,10 +328,13 @@ Paint MixtureColours::mixture_with(std::array<std::uint8_t, 2> values) {
 Paint MixtureColours::mixture_at_hand() const {
   Paint sum;
   for (const PictureParts::Layer& layer : parts_->layers()) sum = with_layer(layer, sum);
-  return mixed(sum, 1, background_, 1.0f - sum.covered + sum.beneath);
+  return over_background(sum, background_);
 }
 
 Paint MixtureColours::with_layer(const PictureParts::Layer& layer, const Paint& below) const {
+  if (is_plain(layer) && meeting_of(layer).relation == 0) {
+    return with_plain_layer(layer, below, [this](std::uint32_t i) { return share_of(i); });
+  }
   const PaintedLayer& painted = *layer.painted;
   const auto opacity = static_cast<float>(painted.opacity);
   const bool is_separable = layer.lines.empty() || opacity == 1;

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "render/picture/colour_numbers.h"
 #include "render/picture/mixtures.h"
 #include "render/picture/number_table.h"
 #include "render/picture/paint.h"
@@ -27,9 +26,9 @@ class MixtureColours {
   /// Chooses colours by that; all are exact if it is 0.
   void colour(int most_change);
 
-  /// As they became last: each once, and the number of each mixture's.
-  const ColourNumbers& colours() const { return colours_; }
-  std::span<const std::uint32_t> numbers() const { return numbers_; }
+  /// As they became last, by mixture.
+  std::span<const Rgba> colours() const { return colours_; }
+  std::span<const Origin> origins() const { return origins_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -46,7 +45,7 @@ class MixtureColours {
     // For the change at hand:
     std::uint32_t steps = 1;
     float step = 1;                // the share of one
-    std::uint32_t first_step = 0;  // index of its colour in step_colours_
+    std::uint32_t first_step = 0;  // index in step_mixtures_
 
     std::uint32_t nearest_step(std::uint8_t value) const { return (2 * value * steps + 255) / 510; }
     float nearest_share(std::uint8_t value) const {
@@ -59,8 +58,9 @@ class MixtureColours {
   struct Kind {
     std::uint32_t edge = kNone;
     std::uint8_t value = 0;  // of the mask whose edge it is
+    bool has_meetings = false;
     bool is_exact_known = false;
-    Origin origin = Origin::mixed;
+    Origin origin = Origin::mixed;  // of the exact colour
     Rgba exact;
   };
 
@@ -70,8 +70,9 @@ class MixtureColours {
   Edge make_edge();
   bool is_on_line(const Edge& edge);
   void set_steps(int most_change);
-  Rgba exact_colour(std::size_t mixture);
-  std::uint32_t colour_along(const Edge& edge, std::uint8_t value);
+  void set_exact(std::size_t mixture, Rgba colour);
+  void find_exact_in_lanes(std::span<const std::uint32_t> mixtures);
+  void colour_along(const Edge& edge, std::size_t mixture);
   static bool is_close_once_rounded(const Edge& edge, std::uint8_t value);
 
   void take_values(std::size_t mixture);
@@ -88,17 +89,23 @@ class MixtureColours {
   const PictureParts* parts_ = nullptr;
   const Mixtures* mixtures_ = nullptr;
   Paint background_;
+  bool are_layers_plain_ = false;
+  // By word of a mixture: the highest bits of the values of channels, and of relations.
+  std::vector<std::uint64_t> channel_bits_;
+  std::vector<std::uint64_t> relation_bits_;
   std::vector<Kind> kinds_;  // by mixture
   std::vector<Edge> edges_;
   std::vector<std::uint64_t> edge_words_;  // by edge: its key
   NumberTable edge_numbers_;
-  std::vector<std::uint32_t> step_colours_;  // of all edges; kNone: not met yet
-  ColourNumbers colours_;
-  std::vector<std::uint32_t> numbers_;
+  std::vector<std::uint32_t> step_mixtures_;  // by step of all edges: one that has its colour
+  std::vector<Rgba> colours_;                 // by mixture
+  std::vector<Origin> origins_;               // by mixture
+  std::vector<std::uint32_t> wanted_;         // mixtures whose exact colours are to be found
   // Of the mixture at hand.
-  std::vector<std::uint64_t> words_;
-  std::uint8_t* values_ = nullptr;      // in the words
-  std::vector<std::uint32_t> partial_;  // channels that have a part of the pixel
+  const std::uint8_t* values_ = nullptr;
+  std::vector<std::uint64_t> words_;        // a copy of its values that may be changed
+  std::array<std::uint32_t, 2> partial_{};  // the first channels that have a part of the pixel
+  std::size_t partial_count_ = 0;
   std::size_t meeting_count_ = 0;
 };
 

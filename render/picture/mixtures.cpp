@@ -76,7 +76,7 @@ void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
   mixtures.runs.clear();
   mixtures.row_end.clear();
   of_masks_.resize(mixtures.words_each);
-  key_.resize(mixtures.words_each);
+  row_keys_.resize((columns_ + 1) * mixtures.words_each);
   changes_.resize(words_for(columns_));
   covered_.resize(words_for(columns_));
   if (pattern_values_.size() < parts.layers().size()) pattern_values_.resize(parts.layers().size());
@@ -91,26 +91,55 @@ void MixtureFinder::find(const PictureParts& parts, Mixtures& mixtures) {
   }
 }
 
+// The keys of the whole row first, so that the slots of all of them are fetched at once.
 template <std::size_t kWords>
 void MixtureFinder::find_row(int row) {
   begin_row(row);
   const std::size_t first_pixel = static_cast<std::size_t>(row) * columns_;
-  std::uint32_t mixture = mixture_at<kWords>(0, first_pixel);
-  std::size_t begin = 0;
-  // The run that began last ends where the next one begins.
-  const auto end_run = [&](std::size_t end) {
-    mixtures_->pixels[mixture] += static_cast<std::uint32_t>(end - begin);
-    mixtures_->runs.push_back({static_cast<std::uint32_t>(end), mixture});
-  };
+  std::uint64_t* key = row_keys_.data();  // of the run at hand
+  put_key<kWords>(0, first_pixel, key);
+  numbers_.prefetch(hash_of({key, words_each<kWords>()}));
   for_each_bit(changes_, [&](std::size_t column) {
+    const std::size_t words = words_each<kWords>();
     advance_masks(column);
-    const std::uint32_t next = mixture_at<kWords>(column, first_pixel + column);
-    if (next == mixture) return;
-    end_run(column);
-    begin = column;
-    mixture = next;
+    std::uint64_t* const next = key + words;
+    put_key<kWords>(column, first_pixel + column, next);
+    if (std::equal(key, key + words, next)) return;
+    numbers_.prefetch(hash_of({next, words}));
+    row_ends_.push_back(static_cast<std::uint32_t>(column));
+    key = next;
   });
-  end_run(columns_);
+  row_ends_.push_back(static_cast<std::uint32_t>(columns_));
+  number_row<kWords>();
+}
+
+// Inlined, so that it knows of how many words the key is where its caller does.
+[[gnu::always_inline]] inline std::uint32_t MixtureFinder::number_of_key(
+    std::span<const std::uint64_t> key) {
+  std::vector<std::uint64_t>& words = mixtures_->words;
+  std::uint32_t& number = numbers_.find(hash_of(key), [&](std::uint32_t mixture) {
+    return std::equal(key.begin(), key.end(), words.data() + mixture * key.size());
+  });
+  if (number == NumberTable::kNone) {
+    number = static_cast<std::uint32_t>(mixtures_->size());
+    for (const std::uint64_t word : key) words.push_back(word);
+    mixtures_->pixels.push_back(0);
+  }
+  return number;
+}
+
+template <std::size_t kWords>
+void MixtureFinder::number_row() {
+  const std::size_t words = words_each<kWords>();
+  const std::uint64_t* key = row_keys_.data();
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : row_ends_) {
+    const std::uint32_t mixture = number_of_key({key, words});
+    mixtures_->pixels[mixture] += end - begin;
+    mixtures_->runs.push_back({end, mixture});
+    begin = end;
+    key += words;
+  }
   mixtures_->row_end.push_back(static_cast<std::uint32_t>(mixtures_->runs.size()));
 }
 
@@ -119,6 +148,7 @@ void MixtureFinder::begin_row(int row) {
   std::fill(changes_.begin(), changes_.end(), 0);
   masks_.clear();
   patterns_.clear();
+  row_ends_.clear();
   has_meetings_ = false;
   std::fill(of_masks_.begin(), of_masks_.end(), 0);
   of_masks_[0] = 255;
@@ -193,22 +223,21 @@ void MixtureFinder::advance_masks(std::size_t column) {
   }
 }
 
+/// Of the pixel at hand.
 template <std::size_t kWords>
-std::uint32_t MixtureFinder::mixture_at(std::size_t column, std::size_t pixel) {
-  if (patterns_.empty() && !has_meetings_) return number_of_key<kWords>(of_masks_);
+inline void MixtureFinder::put_key(std::size_t column, std::size_t pixel, std::uint64_t* key) {
   if constexpr (kWords == 1) {
-    key_[0] = of_masks_[0];
+    key[0] = of_masks_[0];
   } else {
-    std::ranges::copy(of_masks_, key_.begin());
+    std::ranges::copy(of_masks_, key);
   }
   for (const PatternRow& pattern : patterns_) {
-    key_[pattern.place.word] |= std::uint64_t{pattern.values[column]} << pattern.place.shift;
+    key[pattern.place.word] |= std::uint64_t{pattern.values[column]} << pattern.place.shift;
   }
-  if (has_meetings_) add_meetings(pixel);
-  return number_of_key<kWords>(key_);
+  if (has_meetings_) add_meetings(pixel, key);
 }
 
-void MixtureFinder::add_meetings(std::size_t pixel) {
+void MixtureFinder::add_meetings(std::size_t pixel, std::uint64_t* key) {
   for (std::size_t k = 0; k < meetings_.size(); ++k) {
     auto& [next, has_any] = meetings_[k];
     if (!has_any) continue;
@@ -216,29 +245,13 @@ void MixtureFinder::add_meetings(std::size_t pixel) {
     const auto meetings = layer.painted->meetings;
     while (next < meetings.size() && meetings[next].pixel < pixel) ++next;
     if (next == meetings.size() || meetings[next].pixel != pixel) continue;
-    const auto add_value = [this](std::size_t number, std::uint8_t value) {
+    const auto add_value = [key](std::size_t number, std::uint8_t value) {
       const Place place(number);
-      key_[place.word] |= std::uint64_t{value} << place.shift;
+      key[place.word] |= std::uint64_t{value} << place.shift;
     };
     add_value(layer.meeting, static_cast<std::uint8_t>(meetings[next].relation));
     add_value(layer.meeting + 1, meetings[next].gap);
   }
-}
-
-template <std::size_t kWords>
-std::uint32_t MixtureFinder::number_of_key(std::span<const std::uint64_t> words_of_key) {
-  const std::size_t size = kWords == 1 ? 1 : words_of_key.size();
-  const std::span<const std::uint64_t> key = words_of_key.first(size);
-  std::vector<std::uint64_t>& words = mixtures_->words;
-  std::uint32_t& number = numbers_.find(hash_of(key), [&](std::uint32_t mixture) {
-    return std::ranges::equal(key, std::span(words).subspan(mixture * size, size));
-  });
-  if (number == NumberTable::kNone) {
-    number = static_cast<std::uint32_t>(mixtures_->size());
-    words.insert(words.end(), key.begin(), key.end());
-    mixtures_->pixels.push_back(0);
-  }
-  return number;
 }
 
 }  // namespace trapeze

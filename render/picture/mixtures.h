@@ -105,10 +105,15 @@ class MixtureFinder {
 
   // Of mixtures of so many words; 0: however many.
   template <std::size_t kWords>
+  std::size_t words_each() const {
+    return kWords == 0 ? of_masks_.size() : kWords;
+  }
+  template <std::size_t kWords>
   void find_row(int row);
   template <std::size_t kWords>
-  std::uint32_t mixture_at(std::size_t column, std::size_t pixel);
+  void number_row();
   template <std::size_t kWords>
+  void put_key(std::size_t column, std::size_t pixel, std::uint64_t* key);
   std::uint32_t number_of_key(std::span<const std::uint64_t> key);
   void begin_row(int row);
   void mark_layer(std::size_t number, int row);
@@ -116,7 +121,7 @@ class MixtureFinder {
   void mark_pattern(std::size_t number, int row);
   void mark_meetings(std::size_t number, int row);
   void advance_masks(std::size_t column);
-  void add_meetings(std::size_t pixel);
+  void add_meetings(std::size_t pixel, std::uint64_t* key);
 
   const PictureParts* parts_ = nullptr;
   Mixtures* mixtures_ = nullptr;
@@ -129,8 +134,9 @@ class MixtureFinder {
   std::vector<LayerMeeting> meetings_;                     // by layer
   bool has_meetings_ = false;                              // in the row
   std::vector<std::uint64_t>
-      of_masks_;                    // words of the pixel at hand, without patterns and meetings
-  std::vector<std::uint64_t> key_;  // of the mixture at hand
+      of_masks_;  // words of the pixel at hand, without patterns and meetings
+  std::vector<std::uint64_t> row_keys_;  // of the runs of the row
+  std::vector<std::uint32_t> row_ends_;  // the columns after them
   NumberTable numbers_;
 };
 

@@ -26,29 +26,44 @@ class NumberTable {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// The number of the key with that hash for which is_same(number) holds; kNone, to be set, if it
-  /// is new. Lasts until the next call.
+  /// The number of the key with that hash, of which the upper half counts, for which
+  /// is_same(number) holds; kNone, to be set, if it is new. Lasts until the next call.
   template <typename IsSame>
   std::uint32_t& find(std::uint64_t hash, const IsSame& is_same) {
     if (count_ * 2 >= slots_.size()) grow();
     const auto tag = static_cast<std::uint32_t>(hash >> 32);
     const std::size_t mask = slots_.size() - 1;
     std::size_t i = tag & mask;
-    for (; slots_[i].generation == generation_; i = (i + 1) & mask) {
+    for (; slots_[i].number != kNone; i = (i + 1) & mask) {
       if (slots_[i].tag == tag && is_same(slots_[i].number)) return slots_[i].number;
     }
-    slots_[i] = {tag, kNone, generation_};
+    slots_[i].tag = tag;
     ++count_;
     return slots_[i].number;
   }
 
+  /// The same without adding anything: kNone if the key is not there.
+  template <typename IsSame>
+  std::uint32_t look_up(std::uint64_t hash, const IsSame& is_same) const {
+    const auto tag = static_cast<std::uint32_t>(hash >> 32);
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t i = tag & mask; slots_[i].number != kNone; i = (i + 1) & mask) {
+      if (slots_[i].tag == tag && is_same(slots_[i].number)) return slots_[i].number;
+    }
+    return kNone;
+  }
+
+  /// To be called some time before find() where a table may be too large for the processor's cache.
+  void prefetch(std::uint64_t hash) const {
+    __builtin_prefetch(&slots_[(hash >> 32) & (slots_.size() - 1)]);
+  }
+
   /// Forgets all keys.
   void clear() {
-    slots_.resize(std::min(slots_.size(), std::bit_ceil(std::max(kLeastSlots, 2 * count_))));
+    const std::size_t size =
+        std::min(slots_.size(), std::bit_ceil(std::max(kLeastSlots, 2 * count_)));
+    slots_.assign(size, Slot());
     count_ = 0;
-    if (++generation_ != 0) return;
-    std::fill(slots_.begin(), slots_.end(), Slot{});
-    generation_ = 1;
   }
 
  private:
@@ -56,8 +71,7 @@ class NumberTable {
 
   struct Slot {
     std::uint32_t tag = 0;
-    std::uint32_t number = 0;
-    std::uint32_t generation = 0;  // it is empty if this is not the table's
+    std::uint32_t number = kNone;  // kNone: it is empty
   };
 
   void grow() {
@@ -65,16 +79,15 @@ class NumberTable {
     old.swap(slots_);
     const std::size_t mask = slots_.size() - 1;
     for (const Slot& slot : old) {
-      if (slot.generation != generation_) continue;
+      if (slot.number == kNone) continue;
       std::size_t i = slot.tag & mask;
-      while (slots_[i].generation == generation_) i = (i + 1) & mask;
+      while (slots_[i].number != kNone) i = (i + 1) & mask;
       slots_[i] = slot;
     }
   }
 
   std::vector<Slot> slots_ = std::vector<Slot>(kLeastSlots);
   std::size_t count_ = 0;
-  std::uint32_t generation_ = 1;
 };
 
 }  // namespace trapeze

@@ -1,31 +1,22 @@
 #include "render/picture/paint.h"
 
-#include <algorithm>
 #include <cstdint>
 
 namespace trapeze {
 namespace {
 
 std::uint8_t to_byte(float share) {
-  return static_cast<std::uint8_t>(std::clamp(share, 0.0f, 1.0f) * 255.0f + 0.5f);
+  return static_cast<std::uint8_t>(to_byte_and_half(share));
 }
 
 }  // namespace
-
-Paint over(const Paint& above, const Paint& below) {
-  Paint sum = mixed(above, 1, below, 1.0f - above.a);
-  sum.covered = above.covered + below.covered * (1.0f - above.covered);
-  sum.beneath =
-      below.beneath * (1.0f - above.a) + (1.0f - below.covered) * (above.covered - above.a);
-  return sum;
-}
 
 Paint over(const Paint& above, const Paint& below, const Meeting& meeting) {
   if (above.covered == 0 || below.covered == 0) return over(above, below);
   const auto [covered, common] = shares_of(below.covered, above.covered, meeting);
   const float opacity = above.a / above.covered;
   const float left = (1.0f - opacity * common / covered) * covered / below.covered;
-  Paint sum = mixed(above, 1, below, left);
+  Paint sum = mixed(above, 1.0f, below, left);
   sum.covered = above.covered + covered - common;
   sum.beneath = below.beneath * left + (above.covered - common) * (1.0f - opacity);
   return sum;
@@ -35,7 +26,7 @@ Paint settled(const Paint& sum) {
   constexpr float kHalfValue = 0.501f / 255;  // and what the sum lost in rounding
   const bool is_whole = sum.classes > 1 && sum.covered > 1 - kHalfValue * sum.classes;
   if (!is_whole && sum.covered <= 1) return sum;
-  Paint paint = mixed(sum, 1 / sum.covered, {}, 0);
+  Paint paint = mixed(sum, 1 / sum.covered, {}, 0.0f);
   paint.covered = 1;
   return paint;
 }

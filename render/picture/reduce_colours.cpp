@@ -11,20 +11,28 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-/// Cells of channels, the first of which has its middle at 0. Opacities of flat colours attract
-/// those close to them, so that what is as opaque everywhere remains so.
+/// Cells of channels, the first of which has its middle at 0.
 class Lattice {
  public:
-  Lattice(std::span<const Rgba> colours, std::span<const Origin> origins, int most_change)
-      : step_(2 * most_change + 1) {
+  explicit Lattice(int most_change) : step_(2 * most_change + 1) {
+    for (std::size_t i = 0; i < middles_.size(); ++i) {
+      middles_[i] = divided(static_cast<int>(i), step_) * step_;
+    }
     // What is opaque remains so, and nothing else becomes so.
-    for (int a = 0; a < 255; ++a)
-      opacities_[static_cast<std::size_t>(a)] = std::min(middle(a), 254);
+    for (std::size_t a = 0; a < 255; ++a) opacities_[a] = std::min(middles_[a], 254);
     opacities_[255] = 255;
-    std::array<int, 256> distances;
-    distances.fill(most_change + 1);
-    for (std::size_t i = 0; i < colours.size(); ++i) {
-      if (origins[i] == Origin::flat) attract(colours[i].a, distances);
+    distances_.fill(most_change + 1);
+  }
+
+  /// Opacities of flat colours attract those close to them, so that what is as opaque everywhere
+  /// remains so. Of two that are as close, the first one does.
+  void attract(int opacity) {
+    if (opacity == 255) return;
+    for (int a = std::max(0, opacity - step_ / 2); a <= std::min(254, opacity + step_ / 2); ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      if (std::abs(a - opacity) >= distances_[i]) continue;
+      distances_[i] = std::abs(a - opacity);
+      opacities_[i] = opacity;
     }
   }
 
@@ -36,21 +44,19 @@ class Lattice {
   }
 
  private:
-  int middle(int value) const { return divided(value, step_) * step_; }
-
-  void attract(int opacity, std::array<int, 256>& distances) {
-    if (opacity == 255) return;
-    for (int a = std::max(0, opacity - step_ / 2); a <= std::min(254, opacity + step_ / 2); ++a) {
-      const auto i = static_cast<std::size_t>(a);
-      if (std::abs(a - opacity) >= distances[i]) continue;
-      distances[i] = std::abs(a - opacity);
-      opacities_[i] = opacity;
-    }
-  }
+  int middle(int value) const { return middles_[static_cast<std::size_t>(value)]; }
 
   int step_;
+  std::array<int, 256> middles_{};
   std::array<int, 256> opacities_{};
+  std::array<int, 256> distances_{};  // of opacities from what has attracted them
 };
+
+/// For a table of colours.
+Rgba as_colour(const Channels& channels) {
+  const auto byte = [](int channel) { return static_cast<std::uint8_t>(channel); };
+  return {byte(channels.r), byte(channels.g), byte(channels.b), byte(channels.a)};
+}
 
 }  // namespace
 
@@ -62,30 +68,36 @@ class ColourReducer::Neighbourhood {
 
   /// Numbers are added in ascending order, from 0 on.
   void add(const Channels& channels) {
-    std::uint32_t& first = first_[place_of(channels.r, channels.g)];
+    std::uint32_t& first = first_[place_of(channels.r / kWidth, channels.g / kWidth)];
     next_.push_back(std::exchange(first, static_cast<std::uint32_t>(next_.size())));
   }
 
-  /// Calls visit(number) for all colours none of whose channels is further away than kReach, and
-  /// for others.
+  /// Calls visit(number) for all colours none of whose channels is further away than `reach`, and
+  /// for others. Those for which it returns false are taken out.
   template <typename Visit>
-  void for_each_near(const Channels& channels, const Visit& visit) const {
-    for (int r = channels.r - kReach; r <= channels.r + kReach; r += kReach) {
-      for (int g = channels.g - kReach; g <= channels.g + kReach; g += kReach) {
-        if (r < 0 || g < 0 || r >= kSide * kReach || g >= kSide * kReach) continue;
-        for (std::uint32_t i = first_[place_of(r, g)]; i != kNone; i = next_[i]) visit(i);
+  void for_each_near(const Channels& channels, int reach, const Visit& visit) {
+    const auto first_of = [reach](int channel) { return std::max(channel - reach, 0) / kWidth; };
+    const auto last_of = [reach](int channel) { return std::min(channel + reach, 255) / kWidth; };
+    for (int r = first_of(channels.r); r <= last_of(channels.r); ++r) {
+      for (int g = first_of(channels.g); g <= last_of(channels.g); ++g) {
+        std::uint32_t* link = &first_[place_of(r, g)];
+        while (*link != kNone) {
+          std::uint32_t& next = next_[*link];
+          if (visit(*link)) {
+            link = &next;
+          } else {
+            *link = next;
+          }
+        }
       }
     }
   }
 
  private:
-  static constexpr int kReach = 2 * kMostChange + 1;
-  static constexpr int kSide = 255 / kReach + 1;
+  static constexpr int kWidth = 2 * kMostChange + 1;
+  static constexpr int kSide = 255 / kWidth + 1;
 
-  static std::size_t place_of(int r, int g) {
-    const int place = r / kReach * kSide + g / kReach;
-    return static_cast<std::size_t>(place);
-  }
+  static std::size_t place_of(int r, int g) { return static_cast<std::size_t>(r * kSide + g); }
 
   std::array<std::uint32_t, std::size_t{kSide} * kSide> first_;
   std::vector<std::uint32_t> next_;  // by number
@@ -127,7 +139,7 @@ std::uint64_t ColourReducer::reduce(std::span<const Rgba> colours, std::span<con
   channels_.clear();
   for (const Rgba colour : colours) channels_.push_back(channels_of(colour));
   put_into_lattice(given, most_change);
-  if (made_.size() > kPaletteColours && most_change > 0 && may_be_gathered(given) &&
+  if (made_.size() > kPaletteColours && most_change > 0 && may_be_gathered() &&
       !gather(given, most_change)) {
     put_into_lattice(given, most_change);
   }
@@ -149,14 +161,25 @@ void ColourReducer::reduce(RunPicture& picture) {
   recolour(before.runs, before.row_end, becomes_, picture);
 }
 
-// All but mixed colours remain.
+// All but mixed colours remain. New ones are numbered in the order in which they are met.
 void ColourReducer::begin(const Given& given) {
   made_.clear();
   new_channels_.clear();
+  kept_.clear();
   becomes_.assign(given.colours.size(), kNone);
-  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+  std::vector<std::uint32_t> kept(becomes_.size(), kNone);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
     if (given.pixels[i] == 0 || given.origins[i] == Origin::mixed) continue;
-    becomes_[i] = make(given.colours[i], given.origins[i]);
+    kept[i] = kept_.number_of(given.colours[i], given.origins[i]);
+  }
+  std::vector<std::uint32_t> new_numbers(kept_.size(), kNone);  // by number among those kept
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (given.pixels[i] == 0) continue;
+    if (kept[i] == kNone) kept[i] = kept_.look_up(given.colours[i]);
+    if (kept[i] == kNone) continue;
+    std::uint32_t& number = new_numbers[kept[i]];
+    if (number == kNone) number = make(given.colours[i], kept_.origins()[kept[i]]);
+    becomes_[i] = number;
   }
 }
 
@@ -168,22 +191,30 @@ std::uint32_t ColourReducer::make(Rgba colour, Origin origin) {
 
 void ColourReducer::put_into_lattice(const Given& given, int most_change) {
   begin(given);
-  const Lattice lattice(given.colours, given.origins, most_change);
+  Lattice lattice(most_change);
+  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+    const bool is_kept = becomes_[i] != kNone;
+    const Origin origin = is_kept ? made_.origins()[becomes_[i]] : given.origins[i];
+    if (origin == Origin::flat) lattice.attract(given.colours[i].a);
+  }
+  cells_.clear();
+  of_cells_.clear();
   for (std::size_t i = 0; i < becomes_.size(); ++i) {
     if (given.pixels[i] == 0 || becomes_[i] != kNone) continue;
-    const Rgba colour =
-        most_change == 0 ? given.colours[i] : straight(lattice.middle_of(channels_[i]));
-    becomes_[i] = make(colour, Origin::mixed);
+    if (most_change == 0) {
+      becomes_[i] = make(given.colours[i], Origin::mixed);
+      continue;
+    }
+    const Channels middle = lattice.middle_of(channels_[i]);
+    const std::uint32_t cell = cells_.number_of(as_colour(middle), Origin::mixed);
+    if (cell == of_cells_.size()) of_cells_.push_back(make(straight(middle), Origin::mixed));
+    becomes_[i] = of_cells_[cell];
   }
 }
 
 /// Boxes around colours take about half as many as the cells of the lattice.
-bool ColourReducer::may_be_gathered(const Given& given) const {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < given.pixels.size(); ++i) {
-    kept += given.pixels[i] > 0 && given.origins[i] != Origin::mixed ? 1 : 0;
-  }
-  return kept + (made_.size() - std::min(kept, made_.size())) / 2 <= kPaletteColours;
+bool ColourReducer::may_be_gathered() const {
+  return kept_.size() + (made_.size() - kept_.size()) / 2 <= kPaletteColours;
 }
 
 // Boxes are begun with the colour that most pixels have among those that are left. False if there
@@ -191,49 +222,78 @@ bool ColourReducer::may_be_gathered(const Given& given) const {
 bool ColourReducer::gather(const Given& given, int most_change) {
   begin(given);
   if (made_.size() > kPaletteColours) return false;
+  number_others(given);
   Neighbourhood kept;
   for (const Channels& channels : new_channels_) kept.add(channels);
-  std::vector<std::uint32_t> left;
-  for (std::uint32_t i = 0; i < given.pixels.size(); ++i) {
-    if (given.pixels[i] == 0 || becomes_[i] != kNone) continue;
-    becomes_[i] = nearest(kept, channels_[i], most_change);
-    if (becomes_[i] == kNone) left.push_back(i);
+  struct Left {
+    Channels channels;
+    std::uint32_t number;  // among the others
+  };
+  std::vector<Left> left;
+  std::vector<std::uint32_t> of_others(others_.size());  // index of a new colour
+  for (std::uint32_t i = 0; i < others_.size(); ++i) {
+    const Channels channels = channels_of(others_.colours()[i]);
+    of_others[i] = nearest(kept, channels, most_change);
+    if (of_others[i] == kNone) left.push_back({channels, i});
   }
-  std::ranges::sort(left, {}, [&](std::uint32_t i) {
-    return std::tuple(~given.pixels[i], bits_of(given.colours[i]));
+  std::ranges::sort(left, {}, [&](const Left& one) {
+    return std::tuple(~pixels_of_others_[one.number], bits_of(others_.colours()[one.number]));
   });
-  Neighbourhood others;
-  for (const std::uint32_t i : left) others.add(channels_[i]);
+  Neighbourhood all_left;
+  for (const Left& one : left) all_left.add(one.channels);
+  std::vector<std::uint32_t> becomes(left.size(), kNone);
   std::vector<std::uint32_t> near;
   for (std::uint32_t first = 0; first < left.size(); ++first) {
-    if (becomes_[left[first]] != kNone) continue;
+    if (becomes[first] != kNone) continue;
     if (made_.size() >= kPaletteColours) return false;
+    const Channels& around = left[first].channels;
     near.clear();
-    others.for_each_near(channels_[left[first]], [&](std::uint32_t k) {
-      if (k > first && becomes_[left[k]] == kNone) near.push_back(k);
+    all_left.for_each_near(around, 2 * most_change, [&](std::uint32_t k) {
+      const bool is_left = becomes[k] == kNone && k != first;
+      const bool fits = difference(left[k].channels, around).most <= 2 * most_change;
+      if (is_left && fits) near.push_back(k);
+      return is_left;
     });
     std::ranges::sort(near);
-    Box box(channels_[left[first]], 2 * most_change);
-    std::erase_if(near, [&](std::uint32_t k) { return !box.take(channels_[left[k]]); });
-    const std::uint32_t colour = make(straight(box.middle()), Origin::mixed);
-    becomes_[left[first]] = colour;
-    for (const std::uint32_t k : near) becomes_[left[k]] = colour;
+    Box box(around, 2 * most_change);
+    std::erase_if(near, [&](std::uint32_t k) { return !box.take(left[k].channels); });
+    becomes[first] = make(straight(box.middle()), Origin::mixed);
+    for (const std::uint32_t k : near) becomes[k] = becomes[first];
+  }
+  for (std::size_t k = 0; k < left.size(); ++k) of_others[left[k].number] = becomes[k];
+  for (std::size_t i = 0; i < becomes_.size(); ++i) {
+    if (becomes_[i] == kNone && given.pixels[i] > 0) becomes_[i] = of_others[numbers_[i]];
   }
   return true;
 }
 
+/// Those that do not remain: each once, with all of its pixels.
+void ColourReducer::number_others(const Given& given) {
+  others_.clear();
+  pixels_of_others_.clear();
+  numbers_.resize(given.colours.size());
+  for (std::size_t i = 0; i < numbers_.size(); ++i) {
+    if (becomes_[i] != kNone || given.pixels[i] == 0) continue;
+    numbers_[i] = others_.number_of(given.colours[i], Origin::mixed);
+    if (numbers_[i] == pixels_of_others_.size()) pixels_of_others_.push_back(0);
+    pixels_of_others_[numbers_[i]] += given.pixels[i];
+  }
+}
+
 /// Of the new colours; kNone if all are too far. Of those that are as near, the first.
-std::uint32_t ColourReducer::nearest(const Neighbourhood& kept, const Channels& channels,
+std::uint32_t ColourReducer::nearest(Neighbourhood& kept, const Channels& channels,
                                      int most_change) const {
   std::uint32_t nearest = kNone;
   std::tuple least{most_change + 1, 0, kNone};
-  kept.for_each_near(channels, [&](std::uint32_t k) {
+  kept.for_each_near(channels, most_change, [&](std::uint32_t k) {
     const bool are_opaque_alike = (new_channels_[k].a == 255) == (channels.a == 255);
     const Difference apart = difference(new_channels_[k], channels);
     const std::tuple distance{apart.most, apart.sum, k};
-    if (!are_opaque_alike || distance >= least) return;
-    least = distance;
-    nearest = k;
+    if (are_opaque_alike && distance < least) {
+      least = distance;
+      nearest = k;
+    }
+    return true;
   });
   return nearest;
 }

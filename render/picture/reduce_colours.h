@@ -57,8 +57,8 @@ int reduce_within(double most, const Reduce& reduce) {
 class ColourReducer {
  public:
   /// Of colours, how they came about, and how many pixels have each: those that none has are left
-  /// out. `most_change` is from 0 to kMostChange. The sum of the changes of all channels of all
-  /// pixels.
+  /// out. A colour may come several times; of its origins the first of the enumeration counts.
+  /// `most_change` is from 0 to kMostChange. The sum of the changes of all channels of all pixels.
   std::uint64_t reduce(std::span<const Rgba> colours, std::span<const Origin> origins,
                        std::span<const std::uint32_t> pixels, int most_change);
 
@@ -76,7 +76,7 @@ class ColourReducer {
   class Box;
   class Neighbourhood;
 
-  // Of the picture at hand, by colour.
+  // Of the picture at hand.
   struct Given {
     std::span<const Rgba> colours;
     std::span<const Origin> origins;
@@ -85,14 +85,21 @@ class ColourReducer {
 
   void begin(const Given& given);
   void put_into_lattice(const Given& given, int most_change);
-  bool may_be_gathered(const Given& given) const;
+  bool may_be_gathered() const;
   bool gather(const Given& given, int most_change);
+  void number_others(const Given& given);
   std::uint32_t make(Rgba colour, Origin origin);
-  std::uint32_t nearest(const Neighbourhood& kept, const Channels& channels, int most_change) const;
+  std::uint32_t nearest(Neighbourhood& kept, const Channels& channels, int most_change) const;
   std::uint64_t change(const Given& given) const;
 
-  std::vector<Channels> channels_;      // by colour
-  std::vector<std::uint32_t> becomes_;  // by colour: index of a new one
+  std::vector<Channels> channels_;       // by colour
+  std::vector<std::uint32_t> becomes_;   // by colour: index of a new one
+  ColourNumbers kept_;                   // those that remain, each once
+  ColourNumbers cells_;                  // of the lattice: their channels, as if they were colours
+  std::vector<std::uint32_t> of_cells_;  // by cell: index of a new one
+  ColourNumbers others_;                 // those that do not remain, each once
+  std::vector<std::uint32_t> pixels_of_others_;
+  std::vector<std::uint32_t> numbers_;  // by colour: among the others
   ColourNumbers made_;                  // the new ones
   std::vector<Channels> new_channels_;  // of the new ones
 };

@@ -362,6 +362,7 @@ inline void RunDeflater::end_match_above() {
 // Adler-32 (RFC 1950): the sum of the bytes, and the sum of all sums so far.
 void RunDeflater::add_to_checksum(std::span<const PixelRun> runs) {
   const std::uint64_t size = bytes_per_pixel_;
+  const std::uint64_t bytes_that_count = size == 4 ? 0xffffffff : 0xffffff;
   // Each byte counts in all sums from its own on.
   std::uint64_t sum = 0;
   std::uint64_t sums = 0;
@@ -380,11 +381,14 @@ void RunDeflater::add_to_checksum(std::span<const PixelRun> runs) {
       sums += distances * run.pixel;
       continue;
     }
-    for (std::uint64_t i = 0; i < size; ++i) {
-      const std::uint64_t byte = run.pixel >> 8 * i & 0xff;
-      sum += pixels * byte;
-      sums += (distances * size - pixels * i) * byte;
-    }
+    // The later a byte of a pixel is, the less it counts.
+    const std::uint64_t pixel = run.pixel & bytes_that_count;
+    const std::uint64_t second = pixel >> 8 & 0xff;
+    const std::uint64_t third = pixel >> 16 & 0xff;
+    const std::uint64_t fourth = pixel >> 24;
+    const std::uint64_t of_pixel = (pixel & 0xff) + second + third + fourth;
+    sum += pixels * of_pixel;
+    sums += distances * size * of_pixel - pixels * (second + 2 * third + 3 * fourth);
   }
   sums += sum_of_sums_ + sum_ * stride_;
   sum += sum_;

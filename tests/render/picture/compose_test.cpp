@@ -124,6 +124,31 @@ TEST(ComposeTest, IsSourceOverToTheLastDigit) {
   }
 }
 
+// A layer of several classes has all layers mixed pixel by pixel, be there nothing to be seen of
+// it; without one, several mixtures are computed at once.
+TEST(ComposeTest, ColoursAreTheSameOneByOneAndSeveralAtOnce) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  for (const Rgba background : {kTransparent, Rgba{200, 210, 220, 255}, Rgba{9, 99, 200, 77}}) {
+    const Mask nothing(33, 9);
+    const std::vector<PaintedClass> none{{&nothing, {1, 2, 3, 255}}, {&nothing, {4, 5, 6, 255}}};
+    std::vector<Mask> masks;
+    for (int i = 0; i < 5; ++i) masks.push_back(random_mask(random, 33, 9));
+    const PaintedClass fills[] = {{&masks[0], {250, 3, 90, 255}}, {&masks[1], {0, 128, 255, 140}}};
+    const PaintedClass lines[] = {
+        {&masks[2], {0, 0, 0, 255}}, {&masks[3], {9, 255, 8, 0}}, {&masks[4], {80, 70, 0, 3}}};
+    std::vector<PaintedLayer> layers{{.classes = {&fills[0], 1}, .lines = lines},
+                                     {.classes = {&fills[1], 1}, .opacity = 0.3}};
+    RunPicture at_once;
+    Composer().compose(layers, 33, 9, background, Quality::exact, at_once);
+    layers.push_back({.classes = none});
+    RunPicture one_by_one;
+    Composer().compose(layers, 33, 9, background, Quality::exact, one_by_one);
+    EXPECT_EQ(to_pixels(at_once).pixels, to_pixels(one_by_one).pixels);
+  }
+}
+
 TEST(ComposeTest, RunsEndWhereColoursChange) {
   std::vector<int> left(64 * 64), right(64 * 64);
   for (std::size_t i = 0; i < left.size(); ++i) {

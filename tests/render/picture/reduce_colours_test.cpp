@@ -220,6 +220,51 @@ TEST(ReduceColoursTest, TellsTheSumOfTheChanges) {
   EXPECT_GT(sum, 0);
 }
 
+// Of those that are few enough for it, also where they are gathered into a palette.
+TEST(ReduceColoursTest, AColourThatComesSeveralTimesIsAsIfItCameOnce) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  for (const int count : {50, 400, 1'000, 20'000}) {
+    std::vector<Rgba> once;
+    std::vector<Origin> origins;
+    std::vector<std::uint32_t> pixels;
+    std::set<std::uint32_t> met;
+    for (int i = 0; i < count; ++i) {
+      const auto byte = [&random] { return static_cast<std::uint8_t>(random() % 60); };
+      const Rgba colour{byte(), byte(), 30, static_cast<std::uint8_t>(255 - byte() % 9)};
+      if (!met.insert(bits_of(colour)).second) continue;
+      once.push_back(colour);
+      origins.push_back(static_cast<Origin>(random() % 40 == 0 ? random() % 2 : 2));
+      pixels.push_back(static_cast<std::uint32_t>(2 + random() % 50));
+    }
+    // Some of them once more, of mixed origin and with one of the pixels.
+    std::vector<Rgba> again = once;
+    std::vector<Origin> origins_again = origins;
+    std::vector<std::uint32_t> pixels_again = pixels;
+    for (std::size_t i = 0; i < once.size(); i += 3) {
+      again.push_back(once[i]);
+      origins_again.push_back(Origin::mixed);
+      pixels_again.push_back(1);
+      --pixels_again[i];
+    }
+    for (const int change : {0, 1, kMostChange}) {
+      ColourReducer of_once;
+      ColourReducer of_again;
+      EXPECT_EQ(of_once.reduce(once, origins, pixels, change),
+                of_again.reduce(again, origins_again, pixels_again, change));
+      EXPECT_EQ(of_once.colours(), of_again.colours());
+      EXPECT_EQ(of_once.origins(), of_again.origins());
+      for (std::size_t i = 0; i < once.size(); ++i) {
+        EXPECT_EQ(of_once.becomes()[i], of_again.becomes()[i]);
+      }
+      for (std::size_t i = 0; i < once.size(); i += 3) {
+        EXPECT_EQ(of_once.becomes()[i], of_again.becomes()[once.size() + i / 3]);
+      }
+    }
+  }
+}
+
 TEST(ReduceColoursTest, WhatIsOpaqueRemainsSo) {
   RunPicture picture = noise(true);
   reduce(picture, kMostChange);
