@@ -60,9 +60,12 @@ std::string bytes_words(double bytes) {
   return fmt::format("{:.1f} TB", bytes / kThousand);
 }
 
-std::string figures_words(const SeedFigures& figures) {
-  return fmt::format("{} tiles: {} drawn, {} of one colour when looked at, {} known without",
-                     number_words(figures.tiles()), number_words(figures.drawn),
+/// Of those that would be drawn, `reused` have been taken over; there may be some if `is_update`.
+std::string figures_words(const SeedFigures& figures, bool is_update = false,
+                          std::uint64_t reused = 0) {
+  return fmt::format("{} tiles: {} drawn,{} {} of one colour when looked at, {} known without",
+                     number_words(figures.tiles()), number_words(figures.drawn - reused),
+                     is_update ? fmt::format(" {} as they were,", number_words(reused)) : "",
                      number_words(figures.alone), number_words(figures.known));
 }
 
@@ -78,9 +81,10 @@ class ProgressLine {
     const double seconds = seconds_since(begin_);
     const double done = done_before_ + progress.cost;
     const double left = seconds * std::max(cost_ - done, 0.0) / std::max(progress.cost, 1.0);
+    const std::uint64_t drawn = progress.figures.drawn - progress.reused;
     spdlog::info("{:.1f} %: {} tiles drawn, {:.0f} a second; {} known without; about {} left",
-                 100 * done / std::max(cost_, 1.0), number_words(progress.figures.drawn),
-                 static_cast<double>(progress.figures.drawn) / seconds,
+                 100 * done / std::max(cost_, 1.0), number_words(drawn),
+                 static_cast<double>(drawn) / seconds,
                  number_words(progress.figures.known + progress.figures.alone),
                  duration_words(left));
   }
@@ -268,12 +272,10 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
     line(progress);
   });
   const double seconds = seconds_since(begin);
-  spdlog::info("{}: {}; {} in {}, {:.0f} drawn a second{}", path, figures_words(last.figures),
+  spdlog::info("{}: {}; {} in {}, {:.0f} drawn a second", path,
+               figures_words(last.figures, !arguments.update.empty(), last.reused),
                bytes_words(static_cast<double>(log.bytes_of_data())), duration_words(seconds),
-               static_cast<double>(last.figures.drawn) / std::max(seconds, 1e-3),
-               arguments.update.empty()
-                   ? std::string()
-                   : fmt::format("; {} as they were", number_words(last.reused)));
+               static_cast<double>(last.figures.drawn - last.reused) / std::max(seconds, 1e-3));
 }
 
 /// Layers and styles are those of the machines that will seed: only what is known without them is

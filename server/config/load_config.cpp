@@ -579,7 +579,8 @@ void apply(const ConfigOverride& change, LoadedConfig& loaded) {
                    is_list ? "" : did_you_mean(change.value, setting.choices))});
 }
 
-std::string layer_name_of_file(const std::string& file) {
+/// What the file is called: what people read.
+std::string layer_title_of_file(const std::string& file) {
   std::filesystem::path path(file);
   if (!path.has_filename()) path = path.parent_path();  // a folder written with a '/' at the end
   std::string name = path.stem().string();
@@ -591,6 +592,11 @@ std::string layer_name_of_file(const std::string& file) {
     }
     if (name.empty()) name = path.parent_path().filename().string();
   }
+  return name;
+}
+
+/// The same, as it can stand in a URL.
+std::string url_name_of(std::string name) {
   name = name.substr(0, kMaxUrlNameLength);
   for (char& c : name) {
     if (!is_url_name(std::string_view(&c, 1))) c = '_';
@@ -666,8 +672,9 @@ std::vector<LayerConfig> layers_of_files(const std::vector<std::string>& files) 
   std::vector<LayerConfig> layers;
   for (const std::string& file : files) {
     LayerConfig layer;
-    layer.name = layer_name_of_file(file);
-    layer.title = layer.name;
+    const std::string title = layer_title_of_file(file);
+    layer.name = url_name_of(title);
+    layer.title = title.empty() ? layer.name : title;
     layer.file = file;
     const auto same = std::ranges::find(layers, layer.name, &LayerConfig::name);
     if (same != layers.end()) {

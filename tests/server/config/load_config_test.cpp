@@ -501,8 +501,10 @@ TEST(LayersOfFilesTest, NamesLayersAfterTheirFiles) {
   EXPECT_EQ(layers[0].name, "lakes");
   EXPECT_EQ(layers[0].file, "/data/lakes.fgb");
   EXPECT_EQ(layers[1].name, "old_town__2_");
+  EXPECT_EQ(layers[1].title, "old town (2)");
   EXPECT_EQ(layers[2].name, "shapes");
   EXPECT_EQ(layers[3].name, "b__ume");
+  EXPECT_EQ(layers[3].title, "b\xc3\xa4ume");
   EXPECT_EQ(layers[4].name, "_fgb");
 }
 
