@@ -465,6 +465,7 @@ TEST_F(TileServiceTest, TilesWithLabelsAreAnsweredWithoutAWorkerOnceTheseArePlac
   open();
   TileRequest request;
   request.layers = {"rings"};
+  request.tile = {1, 1, 0};  // a label reaches into it
   request.style = testing::style_of("label=name");
   const TilePlan tile = *plan_tile(request, dataset_);
   std::string asked;
