@@ -133,6 +133,7 @@ std::size_t memory_of_graphs(std::vector<Rings> features, CoverageMode mode) {
     CoverageBuilder builder;
     for (const auto& group : group_features(all, mode)) {
       std::vector<const Rings*> of_group;
+      of_group.reserve(group.size());
       for (const std::uint32_t i : group) of_group.push_back(all[i]);
       TrapezoidalGraph graph;
       const Assembly assembly = assemble(of_group, mode, kNoGaps, builder, graph);

@@ -97,7 +97,9 @@ class ColourReducer::Neighbourhood {
   static constexpr int kWidth = 2 * kMostChange + 1;
   static constexpr int kSide = 255 / kWidth + 1;
 
-  static std::size_t place_of(int r, int g) { return static_cast<std::size_t>(r * kSide + g); }
+  static std::size_t place_of(int r, int g) {
+    return static_cast<std::size_t>(r) * kSide + static_cast<std::size_t>(g);
+  }
 
   std::array<std::uint32_t, std::size_t{kSide} * kSide> first_;
   std::vector<std::uint32_t> next_;  // by number

@@ -61,9 +61,10 @@ void add(const std::vector<ChangedLayer>& more, std::size_t most_tiles,
   }
 }
 
-std::vector<ChangedLayer> in_order(std::map<std::string, ChangedLayer> by_name) {
+std::vector<ChangedLayer> in_order(const std::map<std::string, ChangedLayer>& by_name) {
   std::vector<ChangedLayer> layers;
-  for (auto& [name, layer] : by_name) layers.push_back(std::move(layer));
+  layers.reserve(by_name.size());
+  for (const auto& [name, layer] : by_name) layers.push_back(layer);
   return layers;
 }
 
@@ -183,13 +184,13 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
     ChangedLayer layer;
     layer.name = name;
     layer.tiles.zooms = options_.zooms;
-    if (before && after &&
+    if (!before || !after ||
         is_shown_otherwise(step.before->layers()[*before], *before, step.after->layers()[*after],
                            *after)) {
       layer.is_everything = true;
-    } else if (before && after) {
-      if (step.before->layers()[*before].revision == step.after->layers()[*after].revision)
-        continue;
+    } else if (step.before->layers()[*before].revision == step.after->layers()[*after].revision) {
+      continue;
+    } else {
       ChangeRequest request;
       request.tile.layers = {name};
       request.zooms = options_.zooms;
@@ -203,8 +204,6 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
         spdlog::error("what has changed of the layer {}: {}", name, failure_words(error));
         layer.is_everything = true;
       }
-    } else {
-      layer.is_everything = true;
     }
     spdlog::info("{}: {} from generation {} to {}", name,
                  layer.is_everything ? "everything may look different"
@@ -258,7 +257,7 @@ ChangeLog::Answer ChangeLog::between(std::string_view since, std::string_view ge
     if (!(*step)->is_compared) return {Answer::State::pending, {}};
     add((*step)->layers, options_.most_tiles, by_name);
     if ((*step)->generation != generation) continue;
-    return {Answer::State::known, in_order(std::move(by_name))};
+    return {Answer::State::known, in_order(by_name)};
   }
   return {Answer::State::pending, {}};  // it is served, and will be noted at once
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/grid/web_mercator.h"
 #include "core/io/source/unwrap_longitudes.h"
@@ -125,7 +126,8 @@ bool has_polygons(const OGRGeometry& geometry) {
                      [](const OGRGeometry* part) { return has_polygons(*part); });
 }
 
-RingReader::RingReader(const SourceCrs& crs, Options options) : crs_(crs), options_(options) {
+RingReader::RingReader(const SourceCrs& crs, Options options)
+    : crs_(crs), options_(std::move(options)) {
   if (crs.kind == SourceCrs::Kind::geographic || crs.kind == SourceCrs::Kind::projected) {
     transform_ = std::make_unique<LonLatTransform>(crs);
   }
