@@ -95,8 +95,8 @@ void take_once(std::vector<SeenEdge>& seen) {
   std::ranges::sort(seen, [&](const SeenEdge& a, const SeenEdge& b) {
     return std::tuple(piece(a), -a.share) < std::tuple(piece(b), -b.share);
   });
-  const auto same = std::ranges::unique(seen, {}, piece);
-  seen.erase(same.begin(), same.end());
+  const auto is_same = [&](const SeenEdge& a, const SeenEdge& b) { return piece(a) == piece(b); };
+  seen.erase(std::unique(seen.begin(), seen.end(), is_same), seen.end());
 }
 
 }  // namespace
