@@ -40,6 +40,11 @@ double slack_of(std::span<const LabelledLayer> layers) {
   return kSlackPixels + kSlackEms * size;
 }
 
+/// How long the lines of a text may be, in ems.
+double longest_line(const LabelStyle& style) {
+  return std::max(style.max_width / style.size, kLeastWidth);
+}
+
 double pixels_per_cell_at_zoom(double zoom) {
   return std::exp2(zoom) * kTilePixels / static_cast<double>(kGridSize);
 }
@@ -170,8 +175,7 @@ class LabelBook::Placing {
     const auto [found, is_new] = extents_.try_emplace(text);
     if (is_new) {
       const LabelStyle& style = *layer.style;
-      const double most = std::max(style.max_width / style.size, kLeastWidth);
-      const BrokenLines broken = broken_lines(text, most, *book_.fonts_for(style));
+      const BrokenLines broken = broken_lines(text, longest_line(style), *book_.fonts_for(style));
       found->second = {broken.width * style.size,
                        broken.line_height * style.size * static_cast<double>(broken.lines.size())};
     }
@@ -327,7 +331,7 @@ std::shared_ptr<const LabelImage> LabelBook::image_of(const LabelledLayer& layer
   hash.add(key);
   hash.add(identity_of(*fonts));
   auto draw = [fonts, text = std::move(text), size = style.size, halo = style.halo_width, scale,
-               most = std::max(style.max_width / style.size, kLeastWidth), width, height] {
+               most = longest_line(style), width, height] {
     const BrokenLines broken = broken_lines(text, most, *fonts);
     return fonts->mask_of(broken.lines, size * scale, broken.line_height * size * scale,
                           halo * scale, width, height);

@@ -96,6 +96,12 @@ class TileServiceTest : public ::testing::Test {
     is_open_ = true;
   }
 
+  /// Of one who asks and has every tile; notes which.
+  std::string asked_;
+  const TileService::Holds holds_all_ = [this](const std::string& fingerprint) {
+    asked_ = fingerprint;
+    return true;
+  };
   GatedRenderer::Gate gate_;
   bool is_open_ = false;
   const std::shared_ptr<const Dataset> dataset_ = testing::sample_dataset();
@@ -443,18 +449,13 @@ TEST_F(TileServiceTest, TilesInClassesAreAnsweredWithoutAWorkerOnceTheClassesAre
   open();
   TilePlan tile = plan(1);
   tile.layers.front().style.classing.ids = {1};
-  std::string asked;
-  const auto holds = [&asked](const std::string& fingerprint) {
-    asked = fingerprint;
-    return true;
-  };
-  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds));
-  EXPECT_TRUE(asked.empty());
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds_all_));
+  EXPECT_TRUE(asked_.empty());
   const std::string fingerprint = submit(tile).get().tile.fingerprint;
-  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds));
-  EXPECT_EQ(asked, fingerprint);
+  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds_all_));
+  EXPECT_EQ(asked_, fingerprint);
   tile.layers.front().style.classing.ids = {1, 2};
-  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds)) << "other classes";
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds_all_)) << "other classes";
 }
 
 TEST_F(TileServiceTest, TilesWithLabelsAreAnsweredWithoutAWorkerOnceTheseArePlaced) {
@@ -468,21 +469,16 @@ TEST_F(TileServiceTest, TilesWithLabelsAreAnsweredWithoutAWorkerOnceTheseArePlac
   request.tile = {1, 1, 0};  // a label reaches into it
   request.style = testing::style_of("label=name");
   const TilePlan tile = *plan_tile(request, dataset_);
-  std::string asked;
-  const auto holds = [&asked](const std::string& fingerprint) {
-    asked = fingerprint;
-    return true;
-  };
-  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds));
-  EXPECT_TRUE(asked.empty());
+  EXPECT_FALSE(service_->answer_at_once(tile, kCheap, holds_all_));
+  EXPECT_TRUE(asked_.empty());
   const std::string fingerprint = submit(tile).get().tile.fingerprint;
-  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds));
-  EXPECT_EQ(asked, fingerprint);
+  EXPECT_TRUE(service_->answer_at_once(tile, kCheap, holds_all_));
+  EXPECT_EQ(asked_, fingerprint);
   request.style = testing::style_of("label=name&label-color=red");  // at the same places
-  EXPECT_TRUE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds));
-  EXPECT_NE(asked, fingerprint);
+  EXPECT_TRUE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds_all_));
+  EXPECT_NE(asked_, fingerprint);
   request.style = testing::style_of("label=name&label-size=20");
-  EXPECT_FALSE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds));
+  EXPECT_FALSE(service_->answer_at_once(*plan_tile(request, dataset_), kCheap, holds_all_));
 }
 
 TEST_F(TileServiceTest, CheapTilesThatAreKeptAreAnsweredWithoutAWorker) {
