@@ -31,7 +31,7 @@ async function ask(url) {
   } catch {
     // Told below: the connection may have broken off, or something else answers at this address.
   }
-  return unclear("The list of layers cannot be understood.");
+  return unclear("The list of layers cannot be parsed.");
 }
 
 function unclear(words) {

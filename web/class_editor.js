@@ -10,8 +10,8 @@ import { button, choose, element, input, mark_wrong, select } from "./elements.j
 const RAMPS = [
   ["Light to dark", ["YlGnBu", "YlOrRd", "Blues", "Greens", "Oranges", "Purples", "Reds", "Greys",
     "BuGn", "BuPu", "GnBu", "OrRd", "PuBu", "PuBuGn", "PuRd", "RdPu", "YlGn", "YlOrBr"]],
-  ["To both sides of a middle", ["BrBG", "PiYG", "PRGn", "PuOr", "RdBu", "RdYlBu"]],
-  ["Hard to tell for some eyes", ["RdGy", "RdYlGn", "Spectral"]],
+  ["Diverging", ["BrBG", "PiYG", "PRGn", "PuOr", "RdBu", "RdYlBu"]],
+  ["Not colour-blind safe", ["RdGy", "RdYlGn", "Spectral"]],
 ];
 const BY_VALUE = "values";
 const BY_RANGE = "ranges";

@@ -172,8 +172,8 @@ function words_for({ kind, words, status }) {
   if (kind === "lost") return "The server cannot be reached.";
   if (kind === "loading") return "The server is still reading its layers.";
   if (kind === "busy") {
-    return status === 429 ? "You ask for more than the server gives at once."
-      : "The server has much to draw.";
+    return status === 429 ? "Too many requests for the server."
+      : "The server is busy.";
   }
   return "Some tiles could not be loaded.";
 }

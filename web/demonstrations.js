@@ -31,8 +31,8 @@ function simplify_by_slider({ simplify }) {
     simplify(STEPS[slider.value]);
   });
   return {
-    title: "Simplify by a slider",
-    words: "Borders lose detail as far as you like, and neighbours keep theirs in common.",
+    title: "Simplify with a slider",
+    words: "Remove as much detail as you like: neighbours keep their shared borders.",
     start: () => {
       slider.value = STEPS.indexOf(FIRST_PIXELS);
       tell();
@@ -44,8 +44,8 @@ function simplify_by_slider({ simplify }) {
 
 function gapless_against_apart({ compare_apart }) {
   return {
-    title: "Gapless against apart",
-    words: "Neighbours share their borders on the left. On the right, each is simplified by itself.",
+    title: "Shared or separate borders",
+    words: "Neighbours share their borders on the left. On the right, each polygon is simplified separately.",
     start: () => compare_apart(PIXELS_APART),
     control: element("p", "hint", "Drag the handle in the middle of the map."),
   };
@@ -69,8 +69,8 @@ function restyle_by_click({ restyle, looks, is_shown, picture_of }) {
     }));
   };
   return {
-    title: "Restyle by click",
-    words: "Any style, for the whole map at once: every tile is drawn when it is asked for.",
+    title: "Restyle with one click",
+    words: "Any style for the whole map: every tile is drawn on request.",
     start: show,
     control: list,
   };

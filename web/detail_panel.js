@@ -6,9 +6,9 @@ const BUILTIN = [["simplify", "0.25"], ["topology", "strict"], ["small", "dust"]
 export const STEPS = [0, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const SMALL = [["dust", "as a tint"], ["keep", "a pixel large"], ["drop", "left out"]];
 const COMPARISONS = [["full", "Compare with every vertex"],
-  ["apart", "Compare with polygons apart"]];
+  ["apart", "Compare with separate polygons"]];
 const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["faces", "Faces"],
-  ["junctions", "Junctions"], ["tile", "Borders of tiles"]];
+  ["junctions", "Junctions"], ["tile", "Tile borders"]];
 
 /** "0.25 px", or in words that nothing is left out. */
 export function simplify_in_words(pixels) {

@@ -20,7 +20,7 @@ export async function ask_features(base, layers, shared, { lat, lon }, zoom) {
   if (!response.ok) {
     throw new Error(told?.detail ?? `The server answered with status ${response.status}.`);
   }
-  if (!Array.isArray(told?.features)) throw new Error("The answer cannot be understood.");
+  if (!Array.isArray(told?.features)) throw new Error("The response cannot be parsed.");
   return told.features;
 }
 
@@ -84,7 +84,7 @@ export class FeaturePanel {
   attributes_of_(feature) {
     const rows = Object.entries(feature.properties ?? {}).flatMap(([name, value]) =>
       [element("dt", "", name), element("dd", "", in_words(value))]);
-    if (rows.length === 0) return element("p", "hint", "It has no attributes.");
+    if (rows.length === 0) return element("p", "hint", "No attributes.");
     return element("dl", "", ...rows);
   }
 }

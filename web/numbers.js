@@ -16,7 +16,7 @@ export class Numbers {
     this.style_ = new Map();
     this.told_ = element("p", "hint");
     this.told_.setAttribute("role", "status");
-    this.node = element("details", "numbers", element("summary", "", "Numbers of your own"), this.told_);
+    this.node = element("details", "numbers", element("summary", "", "Your own numbers"), this.told_);
     this.node.addEventListener("toggle", () => this.node.open && this.load_());
   }
 
@@ -51,7 +51,7 @@ export class Numbers {
   async load_() {
     if (this.editor_) return;
     const module = await import("./number_editor.js").catch(() => null);
-    this.told_.textContent = module ? "" : "The server cannot be reached. Load the page again.";
+    this.told_.textContent = module ? "" : "The server cannot be reached. Reload the page.";
     if (!module || this.editor_) return;
     this.editor_ = new module.NumberEditor(this.layer_, (pairs) => {
       this.style_ = new Map(pairs);

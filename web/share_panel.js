@@ -20,9 +20,9 @@ const TABS = [
   ["MapLibre", (map) => [snippet("A whole page: save it as a file and open it.",
     maplibre_page(map))]],
   ["QGIS", qgis_parts],
-  ["<img>", (map) => [snippet("The tile in the middle of the map, sharp on dense screens.",
+  ["<img>", (map) => [snippet("The tile in the centre of the map, sharp on high-density screens.",
     image_tag(map))]],
-  ["curl", (map) => [snippet("The tile in the middle of the map, 512 pixels wide.",
+  ["curl", (map) => [snippet("The tile in the centre of the map, 512 pixels wide.",
     curl_command(map))]],
   ["Archive", archive_parts],
   ["Links", link_parts],
@@ -60,7 +60,7 @@ export class SharePanel {
     this.long_ = input("checkbox");
     this.long_.addEventListener("change", () => this.fill_());
     this.long_row_ = element("label", "check", this.long_,
-      element("span", "", "Long addresses, which last"));
+      element("span", "", "Long, permanent URLs"));
     this.note_ = element("p", "hint");
     this.note_.setAttribute("role", "status");
     const title = element("h2", "", "Use this map");
@@ -89,7 +89,7 @@ export class SharePanel {
   /** The server keeps what was changed by hand. */
   async keep_(document) {
     const seen = this.seen_;
-    this.body_.replaceChildren(element("p", "hint", "One moment: the style gets its address."));
+    this.body_.replaceChildren(element("p", "hint", "Posting the style to the server."));
     this.note_.textContent = "";
     this.long_row_.hidden = true;
     try {
@@ -112,9 +112,9 @@ export class SharePanel {
   }
 
   note_for_() {
-    if (this.problem_) return `There is no short address (${this.problem_}), but this one lasts.`;
-    if (this.long_.checked) return "All of the style stands in the address.";
-    return "Short, as the server keeps this style in memory; it is forgotten when the server restarts.";
+    if (this.problem_) return `There is no short URL (${this.problem_}), but this one is permanent.`;
+    if (this.long_.checked) return "The URL contains the whole style.";
+    return "Short, because the server keeps this style in memory; it is lost when the server restarts.";
   }
 
   choose_(chosen) {
@@ -156,9 +156,9 @@ export class SharePanel {
       has_style: style.document !== null,
       links: [
         ...links,
-        ["WMTS", "capabilities, for GIS programs: each layer by itself", `${this.base_}wmts.xml`],
+        ["WMTS", "capabilities for GIS programs: each layer separately", `${this.base_}wmts.xml`],
         ["Catalogue", "all layers of the server", `${this.base_}catalog`],
-        ["This page", "with all that is set", location.href],
+        ["This page", "with all settings", location.href],
       ],
     };
   }
@@ -191,7 +191,7 @@ export class SharePanel {
     const collections = query_text_of([["collections", names.join(",")], ...parameters]);
     return [
       [`TileJSON ${number}`, "for MapLibre, OpenLayers and others", `${path}.json${query}`],
-      [`TileJSON @2x ${number}`, "the same for dense screens", `${path}@2x.json${query}`],
+      [`TileJSON @2x ${number}`, "the same for high-density screens", `${path}@2x.json${query}`],
       [`OGC API – Tiles ${number}`, "the tilesets of this map",
         `${this.base_}ogc/map/tiles${collections}`],
       [`Legend ${number}`, "as a picture",
@@ -257,7 +257,7 @@ function qgis_parts(map) {
   const file = element("a", "download", "Save the connection as a file");
   file.href = `data:text/xml;charset=utf-8,${encodeURIComponent(qgis_connections(map))}`;
   file.download = "trapeze.xml";
-  const style = map.has_style ? "A style that was changed by hand comes by XYZ alone."
+  const style = map.has_style ? "A style edited in the viewer is available via XYZ only."
     : map.style_name ? `Choose its style "${map.style_name}".` : "";
   return [
     element("h3", "", "XYZ: this map"),
@@ -265,7 +265,7 @@ function qgis_parts(map) {
       "Browser, XYZ Tiles, New Connection. Tile resolution: High (512 × 512).",
       address(sheet, "{z}/{x}/{y}@2x"))),
     element("p", "hint", file, ", for Load Connections."),
-    element("h3", "", "WMTS: each layer by itself"),
+    element("h3", "", "WMTS: each layer separately"),
     snippet(`Browser, WMS/WMTS, New Connection. ${style}`, map.wmts),
   ];
 }
@@ -274,13 +274,13 @@ function archive_parts(map) {
   const is_posted = ([key, value]) => /(^|\.)values$/.test(key) && POSTED_TABLE.test(value);
   return [
     ...map.sheets.map((sheet, i) => snippet(
-      "On the server, where its configuration is: all tiles of what is on the screen, in one file.",
+      "Run this on the server, next to its configuration: all tiles of the current view in one file.",
       seed_command(map, sheet, map.sheets.length > 1 ? i + 1 : ""))),
     ...(map.sheets.some(({ lasting }) => lasting.some(is_posted)) ? [element("p", "hint",
-      "The table that was pasted is known to this server alone: name it in the configuration first.")]
+      "Only this server knows the pasted table: add it to the configuration first.")]
       : []),
-    element("p", "hint", "A server that was started with files takes them instead of --config. " +
-      "An .mbtiles or a folder can be written as well, and --dry-run says how large it will be."),
+    element("p", "hint", "If the server was started with files, name them instead of --config. " +
+      "The output can also be .mbtiles or a folder; --dry-run estimates its size."),
   ];
 }
 

@@ -43,9 +43,9 @@ export function fit_in_words({ type, first_word, rows_without_key, joins }) {
     parts.push(`${unmatched} ${unmatched === 1 ? "does" : "do"} not: ${unmatched_keys.join(", ")}${more}.`);
   }
   if (rows_without_key > 0) parts.push(`${rows_without_key} have no key.`);
-  if (features_without_value > 0) parts.push(`${features_without_value} shapes have no value.`);
+  if (features_without_value > 0) parts.push(`${features_without_value} features have no value.`);
   if (type === "string") {
-    parts.push(`The values are words, such as "${first_word}": only numbers have classes here.`);
+    parts.push(`The values are text, such as "${first_word}": only numbers can be classified here.`);
   }
   return parts.join(" ");
 }

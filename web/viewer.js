@@ -67,7 +67,7 @@ function in_quotes(names) {
 
 /** Why the server will not draw a tile, and what helps. */
 function refusal_in_words({ status, detail }) {
-  if (status === 404) return "Some tiles are not there any more. Load the page again.";
+  if (status === 404) return "Some tiles no longer exist. Reload the page.";
   if (/drawing|draw/.test(detail)) return "There is too much to draw here. Zoom in, or simplify more.";
   return `Some tiles cannot be drawn. ${detail}`;
 }
@@ -95,7 +95,7 @@ function show_title(title) {
 function show_about(catalog, layers) {
   const features = layers.reduce((sum, layer) => sum + (Number(layer.features) || 0), 0);
   const parts = [`${String(features).replaceAll(/\B(?=(\d{3})+$)/g, ",")} features`];
-  if (typeof catalog.renderer === "string") parts.push(`drawn by ${catalog.renderer}`);
+  if (typeof catalog.renderer === "string") parts.push(`rendered with ${catalog.renderer}`);
   $("about").textContent = parts.join(", ");
 }
 
@@ -193,8 +193,8 @@ class Viewer {
     if (!Array.isArray(catalog?.layers)) return;
     const names = usable_layers(catalog).map(({ name }) => name);
     if (names.join() === this.layers_.map(({ name }) => name).join()) return;
-    notices.say("message", "The server has other layers now.",
-      { action: ["Load the page again", () => location.reload()] });
+    notices.say("message", "The layers of the server have changed.",
+      { action: ["Reload the page", () => location.reload()] });
   }
 
   refuse_(url, problem) {
@@ -263,7 +263,7 @@ class Viewer {
   /** What a few open comes when they do. */
   async open_share_panel_() {
     const module = await import("./share_panel.js").catch(() => null);
-    if (!module) return mention("The server cannot be reached. Load the page again.");
+    if (!module) return mention("The server cannot be reached. Reload the page.");
     this.share_ ??= new module.SharePanel(new URL(".", BASE).href, () => this.what_is_shared_());
     return this.share_.open();
   }
@@ -525,12 +525,12 @@ class Viewer {
     this.tell_refused_();
     this.tell_end_of_detail_();
     const is_empty = this.layers_.length > 0 && this.states_.every(({ is_on }) => !is_on);
-    notices.say("empty", is_empty ? "All layers are off. Switch one on in the list." : "");
+    notices.say("empty", is_empty ? "All layers are off. Turn one on in the list." : "");
     const { pixels } = this.detail_;
     const words = simplify_in_words(pixels);
     const simplified = pixels === 0 ? words : `simplified to ${words}`;
-    this.comparison_.show(this.compare_, is_apart ? "borders in common" : simplified,
-      is_apart ? "each polygon by itself" : "every vertex");
+    this.comparison_.show(this.compare_, is_apart ? "shared borders" : simplified,
+      is_apart ? "separate polygons" : "every vertex");
     this.show_legend_();
     $("tile-url").value = this.tile_url_();
   }

@@ -58,7 +58,7 @@ struct Borders {
 /// The features are by their positions. One thread at a time.
 class SetMap {
  public:
-  static constexpr const char* kTooManyOverEachOther = "too many of them lie over each other";
+  static constexpr const char* kTooManyOverEachOther = "too many of them overlap";
 
   /// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
   /// Works on up to `threads` threads; the subdivision does not depend on their number.

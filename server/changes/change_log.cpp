@@ -201,12 +201,12 @@ std::vector<ChangedLayer> ChangeLog::compare(const Step& step) const {
         layer.is_everything = !found;
         if (found) layer.tiles = *std::move(found);
       } catch (const std::exception& error) {  // for lack of memory
-        spdlog::error("what has changed of the layer {}: {}", name, failure_words(error));
+        spdlog::error("changes of layer {}: {}", name, failure_words(error));
         layer.is_everything = true;
       }
     }
     spdlog::info("{}: {} from generation {} to {}", name,
-                 layer.is_everything ? "everything may look different"
+                 layer.is_everything ? "all tiles may look different"
                                      : fmt::format("{} tiles of zooms {} to {} may look different",
                                                    layer.tiles.tiles.size(),
                                                    layer.tiles.zooms.first, layer.tiles.zooms.last),
@@ -239,9 +239,9 @@ void ChangeLog::run_command(const Sum& changes) {
         options_.command,
         {{"TRAPEZE_SINCE", changes.since}, {"TRAPEZE_GENERATION", changes.generation}},
         change_lines(in_order(changes.layers)), is_stopping);
-    if (status != 0) spdlog::error("the command for changes ended with {}", status);
+    if (status != 0) spdlog::error("changes.command exited with status {}", status);
   } catch (const std::exception& error) {
-    spdlog::error("the command for changes cannot be run: {}", failure_words(error));
+    spdlog::error("changes.command cannot be run: {}", failure_words(error));
   }
 }
 

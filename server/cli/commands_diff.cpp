@@ -55,8 +55,8 @@ int run_diff(const DiffArguments& arguments) {
   fmt::print("{}", tile_list(found->tiles, format));
   if (found->is_complete) return 0;
   fmt::print(stderr,
-             "trapeze: more than {} tiles of zoom {} may have changed: tiles of this zoom and of "
-             "those after it are not listed\n",
+             "trapeze: more than {} tiles of zoom {} may have changed: tiles of this and higher "
+             "zooms are not listed\n",
              request.most_tiles, found->zooms.last + 1);
   return 1;
 }

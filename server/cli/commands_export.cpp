@@ -27,7 +27,7 @@ ExportOptions options_from(const ExportArguments& arguments) {
   ExportOptions options;
   options.epsilon = epsilon_of(arguments.zoom, arguments.simplify);
   if (arguments.smooth > 0 && arguments.grow > 0) {
-    throw UsageError("--grow: what grows keeps its corners: not beside --smooth");
+    throw UsageError("--grow and --smooth exclude each other");
   }
   options.smooth = {arguments.smooth, cells_per_pixel(arguments.zoom)};
   options.grow = {arguments.grow, cells_per_pixel(arguments.zoom)};
@@ -50,15 +50,16 @@ void print_report(const ExportReport& report, const std::string& output) {
       output, report.driver, report.written, report.polygons, report.vertices, report.all_vertices,
       report.held, report.too_small);
   print_if_any("corners rounded", report.corners.rounded);
-  print_if_any("corners drawn round, but sharp here to keep edges apart on the grid",
+  print_if_any("corners left sharp here, though tiles round them, to keep edges apart on the grid",
                report.corners.refused);
-  print_if_any("features that are narrow somewhere, and grew there", report.grown);
-  print_if_any("features that are no polygons", report.other_geometry);
+  print_if_any("features with narrow places that were widened", report.grown);
+  print_if_any("features that are not polygons", report.other_geometry);
   print_if_any("features smaller than the grid, or outside the world", report.empty);
   print_if_any("features skipped", report.skipped);
   print_if_any("features that crossed themselves and were noded", report.crossed);
-  print_if_any("polygons given vertices on long edges, to be valid in degrees", report.subdivided);
-  print_if_any("polygons with too many holes to check them in degrees", report.unchecked);
+  print_if_any("polygons that got vertices on long edges to be valid in degrees",
+               report.subdivided);
+  print_if_any("polygons with too many holes to be checked in degrees", report.unchecked);
   print_if_any("features that are not valid in degrees, but are in EPSG:3857", report.invalid);
   for (const std::string& warning : report.warnings)
     fmt::print("  warning: the source {}\n", warning);

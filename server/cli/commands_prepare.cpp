@@ -90,10 +90,10 @@ EarlierPrepared open_earlier(const std::string& file, const std::string& reuse,
   if (file.empty()) return {};
   if (!std::filesystem::exists(file)) {
     if (file != reuse) return {nullptr, nullptr, {}, "is not there", file};
-    throw std::runtime_error(file + ": there is no such file to take over from");
+    throw std::runtime_error(file + ": no such file to reuse");
   }
   if (!is_prepared_file(file)) {
-    throw std::runtime_error(file + ": is no prepared file to take over from");
+    throw std::runtime_error(file + ": not a prepared file, cannot be reused");
   }
   return open_earlier_layer(file, options, grid);
 }
@@ -109,17 +109,17 @@ LoadedLayer load(const std::string& file, const LoadOptions& how, const EarlierP
 void print_reuse(const EarlierPrepared& earlier, const LoadReport& report) {
   if (earlier.path.empty()) return;
   if (earlier.layer == nullptr) {
-    fmt::print("  nothing is taken over: {} {}\n", earlier.path, earlier.unfit);
+    fmt::print("  nothing is reused: {} {}\n", earlier.path, earlier.unfit);
     return;
   }
-  fmt::print("  {} of {} features are as they were and taken over from {}\n", report.taken_over,
+  fmt::print("  {} of {} features are unchanged and reused from {}\n", report.taken_over,
              report.loaded, earlier.path);
 }
 
 /// Before the file is read, so that a change from here on is noticed now or later.
 SourceStamp stamp_or_throw(const std::string& file) {
   if (is_prepared_file(file)) {
-    throw std::runtime_error(file + ": is a prepared file already; name what it was made from");
+    throw std::runtime_error(file + ": already a prepared file; name its source instead");
   }
   return stamp_source(file);
 }
@@ -131,10 +131,10 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   const LoadedLayer loaded = load(file, how, earlier);
   const std::string change = change_since(source, file);
   if (!change.empty()) {
-    throw std::runtime_error(file + ": has changed while it was read: " + change);
+    throw std::runtime_error(file + ": changed while it was being read: " + change);
   }
   if (const std::string excess = find_excess(loaded.report, max_skipped); !excess.empty()) {
-    throw std::runtime_error(excess + "; `trapeze check` tells which");
+    throw std::runtime_error(excess + "; `trapeze check` lists them");
   }
   save_prepared_layer(output, loaded, revision_of(*loaded.layer), source, how.grid, earlier);
   const LoadReport& report = loaded.report;
@@ -144,11 +144,12 @@ void prepare(const std::string& file, const SourceStamp& source, const LoadOptio
   print_reuse(earlier, report);
   for (const std::string& warning : report.warnings) fmt::print("  warning: {}\n", warning);
   if (report.repaired > 0 || report.skipped > 0) {
-    fmt::print("  {} features repaired, {} skipped; `trapeze check {}` tells which\n",
+    fmt::print("  {} features repaired, {} skipped; `trapeze check {}` lists them\n",
                report.repaired, report.skipped, output);
   }
   if (source.files.empty()) {
-    fmt::print("  changes of {} will not be noticed: it is no file of this machine\n", source.path);
+    fmt::print("  changes of {} will not be noticed: it is not a file on this machine\n",
+               source.path);
   }
 }
 
@@ -172,8 +173,8 @@ std::shared_ptr<const SourceDivision> divide(const std::string& file, const Load
              features, vertices, count, most);
   if (most > 2 * (vertices / count) && division->largest_group() > most / 2) {
     fmt::print(
-        "  warning: {} of these vertices are of features that come near each other, so that "
-        "they cannot be divided\n",
+        "  warning: {} of these vertices belong to features near each other, which cannot be split "
+        "across parts\n",
         division->largest_group());
   }
   return division;
@@ -210,7 +211,7 @@ void prepare_parts(const LayerConfig& layer, const LoadOptions& how, const PartR
 }
 
 int run_join(const PrepareArguments& arguments) {
-  if (!arguments.files.empty()) throw UsageError("--join takes parts, and no FILE beside them");
+  if (!arguments.files.empty()) throw UsageError("--join takes parts and no FILE");
   if (!arguments.part.empty()) throw UsageError("--join and --part exclude each other");
   std::filesystem::path output = arguments.output;
   if (output.extension() != kExtension) {

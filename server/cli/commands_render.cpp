@@ -49,7 +49,7 @@ TileFormat format_of(const std::string& path) {
         fmt::format("--output takes a name that ends in .png or .webp, given was \"{}\"{}", path,
                     did_you_mean(extension, {".png", ".webp"})));
   }
-  if (!has_webp()) throw UsageError("--output: this program was built without WebP; take .png");
+  if (!has_webp()) throw UsageError("--output: this program was built without WebP; use .png");
   return TileFormat::webp;
 }
 

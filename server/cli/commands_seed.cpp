@@ -111,7 +111,7 @@ std::vector<std::string> layers_of(const SeedArguments& arguments, const Config&
 TileFormat format_or_throw(const std::string& name) {
   const TileFormat format = word_or_throw("--format", name, kTileFormatNames);
   if (format == TileFormat::webp && !has_webp()) {
-    throw UsageError("--format: this program was built without WebP; take png");
+    throw UsageError("--format: this program was built without WebP; use png");
   }
   return format;
 }
@@ -177,10 +177,10 @@ SeedPart part_of(const SeedArguments& arguments) {
         fmt::format("--part takes I/N, I being from 1 to N, given was \"{}\"", arguments.part));
   }
   if (kind_of_archive(arguments.output) != ArchiveKind::folder) {
-    throw UsageError(fmt::format(
-        "--part writes what `trapeze seed --join` makes an archive of: --output takes another name "
-        "than that of an archive, such as {}.part{}",
-        arguments.output, part->number));
+    throw UsageError(
+        fmt::format("--part writes an input for `trapeze seed --join`, not an archive: give "
+                    "--output another name, such as {}.part{}",
+                    arguments.output, part->number));
   }
   return *part;
 }
@@ -262,7 +262,7 @@ void seed_into(const SeedArguments& arguments, const Work& work, Seeder& seeder)
   for (const std::uint64_t job : log.done()) done += work.jobs.jobs[job].cost;
   const double cost = work.jobs.cost(work.range);
   if (!log.done().empty()) {
-    spdlog::info("{}: going on, {:.1f} % were done before", path, 100 * done / std::max(cost, 1.0));
+    spdlog::info("{}: resuming, {:.1f} % were done before", path, 100 * done / std::max(cost, 1.0));
   }
   const auto begin = Clock::now();
   SeedProgress last;

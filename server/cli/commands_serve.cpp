@@ -88,13 +88,13 @@ void check_files_exist(const std::vector<LayerConfig>& layers) {
 void warn_of_other_changes(const Config& running, const Config& now) {
   for (const auto& setting : config_settings()) {
     if (setting.get(running) == setting.get(now)) continue;
-    spdlog::warn("{} has changed: that takes a new start of the server", setting.name());
+    spdlog::warn("{} has changed: restart the server to apply it", setting.name());
   }
   const auto is_same = [](const auto& a, const auto& b) {
     return a.first == b.first && a.second.canonical_text() == b.second.canonical_text();
   };
   if (!std::ranges::equal(running.styles, now.styles, is_same)) {
-    spdlog::warn("styles have changed: that takes a new start of the server");
+    spdlog::warn("styles have changed: restart the server to apply them");
   }
 }
 
@@ -136,11 +136,10 @@ LoadedConfig load_serve_config(const ServeArguments& arguments) {
 Config configure(const ServeArguments& arguments) {
   LoadedConfig loaded = load_serve_config(arguments);
   if (loaded.config.layers.empty()) {
-    throw UsageError(arguments.config.empty()
-                         ? "there are no layers: name files, or a configuration with [[layer]] by "
-                           "--config"
-                         : "there are no layers: name files, or a [[layer]] in " +
-                               arguments.config);
+    throw UsageError(
+        arguments.config.empty()
+            ? "there are no layers: name files, or a configuration with [[layer]] in --config"
+            : "there are no layers: name files, or a [[layer]] in " + arguments.config);
   }
   limit_zooms(loaded.config);
   return std::move(loaded.config);

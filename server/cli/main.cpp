@@ -41,132 +41,130 @@ constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
 constexpr const char* kDescription =
-    "Trapeze serves maps of polygons as PNG tiles, and simplifies while it draws.\n\n"
-    "Examples:\n"
-    "  trapeze serve countries.fgb lakes.gpkg      tiles at "
-    "http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png\n"
-    "  trapeze serve --config trapeze.toml         layers, colours and titles from a file\n"
-    "  trapeze config check trapeze.toml           all that is wrong with it\n"
-    "  trapeze check buildings.shp                 what is in a file, and what is wrong with it\n"
-    "  trapeze prepare buildings.gpkg --output DIR     DIR/buildings.trapeze, served at once\n"
-    "  trapeze diff old.trapeze parcels.gpkg --zooms 0-16   the tiles that an edit has changed\n"
-    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the polygons of a zoom, as a "
-    "file\n"
-    "  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png\n"
-    "  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles   all tiles in one file\n"
-    "  trapeze parameters                          what a style can say, as a table\n\n"
-    "Exit status: 0 if all is done; 1 if something failed or was found wrong, such as a file that\n"
-    "cannot be read or a port in use; 2 if the command line is wrong; 130 or 143 if SIGINT or\n"
-    "SIGTERM interrupted a command, which leaves no half-written file (`serve` ends in order, "
-    "with\n"
-    "0). Results go to standard output; errors and the log go to standard error.";
+    R"(Trapeze serves polygon maps as PNG tiles and simplifies them while it draws.
 
-constexpr const char* kServeFooter =
-    "\nExamples:\n"
-    "  trapeze serve countries.fgb                 "
-    "http://localhost:8080/tiles/countries/0/0/0.png\n"
-    "  trapeze serve --port 9000 --address 127.0.0.1 buildings.fgb water.fgb\n"
-    "  trapeze serve --config trapeze.toml --workers 4\n\n"
-    "What can be asked for: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json "
-    "(TileJSON),\n"
-    "/catalog, /health, /ready, /metrics, and the viewer at /. SIGTERM and SIGINT end the server "
-    "in\n"
-    "order, SIGHUP lets it read its layers again.";
+Examples:
+  trapeze serve countries.fgb lakes.gpkg      tiles at http://localhost:8080/tiles/countries,lakes/{z}/{x}/{y}.png
+  trapeze serve --config trapeze.toml         layers, styles and titles from a configuration
+  trapeze config check trapeze.toml           report all mistakes in a configuration
+  trapeze check buildings.shp                 report the contents of a file and its errors
+  trapeze prepare buildings.gpkg --output DIR          DIR/buildings.trapeze, which loads instantly
+  trapeze diff old.trapeze parcels.gpkg --zooms 0-16   list the tiles that an edit has changed
+  trapeze export countries.fgb --zoom 4 --output coarse.gpkg   the simplified polygons of a zoom
+  trapeze render countries.fgb --tile 3/4/2 --style fill=teal --output tile.png
+  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles   all tiles in one archive
+  trapeze parameters                          a table of all style parameters
 
-constexpr const char* kConfigFooter =
-    "\nExamples:\n"
-    "  trapeze config check trapeze.toml           every mistake with its line and column\n"
-    "  trapeze config print --config trapeze.toml --port 9000\n"
-    "  trapeze config schema                       for editors that complete and check\n\n"
-    "The command line overrides the environment (TRAPEZE_TABLE_KEY, TRAPEZE_SERVER_PORT for\n"
-    "server.port), which overrides the file; in strings of the file, ${NAME} stands for a "
-    "variable.";
+Exit status: 0 on success; 1 if something failed or is wrong, such as an unreadable file or a
+port in use; 2 for a wrong command line; 130 or 143 if SIGINT or SIGTERM interrupted a command,
+which never leaves a partially written file (`serve` shuts down cleanly, with status 0).
+Results go to standard output; errors and the log go to standard error.)";
 
-constexpr const char* kCheckFooter =
-    "\nExamples:\n"
-    "  trapeze check countries.fgb buildings.shp\n"
-    "  trapeze check --strict delivery.gpkg\n"
-    "  trapeze check --list errors.geojson parcels.gpkg\n\n"
-    "The exit status is 1 if a file cannot be read, or if more features are skipped than\n"
-    "--max-skipped allows; repaired and other skipped features are only listed. --list writes the\n"
-    "places where polygons do not fit together, as they are in FILE: kind (gap or overlap), area "
-    "in\n"
-    "square metres, width in metres, and the ids of the features.";
+constexpr const char* kServeFooter = R"(
+Examples:
+  trapeze serve countries.fgb                 http://localhost:8080/tiles/countries/0/0/0.png
+  trapeze serve --port 9000 --address 127.0.0.1 buildings.fgb water.fgb
+  trapeze serve --config trapeze.toml --workers 4
 
-constexpr const char* kSeedFooter =
-    "\nExamples:\n"
-    "  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles\n"
-    "  trapeze seed --config trapeze.toml --layers land,water --style style=night --zooms 0-14 \\\n"
-    "    --bbox 14.1,35.7,14.6,36.1 --output malta.mbtiles\n"
-    "  trapeze seed --config trapeze.toml --zooms 0-14 --dry-run\n"
-    "  trapeze seed --config trapeze.toml --zooms 0-14 --part 3/8 --output world.part3\n"
-    "  trapeze seed --join world.part* --output world.pmtiles\n"
-    "  trapeze seed --config trapeze.toml --zooms 0-14 --output world.pmtiles --parts 8 \\\n"
-    "    --jobs slurm >seed.sbatch\n\n"
-    "Tiles have the bytes that `trapeze serve` with the same options answers with. Where nothing "
-    "but\n"
-    "one colour is seen they are not drawn, nor looked at one by one. What has been done is kept "
-    "in\n"
-    "OUT.seeding until the archive is there: interrupted, the same command goes on. The bytes of "
-    "the\n"
-    "archive do not depend on that, nor on threads or parts.";
+URLs: /tiles/{layers}/{z}/{x}/{y}[@2x].png, /tiles/{layers}.json (TileJSON), /catalog, /health,
+/ready, /metrics, and the viewer at /. SIGTERM and SIGINT shut the server down cleanly, SIGHUP
+reloads configuration and layers.)";
 
-constexpr const char* kPrepareFooter =
-    "\nExamples:\n"
-    "  trapeze prepare buildings.gpkg water.fgb --output prepared\n"
-    "  trapeze serve prepared/buildings.trapeze prepared/water.trapeze\n"
-    "  trapeze prepare buildings.gpkg --output prepared --reuse prepared\n"
-    "  trapeze prepare country.fgb --part 1-64/64 --output parts\n"
-    "  trapeze prepare country.fgb --part $SLURM_ARRAY_TASK_ID/64 --output parts\n"
-    "  trapeze prepare --join 'parts/*.trapeze' --output parts\n"
-    "  trapeze serve 'parts/*.trapeze'\n\n"
-    "A prepared file holds a layer as it is served: it is mapped and not built again, servers on\n"
-    "one machine share its memory, and tiles and their ETags are those of FILE. It is refused if "
-    "it\n"
-    "is damaged, if FILE has changed since, or if this version of Trapeze builds layers "
-    "otherwise:\n"
-    "prepare it again then. Without FILE it is served all the same. Preparing again replaces it\n"
-    "under a running server without harm; write into it by no other means.\n"
-    "\n"
-    "--part builds a layer part by part, on one machine or on many, in the memory that a part\n"
-    "takes: each looks at all of FILE first, and divides it by place in the same way; then it\n"
-    "reads its own features, which is fast of a FlatGeobuf with a spatial index. Features that\n"
-    "come near each other are in one part. All parts together are served as one layer. --join\n"
-    "makes an overview of them, which low zooms need; --part 1-N/N makes it too.";
+constexpr const char* kConfigFooter = R"(
+Examples:
+  trapeze config check trapeze.toml           every mistake with its line and column
+  trapeze config print --config trapeze.toml --port 9000
+  trapeze config schema                       for completion and validation in editors
 
-constexpr const char* kDiffFooter =
-    "\nExamples:\n"
-    "  trapeze diff yesterday.trapeze parcels.gpkg --zooms 0-16\n"
-    "  trapeze diff old.fgb new.fgb --zooms 12 --style 'color-by=use' --format geojson\n\n"
-    "OLD and NEW are states of one layer, as sources or prepared. A tile is listed if what it is\n"
-    "drawn from has changed: none whose picture has is left out. That of some may be the same all\n"
-    "the same, where the change is too small to be seen: --certainty bytes draws both and lists\n"
-    "those that differ. --certainty candidates looks at no tile, and lists those that any style "
-    "with\n"
-    "that simplify may change, but for styles by id: for purging what is kept of all styles.";
+The command line overrides the environment (TRAPEZE_TABLE_KEY, such as TRAPEZE_SERVER_PORT for
+server.port), which overrides the file. In strings of the file, ${NAME} is replaced by the
+environment variable NAME.)";
 
-constexpr const char* kExportFooter =
-    "\nExamples:\n"
-    "  trapeze export countries.fgb --zoom 4 --output coarse.gpkg\n"
-    "  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb\n"
-    "  trapeze export landcover.gpkg --zoom 12 --smooth 8 --output smooth.gpkg\n"
-    "  trapeze export rivers.gpkg --zoom 9 --grow 3 --output wide.gpkg\n\n"
-    "The polygons are those that tiles of that zoom are drawn from; attributes are kept, and the\n"
-    "field trapeze_id holds the id of each feature in FILE. What is too small to be left at that\n"
-    "tolerance is left out and counted. With --topology strict all polygons are valid.";
+constexpr const char* kCheckFooter = R"(
+Examples:
+  trapeze check countries.fgb buildings.shp
+  trapeze check --strict delivery.gpkg
+  trapeze check --list errors.geojson parcels.gpkg
 
-constexpr const char* kRenderFooter =
-    "\nExamples:\n"
-    "  trapeze render countries.fgb --tile 3/4/2 --output tile.png\n"
-    "  trapeze render land.fgb lakes.fgb --tile 0/0/0 --scale 2 \\\n"
-    "      --style 'lakes.fill=6fa8c9&background=white' --output world.png";
+The exit status is 1 if a file cannot be read, or if more features are skipped than
+--max-skipped allows; repaired features and other skipped ones are only listed. --list writes
+the places in FILE where polygons do not fit together: kind (gap or overlap), area in square
+metres, width in metres, and the ids of the features.)";
 
-constexpr const char* kBenchFooter =
-    "\nExamples:\n"
-    "  trapeze bench experiment                    the paper's experiment\n"
-    "  trapeze bench experiment --help             what it can be asked for\n\n"
-    "Benchmarks are programs of their own, trapeze-NAME in the folder bench beside this program:\n"
-    "they need libraries that this one does not. They are built with the release preset.";
+constexpr const char* kSeedFooter = R"(
+Examples:
+  trapeze seed countries.fgb --zooms 0-8 --output world.pmtiles
+  trapeze seed --config trapeze.toml --layers land,water --style style=night --zooms 0-14 \
+    --bbox 14.1,35.7,14.6,36.1 --output malta.mbtiles
+  trapeze seed --config trapeze.toml --zooms 0-14 --dry-run
+  trapeze seed --config trapeze.toml --zooms 0-14 --part 3/8 --output world.part3
+  trapeze seed --join world.part* --output world.pmtiles
+  trapeze seed --config trapeze.toml --zooms 0-14 --output world.pmtiles --parts 8 \
+    --jobs slurm >seed.sbatch
+
+Tiles are byte for byte those of `trapeze serve` with the same options. Areas of a single colour
+are recognised without drawing or visiting each of their tiles. Progress is kept in OUT.seeding
+until the archive is complete: after an interruption, the same command resumes. The bytes of the
+archive do not depend on interruptions, threads or parts.)";
+
+constexpr const char* kPrepareFooter = R"(
+Examples:
+  trapeze prepare buildings.gpkg water.fgb --output prepared
+  trapeze serve prepared/buildings.trapeze prepared/water.trapeze
+  trapeze prepare buildings.gpkg --output prepared --reuse prepared
+  trapeze prepare country.fgb --part 1-64/64 --output parts
+  trapeze prepare country.fgb --part $SLURM_ARRAY_TASK_ID/64 --output parts
+  trapeze prepare --join 'parts/*.trapeze' --output parts
+  trapeze serve 'parts/*.trapeze'
+
+A prepared file holds a layer in the form in which it is served. It is memory-mapped instead of
+built, servers on one machine share its memory, and its tiles and ETags equal those of FILE. It
+is rejected if it is damaged, if FILE has changed since, or if this version of Trapeze builds
+layers differently; then prepare it again. It can be served without FILE. Preparing again
+replaces the file safely under a running server; never modify it in any other way.
+
+--part builds a layer in parts, on one machine or many, with the memory of one part. Every run
+scans all of FILE and divides it by location in the same way; then it reads the features of its
+own part, which is fast for a FlatGeobuf with a spatial index. Features near each other are in
+the same part. All parts together are served as one layer. --join makes an overview of them,
+which low zooms need; --part 1-N/N makes it too.)";
+
+constexpr const char* kDiffFooter = R"(
+Examples:
+  trapeze diff yesterday.trapeze parcels.gpkg --zooms 0-16
+  trapeze diff old.fgb new.fgb --zooms 12 --style 'color-by=use' --format geojson
+
+OLD and NEW are two states of one layer, as source files or prepared files. A tile is listed if
+the geometry or style it is drawn from has changed, so every tile with a changed picture is
+listed. A few listed tiles may look the same, because the change is too small to be visible:
+--certainty bytes draws both versions and lists only those that differ. --certainty candidates
+does not examine single tiles: it lists those that may change in any style with the same
+simplify, except styles that select features by id. Use it to purge caches of all styles.)";
+
+constexpr const char* kExportFooter = R"(
+Examples:
+  trapeze export countries.fgb --zoom 4 --output coarse.gpkg
+  trapeze export buildings.shp --zoom 14 --simplify 2 --crs EPSG:3857 --output rough.fgb
+  trapeze export landcover.gpkg --zoom 12 --smooth 8 --output smooth.gpkg
+  trapeze export rivers.gpkg --zoom 9 --grow 3 --output wide.gpkg
+
+Writes the simplified polygons that tiles of that zoom are drawn from, with their attributes.
+The field trapeze_id holds the id of each feature in FILE. Features too small to remain at that
+tolerance are omitted and counted. With --topology strict all polygons are valid.)";
+
+constexpr const char* kRenderFooter = R"(
+Examples:
+  trapeze render countries.fgb --tile 3/4/2 --output tile.png
+  trapeze render land.fgb lakes.fgb --tile 0/0/0 --scale 2 \
+      --style 'lakes.fill=6fa8c9&background=white' --output world.png)";
+
+constexpr const char* kBenchFooter = R"(
+Examples:
+  trapeze bench experiment                    the paper's experiment
+  trapeze bench experiment --help             its options
+
+Benchmarks are separate programs, trapeze-NAME in the folder bench beside this program, since
+they need additional libraries. The release preset builds them.)";
 
 /// What the setting is for, what it takes where that is one of a few words, and what it is if it is
 /// not set.
@@ -179,10 +177,10 @@ std::string help_of(const std::string& name) {
   if (!setting->choices.empty()) help += ". Takes " + setting->takes;
   const trapeze::SettingValue value = setting->get(trapeze::Config());
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
-    return help + ". If not set: " + std::to_string(*number);
+    return help + ". Default: " + std::to_string(*number);
   }
   const auto& text = std::get<std::string>(value);
-  return text.empty() ? help : help + ". If not set: " + text;
+  return text.empty() ? help : help + ". Default: " + text;
 }
 
 trapeze::ConfigOverride parse_assignment(const std::string& text) {
@@ -225,45 +223,43 @@ CLI::Option& add_number(CLI::App& command, const std::string& option, const char
 /// `limit` is left as it is if neither option is given: which is `if_not_set`, in words.
 template <typename Limit>
 void add_max_skipped(CLI::App& command, Limit& limit, const char* if_not_set) {
-  add_number(command, "--max-skipped", "N",
-             fmt::format("How many features of a layer may be skipped because they cannot be "
-                         "drawn, as a number or as a share of all such as 1%; more are an error. "
-                         "If not set: {}",
-                         if_not_set),
-             [&limit](const std::string& option, const std::string& text) {
-               limit = trapeze::skip_limit_or_throw(option, text);
-             });
+  add_number(
+      command, "--max-skipped", "N",
+      fmt::format("How many features of a layer may be skipped because they cannot be drawn, as a "
+                  "number or as a share such as 1%; more are an error. Default: {}",
+                  if_not_set),
+      [&limit](const std::string& option, const std::string& text) {
+        limit = trapeze::skip_limit_or_throw(option, text);
+      });
   // Options take effect in the order in which they are added.
   command.add_flag_callback(
       "--strict", [&limit] { limit = trapeze::skip_limit_or_throw("--strict", "0"); },
-      "No feature may be skipped, whatever --max-skipped says");
+      "Allow no skipped features; overrides --max-skipped");
 }
 
 void add_coverage(CLI::App& command, trapeze::CoverageArguments& coverage,
                   const std::string& if_not_set) {
   command
-      .add_option(
-          "--coverage", coverage.mode,
-          fmt::format("Whether polygons that share borders keep them in common: auto, on or "
-                      "off; as the setting of layers. If not set: {}",
-                      if_not_set))
+      .add_option("--coverage", coverage.mode,
+                  fmt::format("Whether neighbouring polygons keep shared borders: auto, on or off, "
+                              "as in the configuration of layers. Default: {}",
+                              if_not_set))
       ->type_name("NAME");
   add_number(command, "--close-gaps", "METRES",
-             "Close gaps and overlaps between polygons of up to so many metres on the ground; not "
-             "with --coverage off",
+             "Close gaps and overlaps between polygons up to this width, in metres on the ground; "
+             "not with --coverage off",
              [&coverage](const std::string& option, const std::string& text) {
                coverage.close_gaps = trapeze::number_or_throw(option, text, 0, trapeze::kWidestGap);
              });
   add_number(command, "--merge", "PIXELS",
-             "Make one block of polygons that are nearer to each other than so many pixels, at the "
-             "usual simplify of 0.25; not with --coverage off",
+             "Merge polygons closer than this distance into blocks, in pixels at the default "
+             "simplify of 0.25; not with --coverage off",
              [&coverage](const std::string& option, const std::string& text) {
                coverage.merge = trapeze::number_or_throw(option, text, 0, trapeze::kWidestMerge);
              });
   command
       .add_option("--merge-by", coverage.merge_by,
-                  "Only polygons with the same value of this attribute become one block; with "
-                  "--merge")
+                  "With --merge: merge only polygons with equal values of this attribute")
       ->type_name("ATTRIBUTE");
 }
 
@@ -273,21 +269,20 @@ std::string usual_coverage() {
 
 /// Where files are read that may have been prepared.
 std::string coverage_of_files() {
-  return "as a file was prepared, else " + usual_coverage();
+  return "the mode a file was prepared with, else " + usual_coverage();
 }
 
 /// Of whoever draws: which layers, and on what.
 void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments) {
-  command.add_option(
-      "FILE", arguments.files,
-      "Files of polygons, in a format that GDAL reads, or prepared ones; each becomes "
-      "a layer named after it, as do the parts of a layer together that have such "
-      "a name as 'parts/*.trapeze'. Instead of the layers of the configuration.");
+  command.add_option("FILE", arguments.files,
+                     "Polygon files in a format that GDAL reads, or prepared files; each becomes a "
+                     "layer with the name of the file. A pattern such as 'parts/*.trapeze' names a "
+                     "layer in parts. Replaces the layers of the configuration.");
   command
-      .add_option("--config", arguments.config, "Configuration (TOML); options here override it")
+      .add_option("--config", arguments.config,
+                  "Configuration file (TOML); options on the command line override it")
       ->type_name("FILE");
-  add_coverage(command, arguments.coverage,
-               "as configured; where nothing is, " + coverage_of_files());
+  add_coverage(command, arguments.coverage, "the configured mode, else " + coverage_of_files());
   add_max_skipped(command, arguments.max_skipped, "as configured");
   add_setting(command, arguments, "--workers", "server.workers", "N");
   add_setting(command, arguments, "--renderer", "server.renderer", "NAME");
@@ -300,7 +295,7 @@ void add_drawing_settings(CLI::App& command, trapeze::ServeArguments& arguments)
               arguments.settings.push_back(parse_assignment(text));
             }
           },
-          "Any setting of the configuration: limits.connections=100; may be given several times")
+          "Any setting of the configuration, such as limits.connections=100; can be repeated")
       ->type_name("TABLE.KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -325,85 +320,81 @@ void add_config(CLI::App& app, std::string& path, trapeze::ServeArguments& argum
   config->require_subcommand(1);
   config
       ->add_subcommand("check",
-                       "Tell all that is wrong with a configuration, and with the files that it "
-                       "names")
+                       "Report all mistakes in a configuration and in the files that it refers to")
       ->add_option("FILE", path, "Configuration (TOML)")
       ->required();
-  CLI::App* print =
-      config->add_subcommand("print",
-                             "Print what `serve` would do with the same options, with the "
-                             "origin of each value");
+  CLI::App* print = config->add_subcommand("print",
+                                           "Print the configuration that `serve` would use with "
+                                           "the same options, with the origin of each value");
   add_settings(*print, arguments);
-  config->add_subcommand("schema", "Print the JSON Schema of configurations");
+  config->add_subcommand("schema", "Print the JSON Schema of configuration files");
 }
 
 void add_check(CLI::App& app, trapeze::CheckArguments& arguments) {
-  CLI::App* check = app.add_subcommand("check", "Load files and report what is in them");
+  CLI::App* check = app.add_subcommand("check", "Load files and report their contents and errors");
   check->footer(kCheckFooter);
-  check->add_option("FILE", arguments.files, "Files of polygons, or prepared ones")->required();
+  check->add_option("FILE", arguments.files, "Polygon files or prepared files")->required();
   add_coverage(*check, arguments.coverage, coverage_of_files());
   add_max_skipped(*check, arguments.max_skipped, "100%");
   check
       ->add_option("--list", arguments.list,
-                   "A file to write with the gaps and overlaps between the polygons of FILE, their "
-                   "areas, widths and features: .geojson, .gpkg or .fgb")
+                   "Write the gaps and overlaps between the polygons of FILE to this file, with "
+                   "area, width and feature ids: .geojson, .gpkg or .fgb")
       ->type_name("OUT");
-  check->add_flag("--overwrite", arguments.overwrite, "Replace OUT if it exists");
+  check->add_flag("--overwrite", arguments.overwrite, "Overwrite OUT if it exists");
 }
 
 void add_prepare(CLI::App& app, trapeze::PrepareArguments& arguments) {
   CLI::App* prepare =
-      app.add_subcommand("prepare", "Save layers in files that are served without building them");
+      app.add_subcommand("prepare", "Save built layers in files that load instantly");
   prepare->footer(kPrepareFooter);
-  prepare->add_option("FILE", arguments.files, "Files of polygons, in a format that GDAL reads");
+  prepare->add_option("FILE", arguments.files, "Polygon files in a format that GDAL reads");
   prepare
       ->add_option("--weights", arguments.weights,
-                   fmt::format("What decides which vertices go: {}; {} if not set",
+                   fmt::format("How the importance of vertices is measured: {}. Default: {}",
                                trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
   add_coverage(*prepare, arguments.coverage, usual_coverage());
   prepare
       ->add_option("--source-layer", arguments.selection.layer,
-                   "The layer or table of FILE; all that hold polygons if not set")
+                   "The layer or table of FILE. Default: all that contain polygons")
       ->type_name("NAME");
   prepare
       ->add_option("--where", arguments.selection.where,
-                   "A condition on features in SQL, such as \"height > 20\"")
+                   "An SQL condition that selects features, such as \"height > 20\"")
       ->type_name("SQL");
   prepare
       ->add_option("--attributes", arguments.selection.attributes,
-                   "The attributes that are kept, with commas between them; all if not set")
+                   "The attributes to keep, separated by commas. Default: all")
       ->delimiter(',')
       ->type_name("NAME,...");
   add_max_skipped(*prepare, arguments.max_skipped, "100%");
   prepare
       ->add_option("--output", arguments.output,
-                   "The folder to write into; each file is named after FILE, and ends in .trapeze. "
-                   "An overview can be given a name that ends so")
+                   "The folder for the prepared files, each named after FILE with the extension "
+                   ".trapeze. With --join it may also be a file name with this extension")
       ->required()
       ->type_name("DIR");
   prepare
-      ->add_option(
-          "--part", arguments.part,
-          "Prepare the I-th of N parts with about as many vertices each; A-B/N: those from "
-          "the A-th to the B-th, one after the other")
+      ->add_option("--part", arguments.part,
+                   "Prepare part I of N parts with about equal numbers of vertices; A-B/N prepares "
+                   "parts A to B, one after the other")
       ->type_name("I/N");
   prepare
-      ->add_option("--join", arguments.join,
-                   "Make an overview of all these parts for low zooms, and do nothing else")
+      ->add_option("--join", arguments.join, "Only make an overview of these parts, for low zooms")
       ->type_name("PART ...");
   prepare
-      ->add_option(
-          "--crs", arguments.crs,
-          "Reference systems to prepare for besides EPSG:3857, such as EPSG:2056: each is a "
-          "file of its own, which ends in .EPSG-2056.trapeze")
+      ->add_option("--crs", arguments.crs,
+                   "Additional reference systems besides EPSG:3857, such as EPSG:2056; each gets "
+                   "its own file with the extension .EPSG-2056.trapeze")
       ->delimiter(',')
       ->type_name("NAME,...");
   prepare
-      ->add_option("--reuse", arguments.reuse,
-                   "A file prepared before, or the folder of such files, perhaps that of --output: "
-                   "polygons, and groups of polygons with shared borders, that have not changed "
-                   "since are taken over from there. What is written is the same without it")
+      ->add_option(
+          "--reuse", arguments.reuse,
+          "A previously prepared file, or a folder of such files, which may be that of --output. "
+          "Polygons and groups of polygons with shared borders that have not changed are copied "
+          "from there, which is faster. The result is the same without it")
       ->type_name("OLD");
 }
 
@@ -411,47 +402,47 @@ void add_diff(CLI::App& app, trapeze::DiffArguments& arguments) {
   CLI::App* diff =
       app.add_subcommand("diff", "List the tiles that differ between two states of a layer");
   diff->footer(kDiffFooter);
-  diff->add_option("OLD", arguments.before, "A file of polygons, or a prepared one")->required();
-  diff->add_option("NEW", arguments.after, "The same layer later")->required();
-  diff->add_option("--zooms", arguments.zooms, "The zooms of the tiles, such as 0-16")
+  diff->add_option("OLD", arguments.before, "A polygon file or a prepared file")->required();
+  diff->add_option("NEW", arguments.after, "A later state of the same layer")->required();
+  diff->add_option("--zooms", arguments.zooms, "The zooms to list, such as 0-16")
       ->required()
       ->type_name("A-B");
-  diff->add_option("--style", arguments.style, "Style, written as in the query of a URL")
+  diff->add_option("--style", arguments.style, "Style parameters, as in the query of a URL")
       ->type_name("QUERY");
-  add_number(*diff, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+  add_number(*diff, "--scale", "N", "Scale of the tile: its side divided by 256 pixels, 1 to 4",
              [&arguments](const std::string& option, const std::string& text) {
                arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
              });
   add_coverage(*diff, arguments.coverage, coverage_of_files());
   diff->add_option(
           "--certainty", arguments.certainty,
-          fmt::format("Which tiles are listed: {}; {} if not set",
+          fmt::format("Which tiles to list: {}. Default: {}",
                       trapeze::listed(trapeze::kCertaintyNames.names()), arguments.certainty))
       ->type_name("NAME");
   diff->add_option("--format", arguments.format,
-                   fmt::format("{}; text, a line z/x/y for each, if not set",
+                   fmt::format("{}. Default: text, one line z/x/y per tile",
                                trapeze::listed(trapeze::kTileListNames.names())))
       ->type_name("NAME");
 }
 
 void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
-  CLI::App* command =
-      app.add_subcommand("export", "Write the polygons of a zoom into a file for other programs");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write the simplified polygons of a zoom to a file for other programs");
   command->footer(kExportFooter);
-  command->add_option("FILE", arguments.file, "A file of polygons")->required();
-  add_number(*command, "--zoom", "Z", "The zoom whose tiles show these polygons, 0 to 24",
+  command->add_option("FILE", arguments.file, "A polygon file")->required();
+  add_number(*command, "--zoom", "Z", "The zoom whose polygons to write, 0 to 24",
              [&arguments](const std::string& option, const std::string& text) {
                arguments.zoom = trapeze::integer_or_throw(option, text, 0, trapeze::kMaxZoom);
              })
       .required();
-  add_number(
-      *command, "--simplify", "PX",
-      fmt::format("Tolerance in pixels, {} if not set, as tiles are drawn; 0 removes nothing",
-                  arguments.simplify),
-      [&arguments](const std::string& option, const std::string& text) {
-        arguments.simplify =
-            trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
-      });
+  add_number(*command, "--simplify", "PX",
+             fmt::format(
+                 "Simplification tolerance in pixels; 0 removes nothing. Default: {}, as for tiles",
+                 arguments.simplify),
+             [&arguments](const std::string& option, const std::string& text) {
+               arguments.simplify =
+                   trapeze::number_or_throw(option, text, 0, std::numeric_limits<double>::max());
+             });
   const auto add_reshaping = [&](const char* name, trapeze::ParameterId id, const char* help,
                                  double& value) {
     const double most = trapeze::style_parameter(id).max;
@@ -461,114 +452,113 @@ void add_export(CLI::App& app, trapeze::ExportArguments& arguments) {
                });
   };
   add_reshaping("--smooth", trapeze::ParameterId::smooth,
-                "Corners rounded as tiles in a style with smooth show them: as far as so many "
-                "pixels along their edges, 0 to {}; all polygons are held in memory",
+                "Round corners as the style parameter smooth does, up to this many pixels along "
+                "their edges, 0 to {}; holds all polygons in memory",
                 arguments.smooth);
   add_reshaping("--grow", trapeze::ParameterId::grow,
-                "What is narrower than so many pixels grows as tiles in a style with grow show it, "
-                "0 to {}; not beside --smooth; all polygons are held in memory",
+                "Widen features narrower than this many pixels, as the style parameter grow does, "
+                "0 to {}; not together with --smooth; holds all polygons in memory",
                 arguments.grow);
   command
       ->add_option(
           "--topology", arguments.topology,
-          fmt::format("{} ({} if not set); fast: without the test that keeps polygons "
-                      "from crossing themselves; what crosses is noded",
+          fmt::format("{}. Default: {}. With fast, the test that prevents self-crossing polygons "
+                      "is skipped and crossings are noded",
                       trapeze::listed(trapeze::kTopologyNames.names()), arguments.topology))
       ->type_name("NAME");
   command
       ->add_option("--weights", arguments.weights,
-                   fmt::format("What decides which vertices go: {}; {} if not set",
+                   fmt::format("How the importance of vertices is measured: {}. Default: {}",
                                trapeze::listed(trapeze::kWeightNames.names()), arguments.weights))
       ->type_name("NAME");
   add_coverage(*command, arguments.coverage, usual_coverage());
   command
       ->add_option("--crs", arguments.crs,
-                   "EPSG:4326 (degrees, if not set) or EPSG:3857 (metres, the map as it is drawn)")
+                   "EPSG:4326 (degrees) or EPSG:3857 (Web Mercator metres). Default: EPSG:4326")
       ->type_name("NAME");
-  command->add_flag("--overwrite", arguments.overwrite, "Replace OUT if it exists");
+  command->add_flag("--overwrite", arguments.overwrite, "Overwrite OUT if it exists");
   command
       ->add_option("--output", arguments.output,
-                   "The file to write: .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson (GeoJSON)")
+                   "The output file: .fgb (FlatGeobuf), .gpkg (GeoPackage) or .geojson (GeoJSON)")
       ->required()
       ->type_name("OUT");
 }
 
 void add_render(CLI::App& app, trapeze::RenderArguments& arguments) {
-  CLI::App* render = app.add_subcommand("render", "Draw one tile into a file");
+  CLI::App* render = app.add_subcommand("render", "Draw one tile to a file");
   render->footer(kRenderFooter);
-  render->add_option("FILE", arguments.files, "Files of polygons, each a layer, the lowest first")
+  render
+      ->add_option("FILE", arguments.files, "Polygon files, one layer each, the bottom layer first")
       ->required();
   render->add_option("--tile", arguments.tile, "Zoom, column and row of the tile")
       ->required()
       ->type_name("Z/X/Y");
-  add_number(*render, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+  add_number(*render, "--scale", "N", "Scale of the tile: its side divided by 256 pixels, 1 to 4",
              [&arguments](const std::string& option, const std::string& text) {
                arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
              });
-  render->add_option("--style", arguments.style, "Style, written as in the query of a URL")
+  render->add_option("--style", arguments.style, "Style parameters, as in the query of a URL")
       ->type_name("QUERY");
   add_coverage(*render, arguments.coverage, coverage_of_files());
   render->add_option("--renderer", arguments.renderer, help_of("server.renderer"))
       ->type_name("NAME");
   render->add_option("--device", arguments.device, help_of("server.device"))->type_name("DEVICE");
-  render->add_option("--output", arguments.output, "The picture to write: .png or .webp")
+  render->add_option("--output", arguments.output, "The output image: .png or .webp")
       ->required()
       ->type_name("F");
 }
 
 void add_seed(CLI::App& app, trapeze::SeedArguments& arguments) {
   CLI::App* seed =
-      app.add_subcommand("seed", "Draw all tiles of an area into an archive or a folder");
+      app.add_subcommand("seed", "Draw all tiles of an area into an archive or folder");
   seed->footer(kSeedFooter);
   add_drawing_settings(*seed, arguments.serve);
-  seed->add_option("--layers", arguments.layers,
-                   "The layers of the tiles, the lowest first, with commas between them; all if "
-                   "not set")
+  seed->add_option(
+          "--layers", arguments.layers,
+          "The layers of the tiles, separated by commas, the bottom layer first. Default: all")
       ->delimiter(',')
       ->type_name("NAME,...");
   seed->add_option("--style", arguments.style,
-                   "Style, written as in the query of a URL, such as style=night&fill=teal")
+                   "Style parameters, as in the query of a URL, such as style=night&fill=teal")
       ->type_name("QUERY");
-  seed->add_option("--zooms", arguments.zooms, "The zooms of the tiles, such as 0-14")
-      ->type_name("A-B");
+  seed->add_option("--zooms", arguments.zooms, "The zooms to seed, such as 0-14")->type_name("A-B");
   seed->add_option("--bbox", arguments.bbox,
-                   "The tiles that meet this box, in degrees; those of the whole world if not set")
+                   "Seed only tiles that intersect this box, in degrees. Default: the whole world")
       ->type_name("W,S,E,N");
-  add_number(*seed, "--scale", "N", "Pixels in 256ths of a tile's side, 1 to 4",
+  add_number(*seed, "--scale", "N", "Scale of the tile: its side divided by 256 pixels, 1 to 4",
              [&arguments](const std::string& option, const std::string& text) {
                arguments.scale = trapeze::integer_or_throw(option, text, 1, 4);
              });
   seed->add_option(
           "--format", arguments.format,
-          fmt::format("{}; {} if not set", trapeze::listed(trapeze::kTileFormatNames.names()),
+          fmt::format("{}. Default: {}", trapeze::listed(trapeze::kTileFormatNames.names()),
                       arguments.format))
       ->type_name("NAME");
   seed->add_option("--output", arguments.output,
-                   "The archive to write, .pmtiles or .mbtiles; else a folder, "
+                   "The output archive, .pmtiles or .mbtiles; any other name is a folder, "
                    "OUT/{z}/{x}/{y}.png")
       ->type_name("OUT");
   seed->add_flag("--sparse", arguments.is_sparse,
-                 "Leave out tiles in which nothing is seen, as is always done in a folder");
+                 "Omit tiles that show nothing; in a folder they are always omitted");
   seed->add_flag("--dry-run", arguments.is_dry_run,
-                 "Only estimate how many tiles are to be drawn, how large they are, and how long "
-                 "that takes");
-  seed->add_option("--update", arguments.update,
-                   "An archive that was seeded before, in PMTiles, perhaps that of --output: tiles "
-                   "that have not changed since are taken from there. What is written is the same "
-                   "without it")
+                 "Only estimate the number of tiles to draw, their size and the time");
+  seed->add_option(
+          "--update", arguments.update,
+          "A previously seeded PMTiles archive, which may be that of --output. Tiles that have not "
+          "changed are copied from there, which is faster. The result is the same without it")
       ->type_name("OLD");
   seed->add_option("--part", arguments.part,
-                   "Seed one of N parts of about equal cost; OUT is then a file for --join")
+                   "Seed part I of N parts of about equal cost; OUT is then an input for --join")
       ->type_name("I/N");
-  seed->add_option("--join", arguments.join,
-                   "Make the archive of all these parts, and do nothing else")
+  seed->add_option("--join", arguments.join, "Only join these parts into the archive")
       ->type_name("PART ...");
-  seed->add_option("--jobs", arguments.jobs,
-                   fmt::format("Print what seeds the archive in --parts on many machines, and do "
-                               "nothing else: {}",
-                               trapeze::listed(trapeze::kBatchSystemNames.names())))
+  seed->add_option(
+          "--jobs", arguments.jobs,
+          fmt::format(
+              "Only print a batch job that seeds the archive in --parts on many machines: {}",
+              trapeze::listed(trapeze::kBatchSystemNames.names())))
       ->type_name("SYSTEM");
-  add_number(*seed, "--parts", "N", "How many parts --jobs divides the work into",
+  add_number(*seed, "--parts", "N", "The number of parts for --jobs",
              [&arguments](const std::string& option, const std::string& text) {
                arguments.parts = trapeze::integer_or_throw(option, text, 1, trapeze::kMostParts);
              });
@@ -585,12 +575,11 @@ void add_bench(CLI::App& app, std::string& name) {
   CLI::App* bench =
       app.add_subcommand("bench", "Run a benchmark: trapeze bench NAME [OPTION OF NAME ...]");
   bench->footer(kBenchFooter);
-  bench->add_option("NAME", name, "The benchmark; what follows it is for the benchmark")
-      ->required();
+  bench->add_option("NAME", name, "The benchmark; further arguments are passed to it")->required();
 }
 
 void add_parameters(CLI::App& app) {
-  app.add_subcommand("parameters", "Print what a style can say, as a table in Markdown");
+  app.add_subcommand("parameters", "Print a table of all style parameters, in Markdown");
 }
 
 /// The command whose options were read last, or the program if there was none.

@@ -172,7 +172,7 @@ Json styles_schema() {
   Json style = style_schema(true);
   style["additionalProperties"] = style_schema(false);
   return {{"type", "object"},
-          {"description", "styles by name, for style=NAME"},
+          {"description", "named styles, for style=NAME"},
           {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
           {"additionalProperties", style}};
 }
@@ -184,7 +184,7 @@ Json fonts_schema() {
   }
   table["required"] = {"files"};
   return {{"type", "object"},
-          {"description", "fonts by name, for label-font=NAME"},
+          {"description", "named fonts, for label-font=NAME"},
           {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
           {"additionalProperties", table}};
 }
@@ -196,7 +196,7 @@ Json value_tables_schema() {
   }
   table["required"] = {"file"};
   return {{"type", "object"},
-          {"description", "tables of values by name, for values=NAME"},
+          {"description", "named value tables, for values=NAME"},
           {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]{1,64}$"}}},
           {"additionalProperties", table}};
 }
@@ -208,8 +208,7 @@ Json layer_schema() {
   }
   schema["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]{1,64}$";
   schema["properties"]["style"] = style_schema(false);
-  schema["properties"]["style"]["description"] =
-      "how the layer is drawn unless a request says otherwise";
+  schema["properties"]["style"]["description"] = "the default style of the layer";
   schema["required"] = {"name"};
   schema["anyOf"] = {{{"required", {"file"}}}, {{"required", {"prepared"}}}};
   return schema;
@@ -252,7 +251,7 @@ std::string config_schema() {
   schema["properties"]["fonts"] = fonts_schema();
   schema["properties"]["values"] = value_tables_schema();
   schema["properties"]["layer"] = {{"type", "array"},
-                                   {"description", "the layers, the first lies lowest"},
+                                   {"description", "the layers, the bottom layer first"},
                                    {"items", layer_schema()}};
   return to_text(schema);
 }

@@ -251,7 +251,8 @@ const Words<std::optional<CoverageMode>>& coverage_words() {
 Setting<LayerConfig> weights_setting() {
   auto setting = choice<std::optional<WeightRule>, LayerConfig>(
       "weights", [](auto& layer) -> auto& { return layer.weights; }, weight_words(),
-      "what makes a vertex matter; not set: as a file was prepared, else \"" +
+      "how the importance of a vertex is measured; default: the rule a file was prepared with, "
+      "else \"" +
           std::string(kWeightNames.name_of(WeightRule::douglas_peucker)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.weights ? words(layer) : SettingValue(std::string());
@@ -263,10 +264,10 @@ Setting<LayerConfig> weights_setting() {
 Setting<LayerConfig> coverage_setting() {
   auto setting = choice<std::optional<CoverageMode>, LayerConfig>(
       "coverage", [](auto& layer) -> auto& { return layer.coverage; }, coverage_words(),
-      "whether polygons that share borders keep them in common: \"auto\", where two have an edge "
-      "in common and do not overlap by more than 1 %; \"on\", all that lie near each other, "
-      "however much they overlap; \"off\", each by itself; not set: as a file was "
-      "prepared, else \"" +
+      "whether neighbouring polygons keep shared borders: \"auto\", polygons that share an edge "
+      "and overlap by at most 1 %; \"on\", all polygons near each other, however much they "
+      "overlap; \"off\", each polygon is simplified separately; default: the mode a file was "
+      "prepared with, else \"" +
           std::string(kCoverageNames.name_of(kUsualCoverage)) + "\"");
   setting.get = [words = setting.get](const LayerConfig& layer) -> SettingValue {
     return layer.coverage ? words(layer) : SettingValue(std::string());
@@ -278,8 +279,8 @@ Setting<LayerConfig> coverage_setting() {
 Setting<LayerConfig> close_gaps_setting() {
   auto setting = begin<LayerConfig>(
       "close_gaps", SettingType::number, fmt::format("a number from 0 to {}", kWidestGap),
-      "metres on the ground up to which gaps and overlaps between polygons are closed where "
-      "coverage is \"auto\" or \"on\"; not set: as a file was prepared, else 0");
+      "close gaps and overlaps between polygons up to this width, in metres on the ground; needs "
+      "coverage \"auto\" or \"on\"; default: the width a file was prepared with, else 0");
   setting.min = 0;
   setting.max = kWidestGap;
   setting.get = [](const LayerConfig& layer) -> SettingValue {
@@ -297,10 +298,10 @@ Setting<LayerConfig> close_gaps_setting() {
 Setting<LayerConfig> merge_setting() {
   auto setting = begin<LayerConfig>(
       "merge", SettingType::number, fmt::format("a number from 0 to {}", kWidestMerge),
-      "pixels, at the usual simplify of 0.25 and more or fewer in proportion to it: polygons that "
-      "are nearer to each other become one block, gaps and courtyards that are narrower are "
-      "filled; "
-      "where coverage is \"auto\" or \"on\"; not set: as a file was prepared, else 0, none");
+      "merge polygons closer than this distance into blocks and fill narrower gaps and courtyards; "
+      "in pixels at the default simplify of 0.25, scaled in proportion to simplify; needs coverage "
+      "\"auto\" or \"on\"; default: the distance a file was prepared with, else 0, which disables "
+      "merging");
   setting.min = 0;
   setting.max = kWidestMerge;
   setting.get = [](const LayerConfig& layer) -> SettingValue {
@@ -316,9 +317,9 @@ Setting<LayerConfig> merge_setting() {
 
 /// Not set is no list.
 Setting<LayerConfig> attributes_setting() {
-  auto setting = begin<LayerConfig>(
-      "attributes", SettingType::list, "a list of names of attributes",
-      "attributes that are kept, to filter and to colour by and to be told; not set: all");
+  auto setting =
+      begin<LayerConfig>("attributes", SettingType::list, "a list of names of attributes",
+                         "attributes to keep, for filters, colours and /identify; default: all");
   setting.get = [](const LayerConfig& layer) -> SettingValue {
     if (!layer.selection.attributes) return std::string();
     return *layer.selection.attributes;
@@ -335,19 +336,18 @@ Setting<LayerConfig> max_skipped_setting() {
       "max_skipped", [](auto& layer) -> auto& { return layer.max_skipped; },
       std::string(SkipLimit::kTakes), SkipLimit::parse,
       [](const SkipLimit& limit) { return limit.text(); },
-      "how many of its features may be skipped, as a number or as a share of all in its source "
-      "such "
-      "as \"1%\"; if there are more, the layer is not taken");
+      "how many features may be skipped, as a number or as a share of all features in the source "
+      "such as \"1%\"; if more are skipped, the layer is rejected");
   setting.type = SettingType::amount;
   return setting;
 }
 
 /// Not set is no number.
 Setting<LayerConfig> detail_zoom_setting() {
-  auto setting = begin<LayerConfig>(
-      "detail_zoom", SettingType::integer, fmt::format("an integer from 0 to {}", kMaxZoom),
-      "the zoom up to which its data is true: beyond it there is no more detail, only larger "
-      "pictures; not set: unknown");
+  auto setting = begin<LayerConfig>("detail_zoom", SettingType::integer,
+                                    fmt::format("an integer from 0 to {}", kMaxZoom),
+                                    "the last zoom at which the data adds detail; higher zooms "
+                                    "only enlarge it; default: unknown");
   setting.min = 0;
   setting.max = kMaxZoom;
   setting.get = [](const LayerConfig& layer) -> SettingValue {
@@ -385,154 +385,155 @@ void append_server(std::vector<Setting<Config>>& all) {
   all.push_back(parsed<Config>(
       "server.address", [](auto& c) -> auto& { return c.server.address; },
       "an IPv4 or IPv6 address", listen_address, same,
-      "the address to listen on; \"127.0.0.1\" to be reached from this machine only"));
+      "the address to listen on; \"127.0.0.1\" accepts connections from this machine only"));
   all.push_back(integer<Config>(
       "server.port", [](auto& c) -> auto& { return c.server.port; }, 0, 65'535,
-      "the port; 0 takes any free one"));
+      "the port to listen on; 0 picks a free one"));
   all.push_back(integer<Config>(
       "server.threads", [](auto& c) -> auto& { return c.server.threads; }, 1, 256,
-      "threads for sockets"));
+      "threads for network I/O"));
   all.push_back(integer<Config>(
       "server.workers", [](auto& c) -> auto& { return c.server.workers; }, 0, 256,
-      "threads that draw; 0: one a core"));
+      "rendering threads; 0: one per core"));
   all.push_back(integer<Config>(
       "server.queue", [](auto& c) -> auto& { return c.server.queue; }, 1, 1'000'000,
-      "tiles that may wait for a worker; more are answered with 503"));
+      "requests that may wait for a rendering thread; further ones get 503"));
   all.push_back(milliseconds(
       "server.deadline_ms", [](auto& c) -> auto& { return c.server.deadline_ms; }, 1,
-      "a tile that takes longer, waiting and being drawn, is given up and answered with 504"));
+      "time limit for a tile, waiting and rendering together; a tile that takes longer is "
+      "abandoned and answered with 504"));
   all.push_back(integer<Config>(
       "server.batch", [](auto& c) -> auto& { return c.server.batch; }, 1, 64,
-      "tiles drawn in one pass, where that is faster than one by one"));
+      "tiles rendered in one pass, where that is faster than one at a time"));
   all.push_back(integer<Config>(
       "server.cache_mb", [](auto& c) -> auto& { return c.server.cache_mb; }, 0, 1'000'000,
-      "memory for tiles that were drawn; 0: none are kept"));
+      "memory for the cache of rendered tiles; 0 disables it"));
   all.push_back(integer<Config>(
       "server.posted_styles_mb", [](auto& c) -> auto& { return c.server.posted_styles_mb; }, 0,
-      4096, "memory for styles that are posted"));
+      4096, "memory for posted styles"));
   all.push_back(parsed<Config>(
       "server.cache_control", [](auto& c) -> auto& { return c.server.cache_control; },
       "the value of a Cache-Control header", header_value, same,
-      "what clients and proxies may do with tiles"));
+      "the Cache-Control header of tiles"));
   all.push_back(choice<RendererKind, Config>(
       "server.renderer", [](auto& c) -> auto& { return c.server.renderer.kind; }, renderer_words(),
-      "what draws; \"auto\" tries the others in this order"));
+      "the renderer; \"auto\" tries the others in this order"));
   all.push_back(text<Config>(
       "server.device", [](auto& c) -> auto& { return c.server.renderer.device; },
-      "the EGL device to prefer: its index, or a part of its name"));
+      "the preferred EGL device: its index, or part of its name"));
   all.push_back(parsed<Config>(
       "server.public_url", [](auto& c) -> auto& { return c.server.public_url; },
       "a URL that begins with http:// or https://", public_url, same,
-      "how the world names this server, for the URLs in documents; empty: by the Host of each "
-      "request"));
+      "the public base URL of this server, used for URLs in documents; empty: taken from the Host "
+      "header of each request"));
   all.push_back(list<Config>(
       "server.allowed_hosts", [](auto& c) -> auto& { return c.server.allowed_hosts; },
-      "a list of names of hosts, with or without a port, \"*.\" before them for all below",
+      "a list of host names, with or without a port; \"*.\" in front matches all subdomains",
       host_pattern, same,
-      "without public_url: the Host headers that are answered; an empty list answers all"));
+      "accepted Host headers if public_url is empty; an empty list accepts all"));
   auto sets = list<Config>(
       "server.tile_matrix_sets", [](auto& c) -> auto& { return c.server.tile_matrix_sets; },
       "a list of files",
       [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
       same,
-      "tile matrix sets besides those that are built in, as JSON of the OGC standard: tiles are "
-      "served "
-      "of layers whose crs names their reference system");
+      "files with additional tile matrix sets, in the JSON of the OGC standard; they apply to "
+      "layers whose crs includes the reference system of the set");
   sets.type = SettingType::paths;
   all.push_back(std::move(sets));
   all.push_back(path<Config>(
       "server.web_root", [](auto& c) -> auto& { return c.server.web_root; },
-      "a folder whose files are served in the place of the viewer of the program; empty: none"));
+      "a folder of files to serve instead of the built-in viewer; empty: none"));
   all.push_back(boolean<Config>(
       "server.metrics", [](auto& c) -> auto& { return c.server.metrics; },
-      "whether /metrics is served here too, and not at the admin address only"));
+      "whether /metrics is also served here, not only at the admin address"));
   all.push_back(list<Config>(
       "server.trusted_proxies", [](auto& c) -> auto& { return c.server.trusted_proxies; },
-      "a list of addresses or ranges such as \"10.0.0.0/8\"", parse_address_range, range_text,
-      "proxies whose X-Forwarded-For says who asks; limits for one address do not hold for them"));
+      "a list of addresses or CIDR ranges such as \"10.0.0.0/8\"", parse_address_range, range_text,
+      "proxies whose X-Forwarded-For header names the client; limits per address do not apply to "
+      "the proxies themselves"));
   all.push_back(milliseconds(
       "server.watch_ms", [](auto& c) -> auto& { return c.server.watch_ms; }, 0,
-      "time between looks at the configuration and the files of layers, which are read again when "
-      "they have changed; 0: only on SIGHUP"));
+      "interval for checking whether the configuration or layer files have changed; changed ones "
+      "are read again; 0: only on SIGHUP"));
   all.push_back(milliseconds(
       "server.live_ms", [](auto& c) -> auto& { return c.server.live_ms; }, 10,
-      "time between questions to the databases of layers with a live_query"));
+      "polling interval for databases of layers with a live_query"));
   all.push_back(milliseconds(
       "server.drain_delay_ms", [](auto& c) -> auto& { return c.server.drain_delay_ms; }, 0,
-      "told to stop, the server is not ready but goes on so long, for balancers to notice"));
+      "after a signal to stop, time during which the server keeps serving but reports not ready, "
+      "so that load balancers notice"));
   all.push_back(milliseconds(
       "server.drain_timeout_ms", [](auto& c) -> auto& { return c.server.drain_timeout_ms; }, 1,
-      "then it takes no more connections, and waits so long for what is under way"));
+      "time the server then waits for requests in progress, without accepting new connections"));
 }
 
 void append_limits(std::vector<Setting<Config>>& all) {
   all.push_back(integer<Config>(
       "limits.connections", [](auto& c) -> auto& { return c.limits.connections; }, 1, 1'000'000,
-      "connections in all; more are turned away with 503"));
+      "total connections; further ones are rejected with 503"));
   all.push_back(integer<Config>(
       "limits.connections_per_address",
       [](auto& c) -> auto& { return c.limits.connections_per_address; }, 1, 1'000'000,
-      "connections of one IPv4 address or IPv6 /64; more are turned away with 429"));
+      "connections per IPv4 address or IPv6 /64; further ones are rejected with 429"));
   all.push_back(integer<Config>(
       "limits.header_bytes", [](auto& c) -> auto& { return c.limits.header_bytes; }, 512, 32'768,
-      "request line and header together; more is answered with 431"));
+      "size of request line and headers; larger requests get 431"));
   all.push_back(integer<Config>(
       "limits.target_bytes", [](auto& c) -> auto& { return c.limits.target_bytes; }, 128,
       static_cast<std::int64_t>(kMaxTargetLength),
-      "path and query together; more is answered with 414"));
+      "length of path and query; longer ones get 414"));
   all.push_back(integer<Config>(
       "limits.body_bytes", [](auto& c) -> auto& { return c.limits.body_bytes; }, 0, 1 << 20,
-      "a style that is posted; more is answered with 413"));
+      "size of a posted style; larger ones get 413"));
   all.push_back(integer<Config>(
       "limits.layers", [](auto& c) -> auto& { return c.limits.layers; }, 1,
-      static_cast<std::int64_t>(kMaxLayersPerTile), "layers of one tile"));
+      static_cast<std::int64_t>(kMaxLayersPerTile), "layers per tile"));
   all.push_back(integer<Config>(
       "limits.scale", [](auto& c) -> auto& { return c.limits.scale; }, 1, kMaxScale,
-      "pixels of a tile's side in 256ths: 2 allows @2x"));
+      "the highest scale of a tile: its side divided by 256 pixels; 2 allows @2x"));
   all.push_back(integer<Config>(
       "limits.zoom", [](auto& c) -> auto& { return c.limits.zoom; }, 0, kMaxZoom,
-      "the last zoom; tiles beyond it are answered with 404"));
+      "the highest zoom; tiles beyond it get 404"));
   all.push_back(integer<Config>(
       "limits.map_pixels", [](auto& c) -> auto& { return c.limits.map_pixels; }, 1,
       static_cast<std::int64_t>(kMaxMapPixels),
-      "pixels of a picture of a window, width times height; more are answered with 400"));
+      "pixels of an image from /map or WMS, width times height; larger ones get 400"));
   all.push_back(milliseconds(
       "limits.idle_timeout_ms", [](auto& c) -> auto& { return c.limits.idle_timeout_ms; }, 1,
-      "how long a connection is kept that asks for nothing"));
+      "how long an idle connection is kept open"));
   all.push_back(milliseconds(
       "limits.read_timeout_ms", [](auto& c) -> auto& { return c.limits.read_timeout_ms; }, 1,
-      "how long a request may take to come, from its first byte to its last"));
+      "how long a client may take to send a request, from first to last byte"));
   all.push_back(milliseconds(
       "limits.write_timeout_ms", [](auto& c) -> auto& { return c.limits.write_timeout_ms; }, 1,
-      "how long a client may take to receive an answer"));
+      "how long a client may take to receive a response"));
   all.push_back(number<Config>(
       "limits.drawn_per_second", [](auto& c) -> auto& { return c.limits.drawn_per_second; }, 0, 1e6,
-      "tiles that are not in the cache, for one IPv4 address or IPv6 /64, on the average; more are "
-      "answered with 429; 0: no limit"));
+      "average rate of tiles rendered for one IPv4 address or IPv6 /64, cache hits not counted; "
+      "beyond it 429; 0: no limit"));
   all.push_back(number<Config>(
       "limits.drawn_burst", [](auto& c) -> auto& { return c.limits.drawn_burst; }, 1, 1e6,
-      "how many of them it may ask for at once after a rest"));
+      "how many of these tiles a client may request in a burst"));
   all.push_back(integer<Config>(
       "limits.tile_cost", [](auto& c) -> auto& { return c.limits.tile_cost; }, 0, 4'000'000'000,
-      "what drawing one tile may cost, as the header X-Tile-Cost tells: a worker draws some 25 "
-      "million a second; more is answered with 400; 0: no limit"));
+      "cost of a single tile, as reported in the X-Tile-Cost header; a rendering thread handles "
+      "about 25 million per second; more expensive tiles get 400; 0: no limit"));
   all.push_back(number<Config>(
       "limits.cost_per_second", [](auto& c) -> auto& { return c.limits.cost_per_second; }, 0, 1e12,
-      "what tiles that cost more than 250,000 each may cost, for one IPv4 address or IPv6 /64, on "
-      "the average; more is answered with 429; 0: no limit"));
+      "average cost per second for one IPv4 address or IPv6 /64, counting tiles that cost more "
+      "than 250,000; beyond it 429; 0: no limit"));
   all.push_back(number<Config>(
       "limits.cost_burst", [](auto& c) -> auto& { return c.limits.cost_burst; }, 1, 1e12,
-      "how much of that it may ask for at once after a rest"));
+      "how much of that cost a client may request in a burst"));
   all.push_back(integer<Config>(
       "limits.values_bytes", [](auto& c) -> auto& { return c.limits.values_bytes; }, 0, 64 << 20,
-      "a table that is posted to /values; more is answered with 413"));
+      "size of a table posted to /values; larger ones get 413"));
   all.push_back(integer<Config>(
       "limits.values_rows", [](auto& c) -> auto& { return c.limits.values_rows; }, 1, 10'000'000,
-      "rows of such a table; more are answered with 413"));
+      "rows of a posted table; more get 413"));
   all.push_back(integer<Config>(
       "limits.values_mb", [](auto& c) -> auto& { return c.limits.values_mb; }, 0, 65'536,
-      "memory for tables that are posted: those not asked for longest are given up for others; 0: "
-      "none are kept"));
+      "memory for posted tables; the least recently used are dropped; 0: none are kept"));
 }
 
 void append_viewer(std::vector<Setting<Config>>& all) {
@@ -541,21 +542,20 @@ void append_viewer(std::vector<Setting<Config>>& all) {
       "the heading of the viewer"));
   all.push_back(parsed<Config>(
       "viewer.start", [](auto& c) -> auto& { return c.viewer.start; },
-      "what stands after # in an address of the viewer", start_of_viewer, same,
-      "what the viewer shows where its address says nothing: copy it from the address of a map as "
-      "it should be; empty: all that is served, fitted to the window"));
+      "the part after # of a viewer URL", start_of_viewer, same,
+      "the initial view of the viewer: the part after # copied from its address; empty: all "
+      "layers, fitted to the window"));
 }
 
 void append_text(std::vector<Setting<Config>>& all) {
   auto fonts = list<Config>(
       "text.fonts", [](auto& c) -> auto& { return c.text.fonts; },
-      "a list of files of fonts, of a collection \"FILE#N\", its font number N from 0",
+      "a list of font files; \"FILE#N\" selects font N of a collection, counted from 0",
       [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
       same,
-      "the fonts of legends, labels and marks: each character is of the first that has it; an "
-      "empty list: "
-      "those of the Debian packages fonts-dejavu-core, fonts-noto-core and fonts-noto-cjk that are "
-      "installed");
+      "fonts for legends, labels and debug marks; each character is taken from the first font that "
+      "has it; an empty list: the installed ones of the Debian packages fonts-dejavu-core, "
+      "fonts-noto-core and fonts-noto-cjk");
   fonts.type = SettingType::paths;
   all.push_back(std::move(fonts));
 }
@@ -563,36 +563,36 @@ void append_text(std::vector<Setting<Config>>& all) {
 void append_log_and_admin(std::vector<Setting<Config>>& all) {
   all.push_back(choice<std::string, Config>(
       "log.level", [](auto& c) -> auto& { return c.log.level; }, level_words(),
-      "the least that the log on standard error tells"));
+      "the minimum severity of log messages on standard error"));
   auto access = path<Config>(
       "log.access", [](auto& c) -> auto& { return c.log.access; },
-      "a line for every request: \"stdout\", \"stderr\" or a file, which SIGHUP opens again; "
-      "empty: "
-      "none");
+      "where to log requests: \"stdout\", \"stderr\" or a file, which SIGHUP reopens; empty: "
+      "nowhere");
   access.choices = {"stdout", "stderr"};
   all.push_back(std::move(access));
   all.push_back(choice<LogFormat, Config>(
       "log.access_format", [](auto& c) -> auto& { return c.log.access_format; }, format_words(),
-      "the lines as web servers write them, or as JSON"));
+      "format of the request log: combined log format of web servers, or JSON"));
   all.push_back(parsed<Config>(
       "admin.address", [](auto& c) -> auto& { return c.admin.address; }, "an IPv4 or IPv6 address",
-      listen_address, same, "a second address, for /metrics and the details of /ready"));
+      listen_address, same,
+      "a second address to listen on, for /metrics and the details of /ready"));
   all.push_back(integer<Config>(
       "admin.port", [](auto& c) -> auto& { return c.admin.port; }, 0, 65'535,
-      "its port; 0: there is none"));
+      "its port; 0 disables it"));
   all.push_back(parsed<Config>(
       "changes.zooms", [](auto& c) -> auto& { return c.changes.zooms; },
-      "a zoom or a range of them such as \"0-14\", or nothing",
+      "a zoom or a range of zooms such as \"0-14\", or nothing",
       [](const std::string& text) {
         return text.empty() || parse_zooms(text) ? std::optional(text) : std::nullopt;
       },
       same,
-      "the zooms for which the tiles are found that may look different when layers have been read "
-      "again, for /changes at the admin address and for changes.command; empty: none"));
+      "the zooms at which changed tiles are determined after a reload, for /changes at the admin "
+      "address and for changes.command; empty: none"));
   all.push_back(text<Config>(
       "changes.command", [](auto& c) -> auto& { return c.changes.command; },
-      "what a shell is to do then: its input has a line \"LAYER Z/X/Y\" for each tile; empty: "
-      "nothing"));
+      "a shell command to run after a reload, with a line \"LAYER Z/X/Y\" for each changed tile on "
+      "its standard input; empty: none"));
 }
 
 }  // namespace
@@ -614,21 +614,20 @@ const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
   static const std::vector<Setting<ValueTableConfig>> settings = {
       path<ValueTableConfig>(
           "values.file", [](auto& table) -> auto& { return table.file; },
-          "rows of keys and values, as CSV with a line of names, or as JSON; read again when it "
-          "has "
-          "changed"),
+          "a file with rows of keys and values, as CSV with a header line or as JSON; read again "
+          "when it changes"),
       text<ValueTableConfig>(
           "values.key", [](auto& table) -> auto& { return table.key; },
-          "the column of keys; empty: the first"),
+          "the column with the keys; empty: the first column"),
       text<ValueTableConfig>(
           "values.value", [](auto& table) -> auto& { return table.value; },
-          "the column of values; empty: the second"),
+          "the column with the values; empty: the second column"),
       text<ValueTableConfig>(
           "values.title", [](auto& table) -> auto& { return table.title; },
-          "what the values are, for people; empty: the name of their column"),
+          "a title for the values; empty: the name of their column"),
       text<ValueTableConfig>(
           "values.attribution", [](auto& table) -> auto& { return table.attribution; },
-          "what maps must say about where they are from; may hold links in HTML"),
+          "the attribution that maps must show; may contain HTML links"),
       list<ValueTableConfig>(
           "values.languages", [](auto& table) -> auto& { return table.languages; },
           R"(a list of tags of languages such as ["de", "zh-Hans"])",
@@ -636,11 +635,9 @@ const std::vector<Setting<ValueTableConfig>>& value_table_settings() {
             return is_language_tag(tag) ? std::optional(tag) : std::nullopt;
           },
           same,
-          "languages in which the table has the values, too, each in a column called as that of "
-          "the "
-          "values, a colon and the tag, such as name:de: labels show them where label-language "
-          "asks "
-          "for one")};
+          "languages for which the table has translated values, each in a column named after the "
+          "value column with a colon and the language tag, such as name:de; label-language selects "
+          "one for labels")};
   return settings;
 }
 
@@ -648,11 +645,11 @@ const std::vector<Setting<FontsConfig>>& fonts_settings() {
   static const std::vector<Setting<FontsConfig>> settings = [] {
     auto files = list<FontsConfig>(
         "fonts.files", [](auto& fonts) -> auto& { return fonts.files; },
-        "a list of files of fonts, of a collection \"FILE#N\", its font number N from 0",
+        "a list of font files; \"FILE#N\" selects font N of a collection, counted from 0",
         [](const std::string& file) { return file.empty() ? std::nullopt : std::optional(file); },
         same,
-        "the fonts that labels with this label-font are written in: each character is of the "
-        "first that has it");
+        "the fonts for labels with this label-font; each character is taken from the first font "
+        "that has it");
     files.type = SettingType::paths;
     return std::vector<Setting<FontsConfig>>{std::move(files)};
   }();
@@ -667,79 +664,79 @@ const std::vector<Setting<LayerConfig>>& layer_settings() {
           [](const std::string& name) {
             return is_url_name(name) ? std::optional(name) : std::nullopt;
           },
-          same, "the layer as it appears in URLs"),
+          same, "the name of the layer in URLs"),
       path<LayerConfig>(
           "file", [](auto& layer) -> auto& { return layer.file; },
           "polygons in a format that GDAL reads, or a prepared file"),
       text<LayerConfig>(
           "source_layer", [](auto& layer) -> auto& { return layer.selection.layer; },
-          "the layer or table of the file or database; not set: all that hold polygons"),
+          "the layer or table of the file or database; default: all that contain polygons"),
       text<LayerConfig>(
           "where", [](auto& layer) -> auto& { return layer.selection.where; },
-          "a condition on features in SQL; not set: all of them"),
+          "an SQL condition that selects features; default: all features"),
       attributes_setting(),
       text<LayerConfig>(
           "live_query", [](auto& layer) -> auto& { return layer.live_query; },
-          "SQL that tells which features have changed, so that only those are read again: each row "
-          "a number that grows and the id of a feature, with a number greater than {since}"),
+          "an SQL query for changed features, so that only these are read again; it returns rows "
+          "with an increasing number and a feature id, for numbers greater than {since}"),
       path<LayerConfig>(
           "prepared", [](auto& layer) -> auto& { return layer.prepared; },
-          "made of the file by `trapeze prepare`, and served in its place; parts of it by a name "
-          "in "
-          "which * stands for any characters, such as \"parts/*.trapeze\""),
+          "a file made by `trapeze prepare`, served instead of the source; for a layer in parts a "
+          "pattern such as \"parts/*.trapeze\""),
       text<LayerConfig>(
           "title", [](auto& layer) -> auto& { return layer.title; },
-          "for people; the name if it is not set"),
+          "a title for people; default: the name"),
       text<LayerConfig>(
           "attribution", [](auto& layer) -> auto& { return layer.attribution; },
-          "what maps must say about where it is from; may hold links in HTML"),
+          "the attribution that maps must show; may contain HTML links"),
       text<LayerConfig>(
-          "description", [](auto& layer) -> auto& { return layer.description; }, "what it shows"),
+          "description", [](auto& layer) -> auto& { return layer.description; },
+          "a description for people"),
       integer<LayerConfig>(
           "min_zoom", [](auto& layer) -> auto& { return layer.min_zoom; }, 0, kMaxZoom,
-          "the first zoom at which it is drawn"),
+          "the first zoom at which the layer is drawn"),
       integer<LayerConfig>(
           "max_zoom", [](auto& layer) -> auto& { return layer.max_zoom; }, 0, kMaxZoom,
-          "the last zoom at which it is drawn"),
+          "the last zoom at which the layer is drawn"),
       detail_zoom_setting(),
       text<LayerConfig>(
           "group", [](auto& layer) -> auto& { return layer.group; },
-          "a heading for layers that belong together; not set: none"),
+          "a heading under which layers are grouped; default: none"),
       text<LayerConfig>(
           "title_attribute", [](auto& layer) -> auto& { return layer.title_attribute; },
-          "the attribute that features are called by; not set: one named name, name:en, name_en, "
-          "title or label, in any case of letters"),
+          "the attribute that holds the title of a feature; default: the first of name, name:en, "
+          "name_en, title or label, ignoring case"),
       list<LayerConfig>(
           "crs", [](auto& layer) -> auto& { return layer.crs; },
-          "a list of reference systems such as [\"EPSG:3857\", \"EPSG:2056\"], EPSG:3857 among "
-          "them",
+          "a list of reference systems that includes EPSG:3857, such as [\"EPSG:3857\", "
+          "\"EPSG:2056\"]",
           [](const std::string& name) { return name.empty() ? std::nullopt : std::optional(name); },
           same,
-          "the reference systems that it is built for, on a grid of its own each, which takes as "
-          "much "
-          "memory again; maps in EPSG:4326 and CRS:84 are made of EPSG:3857; not set: EPSG:3857"),
+          "the reference systems the layer is built for; each needs a grid of its own and as much "
+          "memory again; maps in EPSG:4326 and CRS:84 are derived from EPSG:3857; default: "
+          "EPSG:3857"),
       weights_setting(),
       coverage_setting(),
       close_gaps_setting(),
       merge_setting(),
       text<LayerConfig>(
           "merge_by", [](auto& layer) -> auto& { return layer.merge_by; },
-          "the attribute by which polygons become blocks: only those with the same value of it do; "
-          "not set: as a file was prepared, else whatever they are"),
+          "merge only polygons with equal values of this attribute; default: the attribute a file "
+          "was prepared with, else all polygons are merged"),
       boolean<LayerConfig>(
           "fast_topology", [](auto& layer) -> auto& { return layer.fast_topology; },
-          "whether requests may ask for topology=fast, polygons apart and without the test of "
-          "topology: it is then built a second time, and takes twice the memory"),
+          "whether requests may use topology=fast, which simplifies polygons separately and "
+          "without the topology test; the layer is then built twice and needs twice the memory"),
       max_skipped_setting(),
       boolean<LayerConfig>(
           "may_shrink", [](auto& layer) -> auto& { return layer.may_shrink; },
-          "whether it is taken if it has fewer than half of its features when its file is read "
-          "again; otherwise the old layers stay"),
+          "whether a reload is accepted when the layer has lost more than half of its features; "
+          "otherwise the old data stays"),
       list<LayerConfig>(
           "locked", [](auto& layer) -> auto& { return layer.locked; },
-          "a list of parameters that are set for one layer: " + layer_parameter_names(),
-          layer_parameter, [](ParameterId id) { return std::string(style_parameter(id).name); },
-          "parameters that requests cannot set for it")};
+          "a list of style parameters of layers: " + layer_parameter_names(), layer_parameter,
+          [](ParameterId id) { return std::string(style_parameter(id).name); },
+          "style parameters that requests cannot override for this layer")};
   return settings;
 }
 

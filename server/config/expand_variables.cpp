@@ -28,7 +28,7 @@ ExpandedText look_up(std::string_view inside, const FindVariable& find) {
   }
   if (value == nullptr) {
     return {"",
-            fmt::format("the variable {} is not set; ${{{}:-words}} would do without", name, name)};
+            fmt::format("the variable {} is not set; ${{{}:-words}} has a default", name, name)};
   }
   return {value, ""};
 }

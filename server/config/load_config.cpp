@@ -271,8 +271,9 @@ class ConfigReader {
       fail(table, fmt::format("layer \"{}\" cannot have a live_query: {}", layer.name, why));
     };
     if (!layer.prepared.empty()) cannot("it is prepared");
-    if (layer.selection.layer.empty()) cannot("it needs a source_layer, the table that is asked");
+    if (layer.selection.layer.empty()) cannot("it needs a source_layer, the table to query");
     if (layer.has_fast_topology()) cannot("a layer without the topology test is built whole");
+    if (layer.merge.value_or(0) > 0) cannot("a layer that is merged into blocks is built whole");
   }
 
   void check_crs(const toml::table& table, LayerConfig& layer) {
@@ -282,14 +283,14 @@ class ConfigReader {
       fail(node, fmt::format("layer \"{}\": crs: {}", layer.name, why));
     };
     if (std::ranges::find(layer.crs, kBuiltCrs) == layer.crs.end()) {
-      cannot(fmt::format("{} has to be among them: places and bounds are told by it", kBuiltCrs));
+      cannot(fmt::format("{} must be in the list: locations and bounds are given in it", kBuiltCrs));
     }
     for (auto name = layer.crs.begin(); name != layer.crs.end(); ++name) {
       if (std::find(layer.crs.begin(), name, *name) != name) cannot(*name + " is named twice");
       if (*name == kBuiltCrs) continue;
       if (*name == "EPSG:4326" || *name == "CRS:84") {
         cannot(
-            fmt::format("{} needs no grid of its own: its maps are made of {}", *name, kBuiltCrs));
+            fmt::format("{} needs no grid of its own: its maps are derived from {}", *name, kBuiltCrs));
         continue;
       }
       try {
@@ -297,9 +298,6 @@ class ConfigReader {
       } catch (const std::exception& error) {
         cannot(error.what());
       }
-    }
-    if (layer.merge.value_or(0) > 0 && !layer.live_query.empty()) {
-      cannot("a layer with a live_query is not merged to blocks");
     }
     if (layer.crs.size() == 1) return;
     if (!layer.live_query.empty()) cannot("a layer with a live_query is built for one system only");

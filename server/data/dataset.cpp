@@ -56,11 +56,10 @@ void log_missing_title(const ServedLayer& served) {
 
 /// What is wrong with a layer in parts that can be served all the same.
 void log_parts(const LoadReport& report, const PreparedParts& parts) {
-  spdlog::info("{}: {} parts, of which each is looked at when it is needed", report.path,
-               parts.parts().size());
+  spdlog::info("{}: {} parts, each loaded when needed", report.path, parts.parts().size());
   if (parts.overview() != nullptr || parts.parts().size() == 1) return;
   spdlog::warn(
-      "{}: there is no overview, so a tile of a low zoom looks at every part; `trapeze prepare "
+      "{}: there is no overview, so a tile of a low zoom reads every part; `trapeze prepare "
       "--join` makes one",
       report.path);
 }
@@ -75,7 +74,7 @@ void log_report(const ServedLayer& served) {
       report.total_seconds, report.origin());
   if (served.parts != nullptr) log_parts(report, *served.parts);
   if (report.taken_over > 0) {
-    spdlog::info("{}: {} features are as they were and taken over", report.path, report.taken_over);
+    spdlog::info("{}: {} features are unchanged and reused", report.path, report.taken_over);
   }
   if (report.other_geometry > 0) {
     spdlog::info("{}: {} features are not polygons and are not drawn", report.path,
@@ -88,9 +87,8 @@ void log_report(const ServedLayer& served) {
   const CoverageCounts& coverage = report.coverage;
   if (coverage.groups > 0) {
     spdlog::info(
-        "{}: {} features share borders, in {} groups: {} edges in common, {} junctions; {} "
-        "features "
-        "overlap others by too much and are simplified by themselves",
+        "{}: {} features share borders, in {} groups: {} shared edges, {} junctions; {} features "
+        "overlap others by too much and are simplified separately",
         report.path, coverage.features, coverage.groups, coverage.shared_edges, coverage.junctions,
         coverage.apart);
   }
@@ -100,7 +98,7 @@ void log_report(const ServedLayer& served) {
   }
   for (const std::string& warning : report.warnings) spdlog::warn("{}: {}", report.path, warning);
   log_notes(report);
-  if (report.loaded == 0) spdlog::warn("{}: there is no polygon to draw", report.path);
+  if (report.loaded == 0) spdlog::warn("{}: contains no polygon to draw", report.path);
 }
 
 /// One progress for several layers that load at once: the mean of their shares.
@@ -328,10 +326,9 @@ std::size_t ServedLayer::memory() const {
 }
 
 Problem damaged_layer(const ServedLayer& layer) {
-  return {503,
-          fmt::format("The file of the layer \"{}\" has been cut off or written into. It has to be "
-                      "prepared again.",
-                      layer.config.name)};
+  return {503, fmt::format("The file of the layer \"{}\" has been truncated or modified. It has to "
+                           "be prepared again.",
+                           layer.config.name)};
 }
 
 std::uint64_t revision_of(const Layer& layer) {
@@ -369,7 +366,7 @@ std::shared_ptr<const Dataset> Dataset::load(const std::vector<LayerConfig>& con
     const auto show = [&progress, i](double share) { progress.show(i, share); };
     if (auto kept = unchanged_layer(layers[i], previous)) {
       served[i] = *std::move(kept);
-      spdlog::info("{}: unchanged, so it is not read again", served[i].report.path);
+      spdlog::info("{}: unchanged, not read again", served[i].report.path);
       show(1);
       progress.finish(i);
     } else {

@@ -96,8 +96,8 @@ std::optional<ServedLayer> LiveLayer::patch(std::span<const std::int64_t> ids) {
   changed_.insert(ids.begin(), ids.end());
   take_step(std::move(changes), revision_of(features));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  spdlog::info("layer \"{}\": {} features have changed, {} were built anew, {:.0f} ms",
-               config_.name, ids.size(), features.features().size(), took.count());
+  spdlog::info("layer \"{}\": {} features have changed, {} were rebuilt, {:.0f} ms", config_.name,
+               ids.size(), features.features().size(), took.count());
   if (const std::size_t skipped = reading->features.report.skipped; skipped > 0) {
     spdlog::warn("layer \"{}\": {} of them were skipped", config_.name, skipped);
   }

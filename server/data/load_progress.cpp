@@ -97,7 +97,8 @@ void StallWatch::look() {
     if (!source.is_watched || now - source.last < patience_) continue;
     source.is_watched = false;
     spdlog::warn(
-        "{}: loading has not got on for {:.0f} s: a step takes long, or the source does not answer",
+        "{}: no progress in loading for {:.0f} s: a step takes long, or the source does not "
+        "respond",
         source.name, std::chrono::duration<double>(now - source.last).count());
   }
 }

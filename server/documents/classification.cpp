@@ -25,9 +25,9 @@ std::size_t class_count(const Classing& classing, const ValueSpread& spread) {
 std::string why_fewer(const BreakRule& rule, std::size_t classes, const ValueSpread& spread) {
   const bool is_exact = rule.method != BreakMethod::stddev && rule.method != BreakMethod::pretty;
   if (!is_exact || classes >= static_cast<std::size_t>(rule.classes)) return {};
-  if (spread.is_empty()) return "There are no numbers, and so no classes.";
-  return fmt::format("There are {} classes in place of {}, as so many values are the same.",
-                     classes, rule.classes);
+  if (spread.is_empty()) return "There are no numbers to classify.";
+  return fmt::format("There are {} classes instead of {}, because many values are equal.", classes,
+                     rule.classes);
 }
 
 }  // namespace

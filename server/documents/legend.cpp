@@ -453,7 +453,7 @@ Result<Document> legend_as_png(std::string_view file, const DocumentRequest& req
   const auto name = parse_picture_name(file);
   if (!name) return name.problem();
   if (name->format != TileFormat::png) {
-    return Problem{400, "Legends are pictures in PNG, or JSON."};
+    return Problem{400, "Legends are available as PNG or JSON."};
   }
   const auto layers = parse_layer_list(name->stem);
   if (!layers) return layers.problem();
@@ -462,10 +462,11 @@ Result<Document> legend_as_png(std::string_view file, const DocumentRequest& req
   const std::vector<LegendRow> rows = rows_of(*legend);
   const int scale = name->scale;
   if (height_of(rows) * scale > kMaxHeight) {
-    return Problem{400,
-                   fmt::format("A legend is at most {} pixels high: name fewer layers or classes, "
-                               "or ask for .json.",
-                               kMaxHeight)};
+    return Problem{
+        400,
+        fmt::format(
+            "A legend is at most {} pixels high: use fewer layers or classes, or request .json.",
+            kMaxHeight)};
   }
   return Document{"image/png",
                   PngEncoder().encode(to_runs(draw_legend(rows, request.fonts, scale)))};

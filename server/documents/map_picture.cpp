@@ -105,7 +105,7 @@ Problem bad_window(const std::string& value) {
 }
 
 Problem too_large(int width, int height) {
-  return {400, fmt::format("A picture is at most {} pixels wide and high.", kMaxPicturePixels),
+  return {400, fmt::format("An image is at most {} pixels wide and high.", kMaxPicturePixels),
           width > height ? "width" : "height", fmt::format("{} x {}", width, height),
           fmt::format("1 to {}", kMaxPicturePixels)};
 }

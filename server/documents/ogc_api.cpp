@@ -98,7 +98,7 @@ Result<TiledResource> tiled_dataset(const DocumentRequest& request) {
   }
   if (resource.layers.size() > kMaxLayersPerTile) {
     return Problem{400,
-                   fmt::format("A tile shows at most {} layers, and here are {}: choose some.",
+                   fmt::format("A tile shows at most {} layers, but there are {}: select some.",
                                kMaxLayersPerTile, resource.layers.size()),
                    "collections", "", "layer names, separated by commas"};
   }
@@ -130,9 +130,9 @@ Json landing_page(const DocumentRequest& request) {
   links.push_back(link("self", kJsonType, "This document", root));
   links.push_back(link("service-desc", kOpenApiType, "Definition of the API", root + "/api"));
   links.push_back(
-      link("conformance", kJsonType, "Conformance classes that hold here", root + "/conformance"));
+      link("conformance", kJsonType, "Conformance classes of this server", root + "/conformance"));
   links.push_back(link("http://www.opengis.net/def/rel/ogc/1.0/conformance", kJsonType,
-                       "Conformance classes that hold here", root + "/conformance"));
+                       "Conformance classes of this server", root + "/conformance"));
   links.push_back(link("data", kJsonType, "The layers", root + "/collections"));
   links.push_back(link("http://www.opengis.net/def/rel/ogc/1.0/data", kJsonType, "The layers",
                        root + "/collections"));
@@ -142,7 +142,7 @@ Json landing_page(const DocumentRequest& request) {
   links.push_back(
       link(kTilingSchemesRelation, kJsonType, "Tile matrix sets", root + "/tileMatrixSets"));
   return {{"title", "Trapeze"},
-          {"description", "Maps of polygons as tiles, simplified while they are drawn"},
+          {"description", "Polygon maps as tiles, simplified while they are drawn"},
           {"links", links}};
 }
 

@@ -60,10 +60,11 @@ Json schema_of(const StyleParameter& parameter) {
 }
 
 Json parameter_json(const StyleParameter& parameter) {
-  std::string description = fmt::format("{}. Takes {}. Without it: {}.", parameter.description,
+  std::string description = fmt::format("{}. Value: {}. Default: {}.", parameter.description,
                                         describe_values(parameter), parameter.default_text);
   if (parameter.is_per_layer) {
-    description += fmt::format(" Of several layers, LAYER.{} sets it for one.", parameter.name);
+    description +=
+        fmt::format(" With several layers, LAYER.{} sets it for one of them.", parameter.name);
   }
   Json schema = schema_of(parameter);
   const bool is_list = schema["type"] == "array";
@@ -120,11 +121,11 @@ Json components_json(const DocumentRequest& request) {
   }
   parameters["path-layers"] =
       path_parameter("layers",
-                     fmt::format("1 to {} names of layers, separated by commas, the lowest first",
+                     fmt::format("1 to {} layer names, separated by commas, the bottom layer first",
                                  kMaxLayersPerTile),
                      {{"type", "string"}});
-  parameters["path-style"] = path_parameter(
-      "style", "Name of a style, or the id of one that was posted", {{"type", "string"}});
+  parameters["path-style"] =
+      path_parameter("style", "Name of a style, or id of a posted one", {{"type", "string"}});
   parameters["path-z"] = path_parameter("z", "Zoom", zoom_schema());
   parameters["path-x"] = path_parameter("x", "Column, from the west", index_schema());
   parameters["path-y"] = path_parameter("y", "Row, from the north", index_schema());
@@ -145,15 +146,15 @@ Json components_json(const DocumentRequest& request) {
   }
   parameters["path-place"] = path_parameter(
       "place", "Longitude and latitude in degrees, with a comma between", {{"type", "string"}});
-  parameters["path-table"] = path_parameter(
-      "table", "Name of a table of values, or the id of one that was posted", {{"type", "string"}});
+  parameters["path-table"] =
+      path_parameter("table", "Name of a value table, or id of a posted one", {{"type", "string"}});
   parameters["path-layer"] = path_parameter("layer", "Name of a layer", {{"type", "string"}});
   parameters["path-attribute"] =
       path_parameter("attribute", "Name of an attribute of the layer", {{"type", "string"}});
   parameters["bbox"] = {
       {"name", "bbox"},
       {"in", "query"},
-      {"description", "West, south, east, north in degrees: only what lies there; without it: all"},
+      {"description", "West, south, east, north in degrees: only features there. Default: all"},
       {"style", "form"},
       {"explode", false},
       {"schema",
@@ -168,9 +169,8 @@ Json components_json(const DocumentRequest& request) {
       {"in", "query"},
       {"required", true},
       {"description",
-       "West, south, east, north in degrees, or as crs says; where the west is east of the east, "
-       "it "
-       "goes over the antimeridian"},
+       "West, south, east, north in degrees, or in crs; if west is greater than east, the box "
+       "crosses the antimeridian"},
       {"style", "form"},
       {"explode", false},
       {"schema",
@@ -179,13 +179,13 @@ Json components_json(const DocumentRequest& request) {
       {"name", "crs"},
       {"in", "query"},
       {"description",
-       "The reference system of the map and of bbox, eastings first; without it the map is in "
-       "EPSG:3857 and bbox in degrees"},
+       "The reference system of the map and of bbox, eastings first. Default: the map in "
+       "EPSG:3857, bbox in degrees"},
       {"schema", {{"type", "string"}, {"enum", names_of_systems(request)}}}};
   parameters["map-bbox"] = {
       {"name", "bbox"},
       {"in", "query"},
-      {"description", "West, south, east, north in degrees, or as bbox-crs says; without it: all"},
+      {"description", "West, south, east, north in degrees, or in bbox-crs. Default: all"},
       {"style", "form"},
       {"explode", false},
       {"schema",
@@ -207,7 +207,8 @@ Json components_json(const DocumentRequest& request) {
   parameters["transparent"] = {
       {"name", "transparent"},
       {"in", "query"},
-      {"description", "Whether there is no background; true unless bgcolor is given"},
+      {"description",
+       "Whether the background is transparent. Default: true, unless bgcolor is given"},
       {"schema", {{"type", "boolean"}}}};
   parameters["map-f"] = {{"name", "f"},
                          {"in", "query"},
@@ -217,31 +218,31 @@ Json components_json(const DocumentRequest& request) {
     parameters[side] = {
         {"name", side},
         {"in", "query"},
-        {"description", "In pixels; without it, it follows from the bbox"},
+        {"description", "In pixels. Default: derived from bbox"},
         {"schema", {{"type", "integer"}, {"minimum", 1}, {"maximum", kMaxPicturePixels}}}};
   }
-  parameters["z"] = {
-      {"name", "z"},
-      {"in", "query"},
-      {"description", "Zoom at which the polygons are looked at; without it: at full detail"},
-      {"schema", {{"type", "number"}, {"minimum", 0}, {"maximum", kMaxZoom}}}};
+  parameters["z"] = {{"name", "z"},
+                     {"in", "query"},
+                     {"description", "Zoom whose polygons are used. Default: full detail"},
+                     {"schema", {{"type", "number"}, {"minimum", 0}, {"maximum", kMaxZoom}}}};
   for (const auto& [name, description] :
-       {std::pair("key", "The column of keys; without it, the first"),
-        std::pair("value", "The column of values; without it, the second"),
-        std::pair("layer", "The layer to join; without it, all that have the attribute"),
-        std::pair("join", "The attribute that is the key; without it, called as the column")}) {
+       {std::pair("key", "The column with the keys. Default: the first"),
+        std::pair("value", "The column with the values. Default: the second"),
+        std::pair("layer", "The layer to join. Default: all that have the attribute"),
+        std::pair(
+            "join",
+            "The attribute with the keys. Default: the one with the name of the key column")}) {
     parameters[fmt::format("table-{}", name)] = {{"name", name},
                                                  {"in", "query"},
                                                  {"description", description},
                                                  {"schema", {{"type", "string"}}}};
   }
-  parameters["collections"] = {
-      {"name", "collections"},
-      {"in", "query"},
-      {"description", "Names of layers, the lowest first; without it: all"},
-      {"style", "form"},
-      {"explode", false},
-      {"schema", {{"type", "array"}, {"items", {{"type", "string"}}}}}};
+  parameters["collections"] = {{"name", "collections"},
+                               {"in", "query"},
+                               {"description", "Layer names, the bottom layer first. Default: all"},
+                               {"style", "form"},
+                               {"explode", false},
+                               {"schema", {{"type", "array"}, {"items", {{"type", "string"}}}}}};
   const Json problem = {{"type", "object"},
                         {"required", {"title", "status", "detail"}},
                         {"properties",
@@ -322,7 +323,7 @@ Json problem_response_json() {
 
 Json problem_of(const Route& route) {
   if (area_of(route.path) != Area::wmts) return problem_response_json();
-  return response("What is wrong, as an ows:ExceptionReport", "application/xml");
+  return response("The error, as an ows:ExceptionReport", "application/xml");
 }
 
 Json get_json(const Route& route) {
@@ -359,7 +360,7 @@ Json post_json(const Route& route) {
                {"requestBody", is_table ? table_body_json() : style_body_json()}};
   if (is_table) post["parameters"] = parameters_of(route);
   post["responses"] = {
-      {"201", response(is_table ? "The id of the table, and what of it fits the layers"
+      {"201", response(is_table ? "The id of the table, and how it matches the layers"
                                 : "The id of the style",
                        route.content_type)},
       {"400", problem_response_json()},
@@ -389,7 +390,7 @@ std::string openapi_json(const DocumentRequest& request) {
   json["openapi"] = "3.0.3";
   json["info"] = {{"title", "Trapeze"},
                   {"version", version()},
-                  {"description", "Maps of polygons as tiles, simplified while they are drawn"},
+                  {"description", "Polygon maps as tiles, simplified while they are drawn"},
                   {"license", {{"name", "MIT"}}}};
   json["servers"] = Json::array({{{"url", request.base_url}}});
   json["paths"] = paths;

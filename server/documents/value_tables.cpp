@@ -97,10 +97,11 @@ Result<Json> joins_json(std::string_view id, const std::shared_ptr<const ValueTa
     if (query.layer && served.config.name != *query.layer) continue;
     if (served.parts != nullptr) {
       if (!query.layer) continue;
-      return Problem{400,
-                     fmt::format("The layer {} is in several parts: no values are joined to such.",
-                                 served.config.name),
-                     "layer", served.config.name, "a layer in one piece"};
+      return Problem{
+          400,
+          fmt::format("The layer {} is in several parts, to which values cannot be joined.",
+                      served.config.name),
+          "layer", served.config.name, "a layer in one piece"};
     }
     const int field = served.layer->features().field_index(join);
     if (field < 0 && query.layer && !query.join.empty()) {
@@ -183,8 +184,8 @@ Result<Document> value_tables_document(const DocumentRequest& request) {
   const auto table = found == named.end() ? request.styles.find_table(id) : found->second.table;
   if (table == nullptr) {
     return Problem{404,
-                   "There is no table of that name. Posted tables are given up when others need "
-                   "their place: post it again."};
+                   "There is no table of that name. Posted tables expire when memory is needed: "
+                   "post it again."};
   }
   return table_document(id, table, *query, request.dataset, request.base_url);
 }

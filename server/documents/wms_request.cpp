@@ -113,8 +113,8 @@ Result<std::vector<std::string>> layers_in(const KeyValuePairs& pairs, std::stri
 
 Problem unknown_style(std::string_view key, const std::string& name) {
   return ows_problem(404, ows::kStyleNotDefined, key,
-                     fmt::format("There is no style \"{}\": the capabilities name those that there "
-                                 "are; an empty one is the layer's own.",
+                     fmt::format("There is no style \"{}\": the capabilities list the styles; an "
+                                 "empty name is the default style of the layer.",
                                  name),
                      name);
 }
@@ -206,7 +206,7 @@ Result<double> scale_of(const KeyValuePairs& pairs) {
   const auto [key, text] = given.front();
   const auto dpi = parse_number(text, kLeastDpi, kMostDpi);
   if (!dpi) {
-    return invalid(key, fmt::format("pixels to an inch, from {} to {}", kLeastDpi, kMostDpi),
+    return invalid(key, fmt::format("pixels per inch, from {} to {}", kLeastDpi, kMostDpi),
                    std::string(text));
   }
   return *dpi / kUsualDpi;
@@ -222,8 +222,7 @@ Result<MapSystemPtr> system_in(const KeyValuePairs& pairs, WmsVersion version,
   if (!name || name->empty()) return missing(key, takes);
   const MapSystemPtr system = find_map_system(*name, dataset);
   if (system == nullptr) {
-    return ows_problem(400, code, key,
-                       fmt::format("Maps are in {} here, and in no other system.", takes), *name);
+    return ows_problem(400, code, key, fmt::format("Maps are available in {} only.", takes), *name);
   }
   for (const std::string& layer : layers) {
     if (served_in(dataset, layer, *system) != nullptr) continue;
@@ -270,7 +269,7 @@ Result<WindowRequest> window_in(const KeyValuePairs& pairs, const DocumentReques
   for (const std::string_view key : {"SLD", "SLD_BODY"}) {
     if (!pairs.has(key)) continue;
     return ows_problem(501, ows::kOperationNotSupported, key,
-                       "Styles are named by STYLES, or set by parameters: there is no SLD.");
+                       "Styles are named in STYLES or set by parameters; SLD is not supported.");
   }
   auto layers = layers_in(pairs, "LAYERS", request.dataset);
   if (!layers) return std::move(layers).problem();

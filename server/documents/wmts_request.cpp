@@ -38,7 +38,7 @@ Result<WmtsRequest> capabilities_of(const KeyValuePairs& pairs) {
     if (std::ranges::find(accepted, kWmtsVersion) == accepted.end()) {
       // The standard wants no locator there.
       return ows_problem(400, ows::kVersionNegotiationFailed, {},
-                         fmt::format("This is WMTS {}, and no other version.", kWmtsVersion),
+                         fmt::format("Only version {} of WMTS is supported.", kWmtsVersion),
                          *versions);
     }
   }
@@ -249,7 +249,7 @@ Result<TileParts> parts_of(const KeyValuePairs& pairs) {
   if (auto problem = check(pairs, "Format", kWmtsFormat)) return std::move(*problem);
   for (const auto& [key, value] : required) {
     const auto& given = pairs[key];
-    if (!given || given->empty()) return missing(key, "what the capabilities name");
+    if (!given || given->empty()) return missing(key, "what the capabilities list");
     *value = *given;
   }
   parts.style = *pairs["Style"];

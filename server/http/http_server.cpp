@@ -367,7 +367,7 @@ bool HttpServer::Connection::has_room_for_body() {
   request_ = {};
   request_.client = peer_;
   keep_alive_ = false;
-  send(problem_response({503, "Too many long bodies are being posted. Ask again."}));
+  send(problem_response({503, "Too many large bodies are being posted. Try again."}));
   return false;
 }
 
@@ -415,11 +415,11 @@ void HttpServer::Connection::answer_unreadable(const ErrorCode& error) {
   if (error == http::error::partial_message || !is_http_error(error)) return;  // nobody listens
   Problem problem{400, "The request is not well formed HTTP/1.1: " + error.message() + "."};
   if (error == http::error::body_limit) {
-    problem = {413, fmt::format("The body of a request is at most {} bytes long.", body_limit())};
+    problem = {413, fmt::format("The body of a request can have at most {} bytes.", body_limit())};
   } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     problem = is_request_line_too_long()
                   ? target_too_long()
-                  : Problem{431, fmt::format("Request line and header are at most {} bytes long.",
+                  : Problem{431, fmt::format("Request line and headers can have at most {} bytes.",
                                              state_.options().header_limit)};
   }
   send(problem_response(problem));
@@ -432,7 +432,8 @@ bool HttpServer::Connection::is_request_line_too_long() const {
 }
 
 Problem HttpServer::Connection::target_too_long() const {
-  return {414, fmt::format("A target is at most {} bytes long.", state_.options().target_limit)};
+  return {414,
+          fmt::format("Path and query can have at most {} bytes.", state_.options().target_limit)};
 }
 
 void HttpServer::Connection::handle(http::request<http::string_body>& message) {
@@ -451,7 +452,7 @@ void HttpServer::Connection::handle(http::request<http::string_body>& message) {
   keep_alive_ = message.keep_alive();
   if (version_ >= 11 && message.count(http::field::host) != 1) {
     keep_alive_ = false;
-    return send(problem_response({400, "A request needs one Host header."}));
+    return send(problem_response({400, "A request needs exactly one Host header."}));
   }
   if (request_.target.size() > state_.options().target_limit) {
     return send(problem_response(target_too_long()));
@@ -709,9 +710,9 @@ void HttpServer::State::admit(Socket socket) {
   if (error) return;
   auto connection = std::make_shared<Connection>(*this, std::move(socket), peer);
   if (is_full) {
-    connection->refuse({503, "There are too many connections. Ask again."});
+    connection->refuse({503, "There are too many connections. Try again."});
   } else if (is_greedy) {
-    connection->refuse({429, "There are too many connections from your address. Ask again."});
+    connection->refuse({429, "There are too many connections from your address. Try again."});
   } else {
     connection->start();
   }
@@ -790,7 +791,7 @@ void HttpServer::State::begin_draining() {
   drain_timer_.expires_after(options_.drain_timeout);
   drain_timer_.async_wait([this](const ErrorCode& cancelled) {
     if (cancelled) return;
-    spdlog::warn("some requests did not end in time and are given up");
+    spdlog::warn("some requests did not finish in time and are abandoned");
     stop_threads();
   });
 }
@@ -817,7 +818,7 @@ void HttpServer::State::wait_for_signal() {
   signals_.async_wait([this](const ErrorCode& error, int signal) {
     if (error) return;
     spdlog::info("{}: {}", signal == SIGINT ? "SIGINT" : "SIGTERM",
-                 is_draining_ ? "stopping at once" : "finishing what is under way");
+                 is_draining_ ? "stopping at once" : "finishing requests in progress");
     stop();
     wait_for_signal();
   });

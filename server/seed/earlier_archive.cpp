@@ -57,7 +57,7 @@ EarlierArchive::EarlierArchive(const std::string& path) : file_(path) {
       stored && reinterpret_cast<std::uintptr_t>(stored->data()) % alignof(StoredFingerprint) == 0;
   if (!is_aligned || stored->size() % sizeof(StoredFingerprint) != 0) {
     throw std::runtime_error(
-        fmt::format("{}: this is no archive in PMTiles that `trapeze seed` has written", path));
+        fmt::format("{}: not a PMTiles archive written by `trapeze seed`", path));
   }
   fingerprints_ = {reinterpret_cast<const StoredFingerprint*>(stored->data()),
                    stored->size() / sizeof(StoredFingerprint)};

@@ -66,8 +66,8 @@ void check_place_of_archive(const std::string& path) {
   }
   const bool is_folder = kind_of_archive(path) == ArchiveKind::folder;
   if (is_folder && fs::exists(path, error) && !fs::is_empty(path, error)) {
-    throw std::runtime_error(fmt::format(
-        "cannot write {}: it is there already, with something in it; name another folder", path));
+    throw std::runtime_error(
+        fmt::format("cannot write {}: the folder exists and is not empty; name another one", path));
   }
   if (!is_folder && fs::is_directory(path, error)) {
     throw std::runtime_error(fmt::format("cannot write {}: it is a folder", path));

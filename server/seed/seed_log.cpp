@@ -125,8 +125,8 @@ SeedLog::SeedLog(const std::string& path, const SeedLogHead& head)
     const std::span<const std::byte> bytes = mapped.bytes();
     if (!std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)))) {
       fail(path,
-           "this is what is left of seeding something else: the data, the options or the program "
-           "have changed. Remove it to begin anew, or give another --output");
+           "this is the state of a different seeding: data, options or program have changed. "
+           "Remove it to start again, or use another --output");
     }
     end_ = for_each_block(bytes, text.size(), [this](const SeedBlock& block) {
       if (done_.insert(block.job()).second) figures_.add(block.figures());
@@ -171,7 +171,7 @@ SeedLogs::SeedLogs(const std::vector<std::string>& paths) {
     files_.push_back(std::make_unique<MappedFile>(path));
     const std::span<const std::byte> bytes = files_.back()->bytes();
     const std::optional<ReadHead> read = read_head(bytes);
-    if (!read) fail(path, "this is no part of a seeding");
+    if (!read) fail(path, "this is not a part of a seeding");
     const SeedLogHead& head = read->head;
     if (!first) {
       first = head;

@@ -24,7 +24,7 @@ void refuse_damaged(const SeedPlan& plan) {
     const ServedLayer& layer = any.dataset->layers_on_all_grids()[paint.layer];
     if (layer.is_whole()) continue;
     throw std::runtime_error(fmt::format(
-        "{} was written into while it was read; run `trapeze prepare` again", layer.report.path));
+        "{} was modified while it was read; run `trapeze prepare` again", layer.report.path));
   }
 }
 

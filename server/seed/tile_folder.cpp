@@ -46,7 +46,7 @@ TileFolder::TileFolder(const std::string& path, ArchiveDescription description,
       contents_(path_, size.contents) {
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_empty(path_, error)) {
-    fail(path_, "it is there already, with something in it");
+    fail(path_, "it exists and is not empty");
   }
 }
 

@@ -74,11 +74,11 @@ std::shared_ptr<const LineFile> open_file(const std::string& target) {
 }
 
 void warn_of_lost_lines(std::uint64_t lines) {
-  spdlog::warn("log of requests: {} lines were lost, as they could not be written in time", lines);
+  spdlog::warn("request log: {} lines were lost because they could not be written in time", lines);
 }
 
 void tell_failure(const std::string& words) {
-  spdlog::error("log of requests: it cannot be written: {}", words);
+  spdlog::error("request log: cannot write: {}", words);
 }
 
 }  // namespace

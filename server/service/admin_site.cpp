@@ -22,7 +22,7 @@ std::string_view status_of(const ServerFigures& figures) {
 }
 
 HttpResponse nothing_here() {
-  return problem_response({404, "There are /metrics, /ready, /health and /changes here."});
+  return problem_response({404, "Available here: /metrics, /ready, /health and /changes."});
 }
 
 Json layer_json(const ServedLayer& served) {
@@ -60,7 +60,7 @@ std::string state_json(const ServerFigures& figures, const std::string& problem)
 HttpResponse AdminSite::answer(const HttpRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD") {
     auto response = problem_response(
-        {405, "Only GET and HEAD are understood here.", "method", request.method, "GET, HEAD"});
+        {405, "Only GET and HEAD are supported here.", "method", request.method, "GET, HEAD"});
     response.headers.emplace_back("Allow", "GET, HEAD");
     return response;
   }
@@ -89,15 +89,14 @@ HttpResponse AdminSite::answer_ready() const {
 
 HttpResponse AdminSite::answer_changes(const Target& target) const {
   if (sources_.changes == nullptr) {
-    return problem_response({404,
-                             "Changes are not looked for: the configuration sets no "
-                             "changes.zooms."});
+    return problem_response(
+        {404, "Changes are not tracked: changes.zooms is not set in the configuration."});
   }
   const auto query = decode_query(target.query);
   if (!query || query->size() != 1 || query->front().first != "since") {
     return problem_response({400,
-                             "This takes the generation from which on changes are listed, and "
-                             "nothing else: /changes?since=GENERATION."});
+                             "The only parameter is the generation since which to list changes: "
+                             "/changes?since=GENERATION."});
   }
   const std::string& since = query->front().second;
   const ServerFigures figures = sources_.figures();
@@ -106,12 +105,11 @@ HttpResponse AdminSite::answer_changes(const Target& target) const {
   const ChangeLog::Answer answer = sources_.changes->between(since, generation);
   switch (answer.state) {
     case ChangeLog::Answer::State::pending:
-      return problem_response({503, "What has changed is still being found out. Ask again."});
+      return problem_response({503, "Changes are still being determined. Try again."});
     case ChangeLog::Answer::State::unknown:
       return problem_response(
           {404,
-           "That generation is not among the last few of this server: all tiles "
-           "may have changed.",
+           "This generation is not among the last ones of this server: all tiles may have changed.",
            "since",
            since,
            {}});

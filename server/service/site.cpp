@@ -518,7 +518,7 @@ void Site::handle_posted_values(const Target& target, const HttpRequest& request
                                 const Respond& respond) const {
   const auto refuse = [&respond](const Problem& problem) { respond(problem_response(problem)); };
   if (options_.posted_values == 0) {
-    return refuse({403, "This server keeps no tables that are posted."});
+    return refuse({403, "This server does not keep posted tables."});
   }
   const auto pairs = decode_query(target.query);
   if (!pairs) return refuse(malformed_target());

@@ -94,7 +94,7 @@ class Lexer {
         return content;
       }
     }
-    throw ParseError{fmt::format("the quote at byte {} is never closed", begin + 1)};
+    throw ParseError{fmt::format("the quote at byte {} is not closed", begin + 1)};
   }
 
   Token word() {
@@ -296,7 +296,7 @@ class Parser {
     if (token_.kind == TokenKind::end) {
       throw ParseError{fmt::format("at its end {} is missing", expected)};
     }
-    throw ParseError{fmt::format("at byte {} there should be {}", token_.position + 1, expected)};
+    throw ParseError{fmt::format("at byte {}, expected {}", token_.position + 1, expected)};
   }
 
   bool is(TokenKind kind, std::string_view text) const {
@@ -329,7 +329,7 @@ class Parser {
 
   FilterNode condition() {
     if (++depth_ > kMaxFilterDepth) {
-      throw ParseError{fmt::format("it is nested more than {} deep", kMaxFilterDepth)};
+      throw ParseError{fmt::format("it is nested more than {} levels deep", kMaxFilterDepth)};
     }
     FilterNode node = take(TokenKind::word, "NOT") ? negation(condition()) : primary();
     --depth_;
@@ -347,7 +347,7 @@ class Parser {
   }
 
   FilterNode about_literal() {
-    FilterLiteral value = literal("a property, a literal, NOT or (");
+    FilterLiteral value = literal("an attribute, a literal, NOT or (");
     FilterNode node;
     node.op = mirrored(comparison());
     node.literals.push_back(std::move(value));
@@ -532,7 +532,7 @@ Result<BoundFilter::Node> BoundFilter::bind_node(const FilterNode& node,
   const Field& field = attributes.field(bound.field);
   if (!can_compare(field, node)) {
     const std::string takes = field.type == FieldType::text ? "text in single quotes" : "a number";
-    return Problem{400, fmt::format("The property {} is compared with {}.", field.name, takes),
+    return Problem{400, fmt::format("The attribute {} is compared with {}.", field.name, takes),
                    "filter", text_of(node), takes};
   }
   if (node.op == FilterOperator::like) {
@@ -604,8 +604,8 @@ Problem unknown_property(std::string_view parameter, const std::string& property
   if (attributes.joined() != nullptr) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", kJoinedName);
   }
-  if (names.empty()) names = "none: the layer has no properties";
-  return {400, fmt::format("There is no property \"{}\" for {}.", property, parameter),
+  if (names.empty()) names = "none: the layer has no attributes";
+  return {400, fmt::format("There is no attribute \"{}\" for {}.", property, parameter),
           std::string(parameter), property, names};
 }
 

@@ -7,7 +7,7 @@
 namespace trapeze {
 
 std::string parameter_table() {
-  std::string table = "| parameter | does | takes | without it |\n|---|---|---|---|\n";
+  std::string table = "| parameter | meaning | value | default |\n|---|---|---|---|\n";
   for (const StyleParameter& parameter : style_parameters()) {
     table += fmt::format("| `{}` | {} | {} | {} |\n", parameter.name, parameter.description,
                          describe_values(parameter), parameter.default_text);

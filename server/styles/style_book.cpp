@@ -22,7 +22,7 @@ std::map<std::string, std::shared_ptr<const StyleQuery>, std::less<>> shared(
 Problem unknown_fonts(const std::string& name, const std::vector<std::string>& known) {
   return {400, fmt::format("There are no fonts of that name{}", suggestion_or_stop(name, known)),
           "label-font", name,
-          known.empty() ? "nothing: the configuration names no fonts"
+          known.empty() ? "nothing: no fonts are configured"
                         : fmt::format("one of {}", fmt::join(known, ", "))};
 }
 
@@ -84,16 +84,15 @@ Result<StyledQuery> StyleBook::read(std::vector<QueryPair> query, int status_of_
 }
 
 Problem StyleBook::unknown(const std::string& name, int status) const {
-  std::string takes = "an id that POST /styles has given";
+  std::string takes = "an id returned by POST /styles";
   if (!named_.empty()) takes = fmt::format("one of {}, or {}", fmt::join(names(), ", "), takes);
   std::vector<std::string> known = names();
   known.emplace_back(kDefaultName);
-  return {
-      status,
-      fmt::format("There is no style of that name{} Posted styles are given up when others need "
-                  "their place: post it again.",
-                  suggestion_or_stop(name, known)),
-      "style", name, takes};
+  return {status,
+          fmt::format("There is no style of that name{} Posted styles expire when memory is "
+                      "needed: post it again.",
+                      suggestion_or_stop(name, known)),
+          "style", name, takes};
 }
 
 std::string StyleBook::id_of(const StyleQuery& style) {
@@ -107,16 +106,15 @@ std::size_t StyleBook::memory_of(const StyleQuery& style) {
 Result<std::string> StyleBook::post(StyleQuery style) {
   const std::string text = style.canonical_text();
   if (text.size() > kMaxStyleLength) {
-    return Problem{400, fmt::format("A style is at most {} bytes long, written as a query; this "
-                                    "one has {}.",
-                                    kMaxStyleLength, text.size())};
+    return Problem{400,
+                   fmt::format("A style can have at most {} bytes as a query; this one has {}.",
+                               kMaxStyleLength, text.size())};
   }
   const std::size_t bytes = memory_of_text(text);
   std::string id = digest_of(text);
   const std::lock_guard lock(mutex_);
   if (bytes > posted_.budget()) {
-    return Problem{403,
-                   "This server keeps no styles that are posted, or none as long as this one."};
+    return Problem{403, "This server does not keep posted styles, or none of this size."};
   }
   if (posted_.find(id) == nullptr) {
     posted_.insert(id, std::make_shared<const StyleQuery>(std::move(style)), bytes);

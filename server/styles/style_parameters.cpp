@@ -46,7 +46,7 @@ constexpr std::array kParameters = {
                    .type = Type::colour,
                    .default_text = "transparent",
                    .is_per_layer = false,
-                   .description = "colour of the tile below all layers"},
+                   .description = "background colour of the tile"},
     StyleParameter{.id = ParameterId::breaks,
                    .name = "breaks",
                    .type = Type::breaks,
@@ -54,32 +54,33 @@ constexpr std::array kParameters = {
                    .max = 1e300,
                    .max_items = kMaxBreaks,
                    .default_text = "no classes",
-                   .description = "where classes of the numbers of color-by part: a number is in "
-                                  "the class above each break that it reaches; or the rule by "
-                                  "which to part the numbers of all of the layer"},
+                   .description = "class breaks for a numeric color-by attribute: a number belongs "
+                                  "to the class above the last break that it reaches; or a rule "
+                                  "that computes the breaks from all values of the layer"},
     StyleParameter{.id = ParameterId::classes,
                    .name = "classes",
                    .type = Type::classes,
                    .max_items = kMaxClasses,
                    .default_text = "no classes",
-                   .description = "colours by the value of color-by; * stands for all other "
-                                  "values, which without it keep the fill; null for none"},
-    StyleParameter{.id = ParameterId::color_by,
-                   .name = "color-by",
-                   .type = Type::name,
-                   .default_text = "no classes",
-                   .description = "property by which polygons are coloured, with classes, or with "
-                                  "breaks and ramp"},
+                   .description = "colours for the values of color-by; * matches all other values, "
+                                  "which otherwise keep the fill; null matches missing values"},
+    StyleParameter{
+        .id = ParameterId::color_by,
+        .name = "color-by",
+        .type = Type::name,
+        .default_text = "no classes",
+        .description =
+            "attribute that determines the colour of a polygon, by classes or by breaks and ramp"},
     StyleParameter{.id = ParameterId::debug,
                    .name = "debug",
                    .type = Type::words,
                    .words = kDebugMarkNames.names(),
                    .default_text = "nothing",
                    .is_per_layer = false,
-                   .description = "what to draw over the tile: each feature in a colour of its "
-                                  "own, the junctions of three or more in a coverage, the "
-                                  "trapezoids, the border of the tile with its numbers, the "
-                                  "vertices that are kept"},
+                   .description =
+                       "debug marks over the tile: each feature in its own colour, the junctions "
+                       "of three or more polygons in a coverage, the trapezoids, the tile border "
+                       "with its numbers, the remaining vertices"},
     StyleParameter{.id = ParameterId::fill,
                    .name = "fill",
                    .type = Type::colour,
@@ -90,169 +91,167 @@ constexpr std::array kParameters = {
                    .type = Type::number,
                    .max = 1,
                    .default_text = "the layer's own opacity",
-                   .description = "opacity of the polygons, multiplied with that of their colour"},
+                   .description = "opacity of the fill, multiplied by that of its colour"},
     StyleParameter{.id = ParameterId::filter,
                    .name = "filter",
                    .type = Type::filter,
                    .default_text = "all features",
-                   .description = "which features are drawn, by their properties"},
+                   .description = "draw only features whose attributes meet this condition"},
     StyleParameter{.id = ParameterId::grow,
                    .name = "grow",
                    .type = Type::number,
                    .max = 16,
                    .default_text = "0",
-                   .description = "what is narrower than so many pixels is drawn that wide, as far "
-                                  "as neighbours leave room; not beside smooth"},
+                   .description = "widen features narrower than this many pixels to that width, as "
+                                  "far as neighbours leave room; not together with smooth"},
     StyleParameter{.id = ParameterId::highlight,
                    .name = "highlight",
                    .type = Type::ids,
                    .max_items = kMaxIds,
                    .default_text = "none",
-                   .description = "ids of features that are drawn in the highlight colours"},
+                   .description = "ids of features to draw in the highlight colours"},
     StyleParameter{.id = ParameterId::highlight_fill,
                    .name = "highlight-fill",
                    .type = Type::colour,
                    .default_text = "ffcc00",
-                   .description = "colour of the highlighted polygons"},
+                   .description = "fill colour of highlighted features"},
     StyleParameter{.id = ParameterId::highlight_stroke,
                    .name = "highlight-stroke",
                    .type = Type::colour,
                    .default_text = "the stroke",
-                   .description = "colour of the outline of the highlighted polygons"},
+                   .description = "outline colour of highlighted features"},
     StyleParameter{.id = ParameterId::ids,
                    .name = "ids",
                    .type = Type::ids,
                    .max_items = kMaxIds,
                    .default_text = "all features",
-                   .description = "ids of the only features that are drawn"},
+                   .description = "draw only features with these ids"},
     StyleParameter{.id = ParameterId::join,
                    .name = "join",
                    .type = Type::name,
-                   .default_text = "the property that is called as the key of the table",
-                   .description = "property whose value is the key of a polygon in the table of "
-                                  "values"},
+                   .default_text = "the attribute with the name of the key column",
+                   .description = "attribute that is joined with the key of the value table"},
     StyleParameter{.id = ParameterId::label,
                    .name = "label",
                    .type = Type::label,
                    .max_items = kMaxTemplateLength,
                    .default_text = "no labels",
-                   .description = "what stands in the polygons: the property of that name, or text "
-                                  "with properties in braces; of joined values, value; none: "
-                                  "no labels"},
+                   .description = "label text: the attribute of this name, or text with attributes "
+                                  "in braces; value is the joined value; none disables labels"},
     StyleParameter{.id = ParameterId::label_color,
                    .name = "label-color",
                    .type = Type::colour,
                    .default_text = "222222",
-                   .description = "colour of the letters of labels"},
+                   .description = "text colour of labels"},
     StyleParameter{.id = ParameterId::label_font,
                    .name = "label-font",
                    .type = Type::font,
                    .default_text = "the fonts of legends",
-                   .description = "fonts of the configuration that labels are written in"},
+                   .description = "configured fonts for labels"},
     StyleParameter{.id = ParameterId::label_format,
                    .name = "label-format",
                    .type = Type::format,
-                   .default_text = "as many digits as it takes",
-                   .description = "how the legend and labels write numbers"},
+                   .default_text = "as many digits as needed",
+                   .description = "number format of legend and labels"},
     StyleParameter{.id = ParameterId::label_halo_color,
                    .name = "label-halo-color",
                    .type = Type::colour,
                    .default_text = "ffffffcc",
-                   .description = "colour around the letters of labels"},
+                   .description = "halo colour of labels"},
     StyleParameter{.id = ParameterId::label_halo_width,
                    .name = "label-halo-width",
                    .type = Type::number,
                    .max = 8,
                    .default_text = "1.5",
-                   .description = "how far around its letters a label is filled with the colour of "
-                                  "the halo, in pixels"},
+                   .description = "width of the halo around the letters of labels, in pixels"},
     StyleParameter{.id = ParameterId::label_language,
                    .name = "label-language",
                    .type = Type::language,
                    .default_text = "as the label says",
-                   .description = "language of labels, where the layer has the property also as "
-                                  "NAME:LANGUAGE or NAME_LANGUAGE, or the table of values has it, "
-                                  "and the fonts have its letters"},
+                   .description = "language of labels, used where the layer has an attribute "
+                                  "NAME:LANGUAGE or NAME_LANGUAGE, or the value table has the "
+                                  "language, and the fonts have its characters"},
     StyleParameter{.id = ParameterId::label_max_width,
                    .name = "label-max-width",
                    .type = Type::number,
                    .max = 1024,
                    .default_text = "120",
-                   .description = "width in pixels beyond which a label is broken into lines"},
+                   .description = "maximum width of a label line, in pixels; longer labels wrap"},
     StyleParameter{.id = ParameterId::label_min_size,
                    .name = "label-min-size",
                    .type = Type::number,
                    .max = 1024,
                    .default_text = "0",
-                   .description = "polygons that are smaller have no label: the side of a square "
-                                  "as large as the polygon, in pixels"},
+                   .description = "minimum size of labelled polygons, as the side of a square of "
+                                  "the same area, in pixels"},
     StyleParameter{.id = ParameterId::label_overhang,
                    .name = "label-overhang",
                    .type = Type::number,
                    .max = 1024,
                    .default_text = "8",
-                   .description = "by how many pixels a label may reach out of its polygon; one "
-                                  "that would reach farther waits for a larger scale"},
+                   .description = "how far a label may extend beyond its polygon, in pixels; "
+                                  "labels that do not fit appear at larger scales"},
     StyleParameter{.id = ParameterId::label_parts,
                    .name = "label-parts",
                    .type = Type::word,
                    .words = kLabelPartsWords,
                    .default_text = "largest",
-                   .description = "which parts of a feature have a label: the largest, or all that "
-                                  "it fits into"},
+                   .description = "which parts of a feature to label: the largest, or every part "
+                                  "in which the label fits"},
     StyleParameter{.id = ParameterId::label_priority,
                    .name = "label-priority",
                    .type = Type::name,
                    .default_text = "area",
-                   .description = "property, a number, by which the greater are labelled first "
-                                  "where there is no room for all; area stands for the size of "
-                                  "the polygon"},
-    StyleParameter{.id = ParameterId::label_repeat,
-                   .name = "label-repeat",
-                   .type = Type::word,
-                   .words = kYesOrNoWords,
-                   .default_text = "yes",
-                   .description = "whether features that have the same label are all labelled; no: "
-                                  "only the first of them"},
+                   .description =
+                       "numeric attribute that decides which labels take precedence where space is "
+                       "short, larger values first; area is the size of the polygon"},
+    StyleParameter{
+        .id = ParameterId::label_repeat,
+        .name = "label-repeat",
+        .type = Type::word,
+        .words = kYesOrNoWords,
+        .default_text = "yes",
+        .description =
+            "whether to label all features with the same text, or only the first of them"},
     StyleParameter{.id = ParameterId::label_size,
                    .name = "label-size",
                    .type = Type::number,
                    .min = 6,
                    .max = 64,
                    .default_text = "12",
-                   .description = "size of the letters of labels, in pixels"},
+                   .description = "font size of labels, in pixels"},
     StyleParameter{.id = ParameterId::merge,
                    .name = "merge",
                    .type = Type::number,
                    .max = kWidestMerge,
-                   .default_text = "as far as simplify takes it",
-                   .description = "how far apart polygons may be and still be drawn as one block, "
-                                  "in pixels, of a layer that has a merge in its configuration; "
-                                  "simplify goes with it"},
+                   .default_text = "in proportion to simplify",
+                   .description =
+                       "distance up to which polygons are merged into blocks, in pixels, for "
+                       "layers configured with merge; simplify changes in proportion"},
     StyleParameter{.id = ParameterId::no_data_color,
                    .name = "no-data-color",
                    .type = Type::colour,
                    .default_text = "the fill",
-                   .description = "colour of polygons that have no value to be coloured by"},
+                   .description = "fill colour of polygons without a value"},
     StyleParameter{.id = ParameterId::opacity,
                    .name = "opacity",
                    .type = Type::number,
                    .max = 1,
                    .default_text = "1",
-                   .description = "opacity of the layer as a whole: fill, pattern and outline"},
+                   .description = "opacity of the whole layer: fill, pattern and outline"},
     StyleParameter{.id = ParameterId::pattern,
                    .name = "pattern",
                    .type = Type::word,
                    .words = kPatternNames.names(),
                    .default_text = "none",
-                   .description = "pattern over the fill, fixed to the ground"},
+                   .description = "pattern over the fill, anchored to the map"},
     StyleParameter{.id = ParameterId::pattern_angle,
                    .name = "pattern-angle",
                    .type = Type::number,
                    .min = -360,
                    .max = 360,
                    .default_text = "45, of dots and checker 0",
-                   .description = "direction of the pattern, in degrees, anticlockwise from east"},
+                   .description = "direction of the pattern, in degrees anticlockwise from east"},
     StyleParameter{.id = ParameterId::pattern_color,
                    .name = "pattern-color",
                    .type = Type::colour,
@@ -264,14 +263,14 @@ constexpr std::array kParameters = {
                    .min = 2,
                    .max = 64,
                    .default_text = "8",
-                   .description = "distance after which the pattern repeats, in pixels"},
+                   .description = "distance at which the pattern repeats, in pixels"},
     StyleParameter{.id = ParameterId::pattern_width,
                    .name = "pattern-width",
                    .type = Type::number,
                    .min = 0.25,
                    .max = 64,
-                   .default_text = "1; of stripes half the size; of dots a third",
-                   .description = "width of the lines, diameter of the dots, in pixels"},
+                   .default_text = "1; stripes: half the size; dots: a third of the size",
+                   .description = "width of lines or diameter of dots, in pixels"},
     StyleParameter{.id = ParameterId::quality,
                    .name = "quality",
                    .type = Type::word,
@@ -279,50 +278,50 @@ constexpr std::array kParameters = {
                    .default_text = "bounded",
                    .is_per_layer = false,
                    .description =
-                       "bounded lets colours that nobody can tell apart become one, at most 4 of "
-                       "255 from the exact picture and 0.5 in the mean, so that tiles are smaller; "
-                       "exact changes none"},
+                       "bounded merges indistinguishable colours for smaller tiles, at most 4 of "
+                       "255 from the exact picture and 0.5 on average; exact keeps all colours"},
     StyleParameter{.id = ParameterId::ramp,
                    .name = "ramp",
                    .type = Type::ramp,
                    .default_text = "no classes",
-                   .description = "colours of the classes between breaks"},
+                   .description = "colours of the classes between the breaks"},
     StyleParameter{.id = ParameterId::simplify,
                    .name = "simplify",
                    .type = Type::number,
                    .max = kMaxSimplify,
                    .default_text = "0.25",
-                   .description = "how far the drawn boundary may be from the true one, in pixels "
-                                  "of the picture; 0 draws every vertex"},
-    StyleParameter{.id = ParameterId::small,
-                   .name = "small",
-                   .type = Type::word,
-                   .words = kSmallPolygonsNames.names(),
-                   .default_text = "dust; with grow keep",
                    .description =
-                       "polygons too small for the tolerance: dust keeps their area as a tint, "
-                       "keep draws each at least a pixel large, or as large as grow says, drop "
-                       "leaves them out"},
+                       "simplification tolerance: the maximum distance between the drawn and the "
+                       "true boundary, in image pixels; 0 draws every vertex"},
+    StyleParameter{
+        .id = ParameterId::small,
+        .name = "small",
+        .type = Type::word,
+        .words = kSmallPolygonsNames.names(),
+        .default_text = "dust; with grow keep",
+        .description =
+            "polygons too small for the tolerance: dust preserves their area as a tint, keep draws "
+            "each at least one pixel large or as large as grow, drop omits them"},
     StyleParameter{.id = ParameterId::smooth,
                    .name = "smooth",
                    .type = Type::number,
                    .max = 64,
                    .default_text = "0",
-                   .description = "how far from its corners the drawn boundary is rounded, in "
-                                  "pixels, and at most to the middle of each edge; 0 leaves them "
-                                  "sharp"},
+                   .description = "how far from a corner rounding begins, in pixels, at most at "
+                                  "the middle of each edge; 0 keeps corners sharp"},
     StyleParameter{.id = ParameterId::stroke,
                    .name = "stroke",
                    .type = Type::colour,
                    .default_text = "no outline",
                    .description = "colour of the outline"},
-    StyleParameter{.id = ParameterId::stroke_dasharray,
-                   .name = "stroke-dasharray",
-                   .type = Type::numbers,
-                   .max = 256,
-                   .max_items = 8,
-                   .default_text = "no gaps",
-                   .description = "lengths of dashes and gaps of the outline in turn, in pixels"},
+    StyleParameter{
+        .id = ParameterId::stroke_dasharray,
+        .name = "stroke-dasharray",
+        .type = Type::numbers,
+        .max = 256,
+        .max_items = 8,
+        .default_text = "no gaps",
+        .description = "alternating lengths of dashes and gaps of the outline, in pixels"},
     StyleParameter{.id = ParameterId::stroke_linejoin,
                    .name = "stroke-linejoin",
                    .type = Type::word,
@@ -334,40 +333,39 @@ constexpr std::array kParameters = {
                    .type = Type::number,
                    .max = 1,
                    .default_text = "1",
-                   .description = "opacity of the outline, multiplied with that of its colour"},
+                   .description = "opacity of the outline, multiplied by that of its colour"},
     StyleParameter{.id = ParameterId::stroke_width,
                    .name = "stroke-width",
                    .type = Type::number,
                    .max = 32,
                    .default_text = "1 where a stroke is set",
                    .description = "width of the outline, in pixels"},
-    StyleParameter{.id = ParameterId::style,
-                   .name = "style",
-                   .type = Type::style,
-                   .default_text = "each layer's own style",
-                   .is_per_layer = false,
-                   .description = "a style of the configuration, or one that was posted to "
-                                  "/styles; other parameters of the query override it"},
+    StyleParameter{
+        .id = ParameterId::style,
+        .name = "style",
+        .type = Type::style,
+        .default_text = "each layer's own style",
+        .is_per_layer = false,
+        .description = "a named or posted style; other parameters of the query override it"},
     StyleParameter{.id = ParameterId::topology,
                    .name = "topology",
                    .type = Type::word,
                    .words = kTopologyNames.names(),
                    .default_text = "strict",
-                   .description = "strict keeps boundaries from crossing each other, fast "
-                                  "simplifies without that test"},
+                   .description = "strict prevents boundaries from crossing each other, fast "
+                                  "simplifies without this test"},
     StyleParameter{.id = ParameterId::units,
                    .name = "units",
                    .type = Type::text,
                    .max_items = kMaxTextLength,
                    .default_text = "none",
-                   .description = "what the legend writes behind numbers"},
-    StyleParameter{
-        .id = ParameterId::values,
-        .name = "values",
-        .type = Type::table,
-        .default_text = "none",
-        .description = "table of values by the keys of polygons, posted to /values or of "
-                       "the configuration: color-by and filter call them value"},
+                   .description = "unit that the legend writes after numbers"},
+    StyleParameter{.id = ParameterId::values,
+                   .name = "values",
+                   .type = Type::table,
+                   .default_text = "none",
+                   .description = "value table to join, posted to /values or configured; its "
+                                  "values are available as value in color-by, filter and label"},
 };
 
 constexpr bool is_in_order() {
@@ -636,9 +634,9 @@ std::string reason_or_suggestion(std::string_view name, std::span<const std::str
   if (parameter == nullptr) return suggestion;
   const std::string_view layer = name.substr(0, dot);
   if (std::ranges::find(layers, layer) != layers.end()) {
-    return fmt::format(": {} is one of the whole tile.", parameter->name);
+    return fmt::format(": {} applies to the whole tile.", parameter->name);
   }
-  return suggestion == "." ? fmt::format(": no layer \"{}\" is asked for.", layer) : suggestion;
+  return suggestion == "." ? fmt::format(": the request has no layer \"{}\".", layer) : suggestion;
 }
 
 Problem unknown_name(const QueryPair& pair, std::span<const std::string> layers,
@@ -766,16 +764,16 @@ std::string describe_values(const StyleParameter& parameter) {
     case Type::words:
       return fmt::format("some of {}, separated by commas", fmt::join(parameter.words, ", "));
     case Type::name:
-      return "the name of a property of the layer";
+      return "the name of an attribute of the layer";
     case Type::ramp:
-      return fmt::format("the name of a ColorBrewer ramp, with -r at its end to turn it around: {}",
+      return fmt::format("the name of a ColorBrewer ramp, with -r appended to reverse it: {}",
                          ramp_names());
     case Type::ids:
       return fmt::format("1 to {} integers, separated by commas", parameter.max_items);
     case Type::classes:
       return fmt::format(
-          "1 to {} times value:colour, separated by commas, each value once; a value with a "
-          "comma, a colon or a quote stands in single quotes",
+          "1 to {} pairs value:colour, separated by commas, each value once; a value with a comma, "
+          "colon or quote goes in single quotes",
           parameter.max_items);
     case Type::filter:
       return fmt::format(
@@ -785,20 +783,20 @@ std::string describe_values(const StyleParameter& parameter) {
     case Type::style:
       return "the name of a style, of 1 to 64 letters, digits, '_' or '-'";
     case Type::format:
-      return "a format such as ,.1f (commas between thousands, digits after the point), .0% (a "
-             "hundred times as much) or .3s (digits in all, with k, M, G for thousands)";
+      return "a d3 format such as ,.1f (grouped thousands, one decimal), .0% (percent) or .3s "
+             "(three significant digits, with k, M, G)";
     case Type::text:
       return fmt::format("1 to {} bytes of text", parameter.max_items);
     case Type::table:
-      return "the id that POST /values has given, or the name of a table of the configuration";
+      return "an id returned by POST /values, or the name of a configured table";
     case Type::label:
       return fmt::format(
-          "the name of a property, or text with names of properties in braces, of at most {} bytes",
+          "the name of an attribute, or text with attribute names in braces, of at most {} bytes",
           parameter.max_items);
     case Type::font:
-      return "the name of fonts of the configuration";
+      return "the name of configured fonts";
     case Type::language:
-      return "the tag of a language, such as de or zh-Hans";
+      return "a language tag, such as de or zh-Hans";
   }
   return {};
 }

@@ -136,23 +136,24 @@ std::optional<Problem> find_contradiction(const LayerSettings& settings) {
   const bool has_breaks = settings.has(ParameterId::breaks);
   const bool has_ramp = settings.has(ParameterId::ramp);
   if (has_classes && (has_breaks || has_ramp)) {
-    return contradiction("Colours come either from classes, or from breaks with a ramp.",
-                         ParameterId::classes, settings, "neither breaks nor ramp beside it");
+    return contradiction("Use either classes, or breaks with a ramp.", ParameterId::classes,
+                         settings, "no breaks or ramp");
   }
   if (has_breaks != has_ramp) {
-    return contradiction("Breaks part the numbers, a ramp colours them: each needs the other.",
-                         has_breaks ? ParameterId::breaks : ParameterId::ramp, settings,
-                         has_breaks ? "ramp beside it" : "breaks beside it");
+    return contradiction(
+        "breaks and ramp need each other: breaks divide the numbers, the ramp colours them.",
+        has_breaks ? ParameterId::breaks : ParameterId::ramp, settings,
+        has_breaks ? "ramp beside it" : "breaks beside it");
   }
   const bool has_rules = has_classes || has_breaks;
   if (has_rules && !settings.has(ParameterId::color_by)) {
-    return contradiction("Classes need a property: color-by.",
+    return contradiction("classes need an attribute: color-by.",
                          has_classes ? ParameterId::classes : ParameterId::breaks, settings,
                          "color-by beside it");
   }
   if (!has_rules && settings.has(ParameterId::color_by)) {
-    return contradiction("A property to colour by needs classes, or breaks with a ramp.",
-                         ParameterId::color_by, settings, "classes, or breaks and ramp, beside it");
+    return contradiction("color-by needs classes, or breaks with a ramp.", ParameterId::color_by,
+                         settings, "classes, or breaks and ramp");
   }
   return std::nullopt;
 }
@@ -218,12 +219,11 @@ Problem unknown_table(const std::string& name, const ServedLayer& served) {
   }
   const std::string of_config =
       known.empty() ? "" : fmt::format("one of {}, or ", fmt::join(known, ", "));
-  return {
-      404,
-      fmt::format("There is no table of that name{} Posted tables are given up when others need "
-                  "their place: post it again.",
-                  suggestion_or_stop(name, known)),
-      "values", name, of_config + "an id that POST /values has given"};
+  return {404,
+          fmt::format("There is no table of that name{} Posted tables expire when memory is "
+                      "needed: post it again.",
+                      suggestion_or_stop(name, known)),
+          "values", name, of_config + "an id returned by POST /values"};
 }
 
 /// Null if there is none of that name.
@@ -259,8 +259,7 @@ std::optional<Problem> make_joined(Making& making) {
   const auto* attribute = making.settings.find<std::string>(ParameterId::join);
   if (choice == nullptr) {
     if (attribute == nullptr) return std::nullopt;
-    return Problem{400, "A property to join by needs a table to join: values.", "join", *attribute,
-                   "values beside it"};
+    return Problem{400, "join needs a table: values.", "join", *attribute, "values beside it"};
   }
   const auto table = find_table(*choice, making.served);
   if (table == nullptr) return unknown_table(choice->name, making.served);
@@ -269,7 +268,8 @@ std::optional<Problem> make_joined(Making& making) {
     Problem problem = unknown_property(
         "join", attribute == nullptr ? table->names().key : *attribute, making.features);
     if (attribute == nullptr) {
-      problem.detail += " The key of the table is called so: say by join which property has it.";
+      problem.detail +=
+          " This is the key column of the table: set join to the attribute with the keys.";
     }
     return problem;
   }
@@ -315,7 +315,7 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
         const std::string takes =
             field.type == FieldType::integer ? "integers as values" : "numbers as values";
         return Problem{400,
-                       fmt::format("The property {} holds numbers, and \"{}\" is none of them.",
+                       fmt::format("The attribute {} holds numbers, and \"{}\" is not a number.",
                                    field.name, wanted.value),
                        "classes", wanted.value, takes};
       }
@@ -329,9 +329,9 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
   if (const auto colour = no_data_colour(making); colour && !has_null) {
     constexpr std::size_t kMostBeside = 252;  // as a byte numbers classes
     if (values.size() > kMostBeside) {
-      return Problem{400,
-                     fmt::format("There are at most {} classes beside no-data-color.", kMostBeside),
-                     "no-data-color", to_hex(*colour), "null: among the classes"};
+      return Problem{
+          400, fmt::format("There can be at most {} classes besides no-data-color.", kMostBeside),
+          "no-data-color", to_hex(*colour), "null: among the classes"};
     }
     making.style.classing.values.emplace_back(std::nullopt);
     making.fills.push_back(*colour);
@@ -379,11 +379,11 @@ std::optional<Problem> make_breaks(Making& making, const Field& field) {
     return Problem{
         400,
         is_joined
-            ? fmt::format("The values of the table are words, such as \"{}\", which "
-                          "breaks cannot part.",
-                          echoed(joined->table().first_word()))
-            : fmt::format("The property {} holds text, which breaks cannot part.", field.name),
-        "color-by", field.name, "a property of numbers, or classes instead of breaks"};
+            ? fmt::format(
+                  "The values of the table are text, such as \"{}\", which breaks cannot divide.",
+                  echoed(joined->table().first_word()))
+            : fmt::format("The attribute {} holds text, which breaks cannot divide.", field.name),
+        "color-by", field.name, "a numeric attribute, or classes instead of breaks"};
   }
   // All others than numbers have none.
   making.others = no_data_colour(making).value_or(making.others);
@@ -443,18 +443,18 @@ std::optional<Problem> check_merge(const Making& making) {
   const double built = making.served.merge();
   if (built == 0) {
     return Problem{400,
-                   fmt::format("The layer {} is not merged to blocks: that takes merge = 4, or "
+                   fmt::format("The layer {} is not merged into blocks: this needs merge = 4, or "
                                "another distance, in its configuration, or --merge 4.",
                                name),
-                   "merge", fmt::format("{}", *merge), "a layer that is merged to blocks"};
+                   "merge", fmt::format("{}", *merge), "a layer that is merged into blocks"};
   }
   const double widest = style_parameter(ParameterId::simplify).max / kTolerancePixels * built;
   if (*merge <= widest) return std::nullopt;
-  return Problem{400,
-                 fmt::format("The layer {} is merged to blocks of what is up to {} pixels apart, "
-                             "which are too few for blocks of {}.",
-                             name, built, *merge),
-                 "merge", fmt::format("{}", *merge), fmt::format("at most {}", widest)};
+  return Problem{
+      400,
+      fmt::format("The layer {} merges polygons up to {} pixels apart, which is not enough for {}.",
+                  name, built, *merge),
+      "merge", fmt::format("{}", *merge), fmt::format("at most {}", widest)};
 }
 
 std::optional<Problem> make_selection(Making& making) {
@@ -483,8 +483,8 @@ Result<int> label_priority(const Making& making) {
   if (number < 0) return unknown_property("label-priority", *name, attributes);
   if (attributes.field(number).type == FieldType::text) {
     return Problem{400,
-                   fmt::format("The property {} holds text, which has no order of size.", *name),
-                   "label-priority", *name, "a property of numbers, or area"};
+                   fmt::format("The attribute {} holds text and cannot be ordered by size.", *name),
+                   "label-priority", *name, "a numeric attribute, or area"};
   }
   return number;
 }
@@ -541,8 +541,8 @@ std::optional<Problem> make_boundary(Making& making) {
   style.grow = making.settings.value_or(ParameterId::grow, 0.0);
   style.smooth = making.settings.value_or(ParameterId::smooth, 0.0);
   if (style.grow == 0 || style.smooth == 0) return std::nullopt;
-  return Problem{400, "What grows keeps its corners: a layer is drawn with grow or with smooth.",
-                 "grow", fmt::format("{}", style.grow), "0 beside smooth, or smooth=0 beside it"};
+  return Problem{400, "grow and smooth exclude each other.", "grow", fmt::format("{}", style.grow),
+                 "0 with smooth, or smooth=0"};
 }
 
 void make_paints(Making& making) {

@@ -200,7 +200,7 @@ Problem not_built(const std::string& layer, const MapSystem& system, const Datas
   const std::string names = names_of(map_systems_of(dataset, layer));
   return {
       400,
-      fmt::format("The layer \"{}\" is not built for {}, but for {}.", layer, system.name, names),
+      fmt::format("The layer \"{}\" is not built for {}, only for {}.", layer, system.name, names),
       "crs", system.name, names};
 }
 

@@ -32,8 +32,8 @@ std::shared_ptr<const Fonts> open_fonts(const std::vector<std::string>& files) {
   }
   if (fonts->is_empty()) {
     spdlog::warn(
-        "there is no font: legends show no text; install fonts-dejavu-core, or name files in "
-        "text.fonts");
+        "there is no font, so legends and labels show no text; install fonts-dejavu-core, or name "
+        "files in text.fonts");
   }
   return fonts;
 }

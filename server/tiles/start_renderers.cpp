@@ -23,7 +23,7 @@ std::vector<std::unique_ptr<MaskRenderer>> start_renderers(const RendererOptions
     spdlog::info("not drawing by {}: {}", failure.what, failure.reason);
   }
   const MaskRenderer& first = *made.renderers.front();
-  spdlog::info("drawing by {}: {}, {} worker{}", first.name(), first.description(), count,
+  spdlog::info("rendering with {}: {}, {} worker{}", first.name(), first.description(), count,
                count == 1 ? "" : "s");
   return std::move(made.renderers);
 }

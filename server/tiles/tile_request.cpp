@@ -133,11 +133,10 @@ Result<std::vector<std::string>> parse_layer_list(std::string_view list) {
 Result<PictureName> parse_picture_name(std::string_view name, std::string_view pattern) {
   const bool is_webp = name.ends_with(kWebp);
   if (!is_webp && !name.ends_with(kPng)) {
-    return Problem{400, fmt::format("Pictures are PNG or WebP: {}.", pattern)};
+    return Problem{400, fmt::format("Images are PNG or WebP: {}.", pattern)};
   }
   if (is_webp && !has_webp()) {
-    return Problem{400, "This server was built without WebP: ask for .png.", "format", "webp",
-                   "png"};
+    return Problem{400, "This server was built without WebP: use .png.", "format", "webp", "png"};
   }
   const TileFormat format = is_webp ? TileFormat::webp : TileFormat::png;
   name.remove_suffix(is_webp ? kWebp.size() : kPng.size());
@@ -166,7 +165,7 @@ double TileRequest::zoom() const {
 }
 
 Problem unknown_tile_matrix_set(std::string_view id, const std::string& names) {
-  return {404, fmt::format("There is no such tile matrix set here, but {}.", names),
+  return {404, fmt::format("There is no such tile matrix set; available: {}.", names),
           "tileMatrixSet", std::string(id), names};
 }
 
@@ -176,7 +175,7 @@ Problem no_such_tile(const TileMatrixSet& set) {
                              "2^zoom - 1.",
                              kMaxZoom)};
   }
-  return {404, fmt::format("There is no such tile in {}, whose matrices are {} to {}.", set.id,
+  return {404, fmt::format("There is no such tile in {}, which has the matrices {} to {}.", set.id,
                            set.matrices.front().id, set.matrices.back().id)};
 }
 

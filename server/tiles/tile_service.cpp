@@ -458,7 +458,7 @@ void TileService::refuse_damaged(const Flights& flights, std::vector<TileAnswer>
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const ServedLayer* damaged = flights[i]->order.plan.damaged_layer();
     if (damaged == nullptr) continue;
-    spdlog::error("{} was written into while it was served; run `trapeze prepare` again",
+    spdlog::error("{} was modified while it was served; run `trapeze prepare` again",
                   damaged->report.path);
     answers[i] = TileAnswer{};
   }

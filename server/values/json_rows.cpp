@@ -84,10 +84,10 @@ class RowHandler {
     return false;
   }
   bool nested() {
-    return fail(fmt::format(
-        "Row {} of the table has something nested in it: a table is an array of objects with a key "
-        "and a value, an array of arrays of both, or one object of values by their keys.",
-        row_ + 1));
+    return fail(
+        fmt::format("Row {} of the table has nested data: a table is an array of objects with a "
+                    "key and a value, an array of pairs, or one object that maps keys to values.",
+                    row_ + 1));
   }
 
   bool begin(Form form) {

@@ -110,10 +110,9 @@ Problem no_such_column(std::string_view parameter, const std::string& name,
 
 Result<Places> find_places(const std::vector<std::string>& names, const ValueNames& wanted) {
   if (names.size() < 2) {
-    return Problem{
-        400,
-        "A table has two columns at least, a key and a value, with a line of their names "
-        "first, and commas, semicolons or tabs between them."};
+    return Problem{400,
+                   "A table needs at least two columns, a key and a value, a header line, and "
+                   "commas, semicolons or tabs as separators."};
   }
   const auto find = [&names](const std::string& name) -> std::optional<std::size_t> {
     const auto found = std::ranges::find(names, name);
@@ -154,8 +153,8 @@ Result<ValueTable> read_csv(std::string_view text, const ReadValuesOptions& opti
   if (!places) return places.problem();
   // It would be lost as a row.
   if (is_number(names[places->value])) {
-    return Problem{400, fmt::format("The first line names the columns, and \"{}\" looks like a "
-                                    "value: put a line such as \"key,value\" before it.",
+    return Problem{400, fmt::format("The first line must name the columns, but \"{}\" looks like a "
+                                    "value: add a header line such as \"key,value\".",
                                     names[places->value])};
   }
   ValueTableBuilder builder({names[places->key], names[places->value]}, options.max_rows,

@@ -8,12 +8,13 @@ namespace trapeze {
 
 Result<std::shared_ptr<const ValueTable>> ValueBook::post(ValueTable table) {
   const std::size_t bytes = table.memory();
-  if (posted_.budget() == 0) return Problem{403, "This server keeps no tables that are posted."};
+  if (posted_.budget() == 0) return Problem{403, "This server does not keep posted tables."};
   if (bytes > posted_.budget()) {
-    return Problem{413,
-                   fmt::format("This table takes {} bytes of memory, and this server has {} for "
-                               "all that are posted.",
-                               bytes, posted_.budget())};
+    return Problem{
+        413,
+        fmt::format(
+            "This table needs {} bytes of memory, but this server has {} for all posted tables.",
+            bytes, posted_.budget())};
   }
   const std::lock_guard lock(mutex_);
   if (const auto* kept = posted_.find(table.id())) return *kept;

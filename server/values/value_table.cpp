@@ -213,7 +213,7 @@ Result<ValueTable> ValueTableBuilder::finish() && {
     const std::string more = doubles_ > kMostDoublesNamed
                                  ? fmt::format(" and {} more", doubles_ - kMostDoublesNamed)
                                  : "";
-    return Problem{400, fmt::format("Each key has one value, and these come more than once: {}{}.",
+    return Problem{400, fmt::format("Keys must be unique; these occur more than once: {}{}.",
                                     double_keys_, more)};
   }
   if (table_.rows_.empty()) return Problem{400, "The table has no row with a key."};
@@ -256,8 +256,8 @@ std::optional<Problem> ValueTableBuilder::find_type() {
     }
   } else if (endless) {
     return Problem{400,
-                   fmt::format("The value of {} (row {}) is {}, and numbers here have an end: "
-                               "leave it empty if there is none.",
+                   fmt::format("The value of {} (row {}) is {}, but values must be finite: leave "
+                               "it empty if there is none.",
                                table_.key(*endless), places_[*endless], text_of_value(*endless))};
   } else {
     table_.type_ = has_reals ? FieldType::real : FieldType::integer;

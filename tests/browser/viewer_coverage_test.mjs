@@ -44,14 +44,14 @@ test("compare: neighbours simplified together have no gap, each by itself they h
   await page.goto(`${server.base}#3/25/67&on=fields&simplify=16${COLOURS}`);
   await tiles_drawn(page);
   await page.locator("#detail summary").click();
-  await page.getByLabel("Compare with polygons apart").check();
+  await page.getByLabel("Compare with separate polygons").check();
   await page.waitForFunction(() => location.hash.includes("compare=0.5&against=apart"));
   await page.waitForSelector("img[src*='topology=fast']");
   await tiles_drawn(page);
   const queries = of_layer(await shown_tiles(page), "fields").map((url) => new URL(url).searchParams);
   assert.deepEqual(new Set(queries.map((query) => query.get("simplify"))), new Set(["16"]));
   assert.deepEqual(new Set(queries.map((query) => query.get("topology"))), new Set([null, "fast"]));
-  assert.equal(await page.locator(".divider .right").innerText(), "each polygon by itself");
+  assert.equal(await page.locator(".divider .right").innerText(), "separate polygons");
   assert.equal(await page.getByLabel("Divider between").count(), 1);
   await save_screenshot(page, "desktop-coverage");
 
@@ -73,7 +73,7 @@ test("compare: one of the two at a time, or none", async () => {
   await page.goto(`${server.base}#3/25/67&on=fields&simplify=16&compare=0.25&against=apart`);
   await tiles_drawn(page);
   await page.locator("#detail summary").click();
-  const apart = page.getByLabel("Compare with polygons apart");
+  const apart = page.getByLabel("Compare with separate polygons");
   const full = page.getByLabel("Compare with every vertex");
   assert.deepEqual([await apart.isChecked(), await full.isChecked()], [true, false]);
   await full.check();

@@ -35,7 +35,7 @@ title = "Pond"
 group = "Invented town"
 detail_zoom = 8
 `;
-const TRIALS = ["Simplify by a slider", "Gapless against apart", "Restyle by click"];
+const TRIALS = ["Simplify with a slider", "Shared or separate borders", "Restyle with one click"];
 
 const { browser, server } = await start_browser_and_server([], CONFIG);
 

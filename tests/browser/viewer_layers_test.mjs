@@ -87,7 +87,7 @@ test("a search finds layers by title, name and group; what it finds is switched 
   await page.getByLabel("Find a layer").fill("");
   assert.equal((await titles(page)).length, 30);
   await page.getByRole("button", { name: "All off" }).click();
-  await page.getByText("All layers are off. Switch one on in the list.").waitFor();
+  await page.getByText("All layers are off. Turn one on in the list.").waitFor();
   assert.match(await hash_of(page), /&on=$/);
   await page.getByRole("button", { name: "All on" }).click();
   await wait_for_layers(page, ALL);

@@ -77,7 +77,7 @@ async function legend_rows(page) {
 test("a pasted table colours the layer, says what does not match, and is in the link", async () => {
   const { page, seen, form } = await open("#5/45/6&on=columns");
   await page.getByLabel("Style of Columns").click();
-  await form.getByText("Numbers of your own").click();
+  await form.getByText("Your own numbers").click();
   await form.getByLabel("Table", { exact: true }).fill(copied("code\tname\tscore", (i) => i * i));
   await form.getByLabel("Values in column").selectOption("score");
   await form.getByRole("button", { name: "Show on the map" }).click();
@@ -130,7 +130,7 @@ test("what is wrong with a table is said beside it, and the map stays", async ()
   const { page, form } = await open("#5/45/6&on=columns", PHONE);
   if (!(await page.locator("#panel-body").isVisible())) await page.tap("#panel-toggle");
   await page.getByLabel("Style of Columns").click();
-  await form.getByText("Numbers of your own").click();
+  await form.getByText("Your own numbers").click();
   const table = form.getByLabel("Table", { exact: true });
   const said = form.locator(".numbers .part > [role=status]");
   const show = form.getByRole("button", { name: "Show on the map" });
@@ -146,7 +146,7 @@ test("what is wrong with a table is said beside it, and the map stays", async ()
   assert.equal(await table.getAttribute("aria-invalid"), "true");
   await save_screenshot(page, "phone-numbers");
   await table.fill("code,score\nC1,many\nC2,2\n");
-  await says('The values are words, such as "many"');
+  await says('The values are text, such as "many"');
   assert.ok(!(await hash_of(page)).includes("columns."));
   await page.context().close();
 });

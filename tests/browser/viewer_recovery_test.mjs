@@ -137,7 +137,7 @@ test("a server that comes back with other layers says so, and the page can be lo
   } finally {
     await server.start();
   }
-  const again = status.getByRole("button", { name: "Load the page again" });
+  const again = status.getByRole("button", { name: "Reload the page" });
   await again.waitFor();
   await save_screenshot(page, "desktop-other-layers");
   await again.click();
@@ -213,7 +213,7 @@ test("tiles refused for a while (429) are told and come later, not sooner than w
     ? route.fulfill({ status: 429, headers: { "Retry-After": "2" }, json: { detail: "Ask again." } })
     : route.continue()));
   await pan(page);
-  await status.getByText("You ask for more than the server gives at once.").waitFor();
+  await status.getByText("Too many requests for the server.").waitFor();
   await save_screenshot(page, "desktop-429");
   is_refusing = false;
   await tiles_drawn(page);
@@ -262,7 +262,7 @@ test("all layers off, and layers that are not there, are said in a line", async 
   await status.getByText('There is no layer "nowhere" here.').waitFor();
   await save_screenshot(page, "desktop-unknown-layer");
   await page.evaluate(() => (location.hash = "#5/46/10&on="));
-  await status.getByText("All layers are off. Switch one on in the list.").waitFor();
+  await status.getByText("All layers are off. Turn one on in the list.").waitFor();
   await save_screenshot(page, "desktop-all-off");
   await page.evaluate(() => (location.hash = "#5/46/10"));
   await tiles_drawn(page);

@@ -299,7 +299,7 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   await page.getByLabel("Borders never cross").uncheck();
   await page.getByLabel("Tiny shapes").selectOption("left out");
   await page.getByLabel("Trapezoids").check();
-  await page.getByLabel("Borders of tiles").check();
+  await page.getByLabel("Tile borders").check();
   const wanted = { simplify: "8", small: "drop", debug: "mesh,tile" };
   await wait_for_query(page, "land", { ...wanted, topology: "fast" });
   await wait_for_query(page, "lake", wanted); // is not served with topology=fast
@@ -311,7 +311,7 @@ test("detail: simplify, topology, small and debug hold for all layers", async ()
   assert.equal(await page.getByLabel("Borders never cross").isChecked(), false);
   assert.equal(await page.getByLabel("Vertices").isChecked(), false);
   await page.getByLabel("Trapezoids").uncheck();
-  await page.getByLabel("Borders of tiles").uncheck();
+  await page.getByLabel("Tile borders").uncheck();
   await slide(page.getByLabel("Simplify"), 1);
   await page.getByLabel("Borders never cross").check();
   await page.getByLabel("Tiny shapes").selectOption("as a tint");
@@ -333,7 +333,7 @@ async function colour_on_screen(page, x, y) {
 
 test("compare shows every vertex right of a divider that pointer and keyboard move", async () => {
   const { page, seen } = await open("#5/46/10&on=land&simplify=64&debug=vertices");
-  assert.equal(await page.getByLabel("Compare with polygons apart").count(), 0, "none share borders");
+  assert.equal(await page.getByLabel("Compare with separate polygons").count(), 0, "none share borders");
   await page.getByLabel("Compare with every vertex").check();
   await page.waitForFunction(() => location.hash.includes("compare=0.5"));
   await page.waitForSelector("img[src*='simplify=0']");

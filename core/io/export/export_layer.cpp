@@ -246,7 +246,7 @@ class Export {
     } else {
       const GrownPolygons grown = grow(polygons, options_.grow, threads);
       if (!grown.failure.empty()) {
-        throw SourceError("what grows cannot be united: " + grown.failure);
+        throw SourceError("the widened polygons cannot be united: " + grown.failure);
       }
       report_.grown = grown.grown;
     }

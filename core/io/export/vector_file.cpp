@@ -70,9 +70,9 @@ void VectorFile::check_path(const std::string& path, const std::string& source, 
   const fs::file_type type = fs::symlink_status(path, ignored).type();
   if (type == fs::file_type::not_found) return;
   if (type != fs::file_type::regular) {
-    fail_to_write(path, "something that is no plain file has that name");
+    fail_to_write(path, "something other than a regular file has this name");
   }
-  if (!overwrite) fail_to_write(path, "it exists already; --overwrite replaces it");
+  if (!overwrite) fail_to_write(path, "it exists already; use --overwrite to replace it");
 }
 
 VectorFile::VectorFile(const std::string& path)
@@ -165,7 +165,7 @@ std::size_t VectorFile::count_written() const {
   const GDALDatasetUniquePtr dataset(GDALDataset::Open(
       unfinished_.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, drivers));
   if (dataset == nullptr || dataset->GetLayerCount() != 1) {
-    fail("what was written cannot be read again; is the disk full? (" + messages.text() + ")");
+    fail("the written file cannot be read; is the disk full? (" + messages.text() + ")");
   }
   std::size_t count = 0;
   OGRLayer& layer = *dataset->GetLayer(0);

@@ -68,7 +68,7 @@ void FeatureBuilder::build_together(std::span<WaitingFeature* const> features, u
     tally_.remark(features.front()->key,
                   "of it and " + std::to_string(features.size() - 1) + " neighbours, " +
                       std::to_string(assembly.apart.size()) +
-                      " that overlap are built apart: too many lie over each other");
+                      " that overlap are built separately: too many overlap each other");
   }
   for (const std::uint32_t i : assembly.apart) {
     build_apart(features[i]->key, features[i]->rings_apart(), threads);

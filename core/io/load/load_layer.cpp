@@ -101,7 +101,7 @@ void fill_report(const FeaturePipeline& pipeline, const std::deque<FeatureBuilde
 
 void warn_of_unknown_overlaps(const Layer& layer, LoadReport& report) {
   if (layer.has_all_overlaps()) return;
-  report.warnings.push_back("so many features lie over each other that not all pairs are known (" +
+  report.warnings.push_back("so many features overlap that not all pairs are known (" +
                             std::to_string(layer.overlaps().pairs().size() / 2) +
                             " are): where others overlap, their colours mix");
 }

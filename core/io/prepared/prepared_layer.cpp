@@ -369,7 +369,7 @@ void check_options(const LayerOptions& options, const PreparedDemands& demands) 
                      " m, and " + text_of(*demands.close_gaps) + " m are configured");
   }
   if (demands.merge && *demands.merge != options.merge) {
-    throw UnfitError("was prepared with blocks of what is up to " + text_of(options.merge) +
+    throw UnfitError("was prepared with blocks of polygons up to " + text_of(options.merge) +
                      " pixels apart, and " + text_of(*demands.merge) + " are configured");
   }
   if (demands.merge_by && *demands.merge_by != options.merge_by) {
@@ -399,7 +399,7 @@ void check_fingerprint(const LayerOptions& options, const std::string& grid,
                        std::uint64_t fingerprint) {
   if (fingerprint_on(grid, options) == fingerprint) return;
   throw UnfitError(
-      "was prepared by a version of Trapeze that builds layers otherwise, or not for " +
+      "was prepared by a version of Trapeze that builds layers differently, or not for " +
       (grid.empty() ? "EPSG:3857" : grid));
 }
 
@@ -486,13 +486,13 @@ void save_prepared_layer(const std::string& path, const LoadedLayer& loaded, std
                          const EarlierPrepared& earlier) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !is_prepared_file(path)) {
-    throw std::runtime_error(path + ": is there already and is no prepared file; not replaced");
+    throw std::runtime_error(path + ": exists and is not a prepared file; not replaced");
   }
   const LayerArrays arrays = arrays_of(*loaded.layer);
   const ByteWriter description = written(arrays, revision, source, loaded);
   const LabelAnchors anchors = label_anchors_of(loaded, earlier);
   if (earlier.file != nullptr && !earlier.file->is_whole()) {
-    throw std::runtime_error(earlier.path + ": was written into while it was read");
+    throw std::runtime_error(earlier.path + ": was modified while it was read");
   }
   SectionWriter sections;
   sections.add(SectionKind::description, std::span(description.bytes()));
@@ -529,7 +529,7 @@ LoadedLayer open_summarized_layer(const std::string& path, const PreparedSummary
     Description description = take_description(sections);
     if (description.revision != summary.revision || description.part != summary.part ||
         sections.fingerprint() != summary.fingerprint) {
-      throw PreparedFileError("is another file by now than when the layers were read");
+      throw PreparedFileError("has been replaced since the layers were read");
     }
     LoadedLayer loaded = layer_from_sections(sections, std::move(description), file);
     loaded.file = file;

@@ -145,10 +145,10 @@ Found find_parts(const std::vector<std::string>& files, const PreparedDemands& d
                  const PreparedParts* earlier) {
   Found found;
   for (const std::string& file : files) {
-    if (!is_prepared_file(file)) fail(file, "is no prepared file, and so no part of a layer");
+    if (!is_prepared_file(file)) fail(file, "is not a prepared file, and so not a part of a layer");
     PreparedSummary summary = read_prepared_summary(file);
     if (!summary.part) {
-      fail(file, "is a whole layer and no part of one: serve it by its own name");
+      fail(file, "is a whole layer, not a part of one: serve it by its own name");
     }
     Part part = earlier_part(earlier, file, summary);
     if (part == nullptr) part = std::make_shared<const PreparedPart>(file, std::move(summary));
@@ -177,7 +177,7 @@ void check_overview(const Part& overview, const std::vector<Part>& parts) {
   check_alike(parts.front(), overview);
   if (overview->number().revision_of_parts == revision_of_parts(parts)) return;
   fail(overview->path(),
-       "is not the overview of the parts that there are now; run `trapeze prepare --join` again");
+       "is not the overview of the current parts; run `trapeze prepare --join` again");
 }
 
 void add_report(const LoadReport& part, LoadReport& sum) {

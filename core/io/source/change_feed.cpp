@@ -31,8 +31,7 @@ struct ChangeFeed::Connection {
 
 ChangeFeed::ChangeFeed(std::string path, std::string query)
     : path_(std::move(path)), query_(std::move(query)) {
-  require(query_.find(kSince) != std::string::npos,
-          std::string("the query for what has changed has no ") + kSince);
+  require(query_.find(kSince) != std::string::npos, std::string("live_query has no ") + kSince);
   take();
 }
 
@@ -67,9 +66,7 @@ std::vector<std::int64_t> ChangeFeed::ask() {
   };
   const bool fits =
       has_id_apart ? is_integer(0) : columns.GetFieldCount() == 2 && is_integer(0) && is_integer(1);
-  require(fits,
-          "the query for what has changed must give two columns of integers: a number, and "
-          "the id of a feature");
+  require(fits, "live_query must return two integer columns: a number, and the id of a feature");
   std::vector<std::int64_t> ids;
   std::int64_t last = since_;
   while (const OGRFeatureUniquePtr row{rows->GetNextFeature()}) {

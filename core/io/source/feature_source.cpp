@@ -188,10 +188,11 @@ std::vector<std::string> FeatureSource::warnings() const {
     if (layer.crs.kind != SourceCrs::Kind::assumed_degrees) continue;
     const std::string which =
         layers_.size() == 1 ? "" : "its layer \"" + std::string(layer.layer->GetName()) + "\" ";
-    warnings.push_back(which + "names no coordinate reference system" +
-                       (has_unknown_prj() ? " that is known" : "") +
-                       ", so its coordinates are taken for degrees on WGS 84; if they are not, " +
-                       crs_advice(driver()));
+    warnings.push_back(
+        which + "names no coordinate reference system" +
+        (has_unknown_prj() ? " that is known" : "") +
+        ", so its coordinates are assumed to be degrees on WGS 84; if they are not, " +
+        crs_advice(driver()));
   }
   return warnings;
 }
@@ -267,7 +268,7 @@ OGRFeatureUniquePtr FeatureSource::next_by_place(SourceFeature& next) {
   next.layer_index = 0;
   OGRFeatureUniquePtr feature(next.layer->layer->GetFeature(static_cast<GIntBig>(read_)));
   if (feature == nullptr && !messages_.has_failure()) {
-    throw SourceError("is cut off or damaged: feature " + std::to_string(read_) + " of the " +
+    throw SourceError("is truncated or damaged: feature " + std::to_string(read_) + " of the " +
                       std::to_string(count) + " of its layer \"" + next.layer->layer->GetName() +
                       "\" cannot be read");
   }

@@ -111,7 +111,7 @@ void check_contents(const std::string& path) {
   const bool is_empty = VSIFReadL(&byte, 1, 1, file) == 0;
   VSIFCloseL(file);
   if (is_empty) fail(path, "is empty");
-  if (is_prepared_file(path)) fail(path, "is a prepared layer; name what it was prepared from");
+  if (is_prepared_file(path)) fail(path, "is a prepared layer; name its source");
 }
 
 // Distinguishes a name that is not there from one that is there and cannot be looked at, such as a
@@ -142,8 +142,8 @@ void check_readable(const std::string& path) {
   GDALDriverH any =
       GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_RASTER, nullptr, nullptr);
   if (any == nullptr) {
-    fail(path,
-         "holds no vector data that is known here" + (message.empty() ? "" : " (" + message + ")"));
+    fail(path, "contains no vector data in a supported format" +
+                   (message.empty() ? "" : " (" + message + ")"));
   }
   const std::string name = GDALGetDriverShortName(any);
   if (std::ranges::find(kAllowedDrivers, name) != std::end(kAllowedDrivers)) {

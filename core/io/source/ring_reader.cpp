@@ -215,7 +215,7 @@ void RingReader::check_degrees(FeatureRings& feature) const {
       crs_.kind == SourceCrs::Kind::degrees || crs_.kind == SourceCrs::Kind::geographic;
   const bool can_be = are_within(x_, kMostLongitude) && are_within(y_, 90 + kDegreeSlack);
   if (is_said && !can_be) {
-    feature.failure = "has coordinates that are not degrees, as its source says they are";
+    feature.failure = "has coordinates that are not degrees, contrary to its source";
   }
 }
 

@@ -106,7 +106,7 @@ LonLatTransform::LonLatTransform(const SourceCrs& crs) {
     const char* name = crs.reference->GetName();
     throw SourceError("its coordinate reference system" +
                       (name == nullptr ? "" : " \"" + std::string(name) + "\"") +
-                      " cannot be brought to WGS 84" +
+                      " cannot be transformed to WGS 84" +
                       (messages.text().empty() ? "" : ": " + messages.text()));
   }
 }

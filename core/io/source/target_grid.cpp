@@ -99,7 +99,7 @@ bool is_northing_first(const OGRSpatialReference& reference) {
 }
 
 std::shared_ptr<const TargetGrid> make_grid(const std::string& name) {
-  if (!is_code(name)) refuse(name, "is no name of a reference system such as EPSG:2056");
+  if (!is_code(name)) refuse(name, "is not the name of a reference system such as EPSG:2056");
   auto reference = std::make_unique<OGRSpatialReference>();
   const GdalMessages messages;
   if (reference->SetFromUserInput(name.c_str()) != OGRERR_NONE) {
@@ -122,7 +122,7 @@ std::shared_ptr<const TargetGrid> make_grid(const std::string& name) {
       OGRCreateCoordinateTransformation(&lonlat, reference.get()));
   Area inner;
   if (forward == nullptr || !project(used, *forward, inner)) {
-    refuse(name, "cannot be reached from WGS 84 in all of its area of use");
+    refuse(name, "cannot be transformed from WGS 84 in all of its area of use");
   }
   Area drawn = used;
   Area sides = inner;
@@ -173,7 +173,7 @@ GridTransform::GridTransform(const TargetGrid& grid) : grid_(grid) {
   forward_.reset(OGRCreateCoordinateTransformation(&lonlat, grid.reference.get()));
   inverse_.reset(OGRCreateCoordinateTransformation(grid.reference.get(), &lonlat));
   if (forward_ == nullptr || inverse_ == nullptr) {
-    throw std::runtime_error(grid.name + " cannot be reached from WGS 84");
+    throw std::runtime_error(grid.name + " cannot be transformed from WGS 84");
   }
 }
 

@@ -334,7 +334,7 @@ TEST_F(GridsTest, TheConfigurationIsChecked) {
     return all;
   };
   EXPECT_EQ(problems_of("crs = [\"EPSG:3857\", \"EPSG:2056\"]\n"), "");
-  EXPECT_THAT(problems_of("crs = [\"EPSG:2056\"]\n"), HasSubstr("EPSG:3857 has to be among them"));
+  EXPECT_THAT(problems_of("crs = [\"EPSG:2056\"]\n"), HasSubstr("EPSG:3857 must be in the list"));
   EXPECT_THAT(problems_of("crs = [\"EPSG:3857\", \"EPSG:3857\"]\n"), HasSubstr("named twice"));
   EXPECT_THAT(problems_of("crs = [\"EPSG:3857\", \"EPSG:4326\"]\n"), HasSubstr("needs no grid"));
   EXPECT_THAT(problems_of("crs = [\"EPSG:3857\", \"EPSG:99999\"]\n"), HasSubstr("PROJ"));

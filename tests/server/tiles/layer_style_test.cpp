@@ -120,7 +120,7 @@ TEST_F(LayerStyleTest, OnlyALayerThatIsMergedHasBlocks) {
   const Problem refused = problem("merge=8");
   EXPECT_EQ(refused.status, 400);
   EXPECT_EQ(refused.parameter, "merge");
-  EXPECT_THAT(refused.detail, HasSubstr("layer towns is not merged to blocks"));
+  EXPECT_THAT(refused.detail, HasSubstr("layer towns is not merged into blocks"));
   EXPECT_THAT(refused.detail, HasSubstr("--merge 4"));
   EXPECT_TRUE(resolve("merge=0"));
   EXPECT_TRUE(resolve("lakes.merge=8"));
