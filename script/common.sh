@@ -1,5 +1,5 @@
-# What the scripts share; to be sourced. The first comment of a script is its help. Ctrl-C ends a script with status
-# 130 and says so; what a script removes at its end (trap ... EXIT) is removed then, too.
+# Functions shared by the scripts; source this file. The first comment of a script is its help text. Ctrl-C ends a
+# script with a message and status 130; its cleanup at exit (trap ... EXIT) runs then, too.
 # shellcheck shell=bash
 
 progress_reporter=

@@ -1,11 +1,11 @@
-# Tiles are kept under keys, to be purged by layer and place: docs/caching.md. Needs xkey (Debian:
-# varnish-modules). For trapeze.vcl, directly below its first lines:
+# Tags cached tiles with keys, so that they can be purged by layer and place: see docs/caching.md. Needs xkey (Debian
+# package varnish-modules). Include it in trapeze.vcl, directly below its first lines:
 #
 #   include "/etc/varnish/purge.vcl";
 import xkey;
 
-# "/tiles/land,parcels/12/2204/1433.png" is kept under land/12/2204/1433, parcels/12/2204/1433, land and
-# parcels; so is the same in a style by name.
+# "/tiles/land,parcels/12/2204/1433.png" gets the keys land/12/2204/1433, parcels/12/2204/1433, land and
+# parcels; the same tile in a named style gets the same keys.
 sub vcl_backend_response {
     if (bereq.url ~ "^/tiles/[^/]+/(s/[^/]+/)?[0-9]+/[0-9]+/[0-9]+") {
         set bereq.http.x-layers =
@@ -21,7 +21,7 @@ sub vcl_deliver {
     unset resp.http.xkey;
 }
 
-# Soft: what is purged is still answered with while it is fetched anew.
+# A soft purge: the old tile is still served while the new one is fetched.
 sub vcl_recv {
     if (req.method == "PURGE" && client.ip == "127.0.0.1") {
         set req.http.x-gone = xkey.softpurge(req.http.xkey);

@@ -1,4 +1,4 @@
-# Varnish in front of several servers: each tile has one that draws it, and all share this cache.
+# Varnish in front of several servers: each tile is drawn by one of them, and all share this cache.
 #
 #   varnishd -a :80 -f /etc/varnish/trapeze.vcl -s malloc,2g
 vcl 4.1;
@@ -56,7 +56,7 @@ sub vcl_init {
 }
 
 sub vcl_recv {
-    # For Prometheus, which asks each server itself.
+    # Prometheus scrapes each server directly.
     if (req.url ~ "^/metrics") {
         return (synth(404));
     }
@@ -64,14 +64,14 @@ sub vcl_recv {
         return (pass);
     }
     unset req.http.Cookie;
-    # The same style in another order is the same tile.
+    # The same parameters in another order give the same tile.
     set req.url = std.querysort(req.url);
     set req.backend_hint = trapeze.backend(by = URL);
 }
 
 sub vcl_hash {
     hash_data(req.url);
-    # Documents hold absolute URLs; tiles are the same under every name.
+    # Documents contain absolute URLs; tiles are the same under every host name.
     if (req.url !~ "^/tiles/[^?]*\.png") {
         hash_data(req.http.Host);
     }
@@ -79,19 +79,19 @@ sub vcl_hash {
 }
 
 sub vcl_backend_fetch {
-    # Another attempt goes to the server that is next for this URL.
+    # A retry goes to the next server for this URL.
     if (bereq.retries > 0) {
         set bereq.backend = trapeze.backend(by = URL, alt = bereq.retries);
     }
 }
 
 sub vcl_backend_response {
-    # It is busy, or has been started a moment ago.
+    # The server is busy, or has just started.
     if (beresp.status == 503 && bereq.retries < 2) {
         return (retry);
     }
-    # It has not been given the style or the table that the tile is of, which clients have posted to one of
-    # the others.
+    # This server has not received the posted style or table of the tile, which a client may have posted to
+    # another one.
     if (beresp.status == 404 && bereq.retries < 3) {
         return (retry);
     }
@@ -99,9 +99,9 @@ sub vcl_backend_response {
         set beresp.uncacheable = true;
         return (deliver);
     }
-    # An old tile is better than none.
+    # A stale tile is better than none.
     set beresp.grace = 1h;
-    set beresp.keep = 7d;  # to ask with If-None-Match
+    set beresp.keep = 7d;  # to revalidate with If-None-Match
 }
 
 sub vcl_backend_error {
