@@ -1,10 +1,10 @@
-// Puts the page together that the server hands out: our files and Leaflet, nothing from outside. The build
-// takes them into the program (embed.mjs); to try a change without building, make a folder of them and name
-// it as web_root:
+// Assembles the page that the server serves: our files and Leaflet, without external resources. The build
+// embeds them in the binary (embed.mjs). To try a change without building, write them to a folder and set it
+// as web_root:
 //
 //   node assemble.mjs TARGET
 //
-// Files are written beside their place and renamed, so a running server never sees half a file.
+// Files are written to a temporary name and renamed, so a running server never sees a partial file.
 import { copyFileSync, mkdirSync, readdirSync, renameSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -58,7 +58,7 @@ const PAGE = [
   "icon.svg",
 ];
 
-/** Every file of the viewer: its name within the page, and where it is. */
+/** Every file of the viewer: its name within the page, and its path. */
 export function viewerFiles() {
   const files = PAGE.map((name) => ({ name, from: join(WEB, name) }));
   for (const name of ["leaflet.js", "leaflet.css"]) {

@@ -1,11 +1,11 @@
-// The values of an attribute, of what is in view or of all of a layer, as the server counts them.
+// The values of an attribute, as counted by the server for the current view or a whole layer.
 
 import { query_part } from "./tile_query.js";
 
 /**
- * {values: [{value, count}], the commonest first; quantiles: of numbers, ascending, else []}; both are
- * empty where there is nothing, or no answer.
- * @param box in degrees; null: all of the layer
+ * Returns {values: [{value, count}], the most frequent first; quantiles: ascending, for numbers, else []}.
+ * Both are empty if there are no values or no response.
+ * @param box in degrees; null: the whole layer
  */
 export async function ask_values(base, layer, attribute, box, style) {
   const parameters = [...(box ? [["bbox", box.map((degrees) => degrees.toFixed(6)).join(",")]] : []),

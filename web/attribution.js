@@ -1,8 +1,8 @@
-// Attribution lines as a server writes them: text in which only links are markup.
+// Attribution lines from a server: text in which links are the only markup.
 
 /**
- * The nodes that show `text`. Of all markup only <a href="http(s)://..."> is kept; everything else
- * becomes its text. Parsing into a document of its own runs no script and loads nothing.
+ * The DOM nodes for `text`. The only markup kept is <a href="http(s)://...">; all other markup is reduced
+ * to its text. Parsing into a separate document runs no script and loads nothing.
  */
 export function attribution_nodes(text) {
   const body = new DOMParser().parseFromString(String(text), "text/html").body;
@@ -27,7 +27,7 @@ export function link_to(url, text) {
   return link;
 }
 
-/** The address if it is absolute and of the web, else null. */
+/** `href` if it is an absolute http(s) URL, else null. */
 function web_url(href) {
   try {
     const url = new URL(href ?? "");

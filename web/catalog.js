@@ -1,8 +1,8 @@
-// The list of layers, asked for until the server gives it.
+// Requests the list of layers until the server returns it.
 
 import { trouble_in } from "./connection.js";
 
-/** The catalog; waits by `connection` while the server cannot be reached or is not ready. */
+/** The catalog; uses `connection` to wait while the server cannot be reached or is not ready. */
 export async function load_catalog(url, connection) {
   for (;;) {
     const { catalog, trouble } = await ask(url);
@@ -29,7 +29,7 @@ async function ask(url) {
     const catalog = await response.json();
     if (Array.isArray(catalog?.layers)) return { catalog };
   } catch {
-    // Told below: the connection may have broken off, or something else answers at this address.
+    // Reported below: the connection may have broken, or something else responds at this address.
   }
   return unclear("The list of layers cannot be parsed.");
 }

@@ -1,6 +1,6 @@
-// Where to part numbers into classes. `sorted` are numbers in ascending order, which stand for all of
-// them: so many lie between each two. What comes out are breaks, each greater than the one before: a
-// number is in the class above each break that it reaches.
+// Computes class breaks. `sorted` is an ascending sample of the numbers, with equally many of them between
+// each two. The result is an ascending list of breaks: a number is in the class above each break that it
+// reaches.
 
 const MOST_DIGITS = 12;
 
@@ -10,13 +10,13 @@ export const WAYS = {
   natural: natural_breaks,
 };
 
-/** As many numbers in each class. */
+/** Classes with equal counts. */
 export function quantile_breaks(sorted, classes) {
   const firsts = parts(classes).map((part) => Math.floor(part * sorted.length));
   return ascending(firsts.map((first) => break_before(sorted, first)), sorted);
 }
 
-/** Classes that are equally wide. */
+/** Classes of equal width. */
 export function equal_breaks(sorted, classes) {
   const least = sorted[0];
   const spread = sorted.at(-1) - least;
@@ -27,13 +27,14 @@ export function equal_breaks(sorted, classes) {
 }
 
 /**
- * Classes whose numbers are near each other: the sum of squared distances from the means of their
- * classes is the least, as Fisher and Jenks want it.
+ * Natural breaks (Fisher, Jenks): classes with the least sum of squared distances of numbers from the
+ * mean of their class.
  */
 export function natural_breaks(sorted, classes) {
   const count = sorted.length;
   const cost = costs_of(sorted);
-  // best[last]: of the numbers up to `last` in so many classes; begins[k][last]: where the k-th of them begins.
+  // best[last]: least sum for the numbers up to `last`, for the current number of classes;
+  // begins[k][last]: where the k-th class begins.
   let best = sorted.map((_, last) => cost(0, last));
   const begins = [sorted.map(() => 0)];
   for (let k = 1; k < Math.min(classes, count); k++) {
@@ -63,12 +64,12 @@ function parts(classes) {
   return Array.from({ length: classes - 1 }, (_, i) => (i + 1) / classes);
 }
 
-/** The squared distances from their mean of the numbers from `first` to `last`. */
+/** The sum of squared distances from their mean, for the numbers from `first` to `last`. */
 function costs_of(sorted) {
   const sums = [0];
   const squares = [0];
   for (const number of sorted) {
-    const shifted = number - sorted[0]; // so that little is lost by the difference below
+    const shifted = number - sorted[0]; // reduces cancellation in the difference below
     sums.push(sums.at(-1) + shifted);
     squares.push(squares.at(-1) + shifted * shifted);
   }
@@ -78,7 +79,7 @@ function costs_of(sorted) {
   };
 }
 
-/** The number with the fewest digits that parts the one at `first` from what lies below it. */
+/** The number with the fewest digits that separates the one at `first` from the numbers below it. */
 function break_before(sorted, first) {
   const [below, at] = [sorted[first - 1] ?? sorted[first], sorted[first]];
   if (!(at > below)) return at;
@@ -89,12 +90,12 @@ function break_before(sorted, first) {
   return at;
 }
 
-/** Without the last digits that a product has of its own. */
+/** Without the rounding noise of the product in the last digits. */
 function multiple(count, step) {
   return Number((count * step).toPrecision(MOST_DIGITS));
 }
 
-/** Each once, and none at the least number, below which there is nothing. */
+/** Sorted and distinct, without the minimum, below which there are no numbers. */
 function ascending(breaks, sorted) {
   return [...new Set(breaks)].filter((number) => number > sorted[0]).sort((a, b) => a - b);
 }

@@ -1,12 +1,12 @@
-// Colours by attribute: the property, and a list of values with colours, or breaks with a ramp.
+// Edits colours by attribute: the property, and either a list of values with colours, or breaks with a ramp.
 
 import { WAYS } from "./class_breaks.js";
 import { format_classes, parse_classes } from "./class_list.js";
 import { CLASS_COLOURS, COLOUR_OF_OTHERS, light_colour_at, rgb_of } from "./colours.js";
 import { button, choose, element, input, mark_wrong, select } from "./elements.js";
 
-// Those of ColorBrewer that lead from one end to another, and so have a colour for any count. All but
-// the last ones can be read by people who take red for green.
+// The sequential and diverging ColorBrewer ramps, which can be interpolated to any number of classes. All
+// but the last ones are safe for red-green colour blindness.
 const RAMPS = [
   ["Light to dark", ["YlGnBu", "YlOrRd", "Blues", "Greens", "Oranges", "Purples", "Reds", "Greys",
     "BuGn", "BuPu", "GnBu", "OrRd", "PuBu", "PuBuGn", "PuRd", "RdPu", "YlGn", "YlOrBr"]],
@@ -24,8 +24,8 @@ const FROM = [["view", "what is in view"], ["all", "all of the layer"]];
 export class ClassEditor {
   /**
    * @param fields of the layer: {name, type: "string"|"integer"|"number"}
-   * @param suggest async, of a field's name, and whether all of the layer is asked for and not only what
-   *   is in view: {values, quantiles} as ask_values() has them
+   * @param suggest async; takes a field name and whether to use the whole layer instead of the current
+   *   view; returns {values, quantiles} as ask_values() does
    */
   constructor(fields, suggest, on_change) {
     this.fields_ = fields;
@@ -50,7 +50,7 @@ export class ClassEditor {
     this.listen_();
   }
 
-  /** Pairs of parameter and value; none while there are no classes yet. */
+  /** Pairs of parameter and value; empty while there are no classes. */
   read() {
     const property = this.property_.value;
     if (property === "") return [];
@@ -75,7 +75,7 @@ export class ClassEditor {
     this.show_rows_();
   }
 
-  /** From now on it can be seen: before, hundreds of rows would be made in vain. */
+  /** Called when the editor becomes visible; until then, building hundreds of rows would be wasted. */
   open() {
     if (this.is_open_) return;
     this.is_open_ = true;
@@ -145,7 +145,7 @@ export class ClassEditor {
 
   async suggest_classes_() {
     const property = this.property_.value;
-    const asked = ++this.asked_; // answers may come in another order
+    const asked = ++this.asked_; // responses may arrive out of order
     this.hint_.textContent = "Looking…";
     const { values, quantiles } = await this.suggest_(property, this.from_.value === "all");
     if (this.property_.value !== property || asked !== this.asked_) return;
@@ -159,7 +159,7 @@ export class ClassEditor {
 
   breaks_of_(quantiles) {
     const breaks = WAYS[this.part_by_.value](quantiles, Number(this.count_.value));
-    return breaks.length ? breaks : quantiles.slice(0, 1); // all are equal
+    return breaks.length ? breaks : quantiles.slice(0, 1); // all values are equal
   }
 
   show_parts_() {
@@ -207,7 +207,7 @@ function classes_of(values) {
   return [...classes, { kind: "others", value: "", colour: COLOUR_OF_OTHERS }];
 }
 
-/** All ramps that can be chosen. */
+/** A select element with all ramps. */
 export function ramp_list() {
   const list = select([]);
   for (const [label, names] of RAMPS) {

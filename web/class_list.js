@@ -1,4 +1,4 @@
-// The parameter `classes`, value:colour,...: read into a list and written from one.
+// Parses and formats the parameter `classes`, value:colour,...
 
 /**
  * @typedef {{kind: "value"|"null"|"others", value: string, colour: string}} ColourClass
@@ -9,7 +9,7 @@ const QUOTED = /^'((?:[^']|'')*)':/;
 const PLAIN = /^([^':,][^:,]*):/;
 const COLOUR = /^([^,(]*(?:\([^)]*\)[^,]*)?)(?:,(?=.)|$)/;
 
-/** @returns {?ColourClass[]} null if `text` is no list of classes */
+/** @returns {?ColourClass[]} null if `text` is not a list of classes */
 export function parse_classes(text) {
   const classes = [];
   for (let rest = text; rest !== "";) {

@@ -1,16 +1,16 @@
-// Colours as the parameters write them (hex digits without '#', CSS names, rgb and rgba), and as
-// the browser wants them.
+// Converts colours from the syntax of the parameters (hex digits without '#', CSS names, rgb and rgba) to
+// that of the browser.
 
-// Told apart by everybody, whichever colours the eye takes for each other: the light scheme of Paul Tol.
+// Distinguishable with any kind of colour blindness: Paul Tol's light scheme.
 export const CLASS_COLOURS = ["77aadd", "ee8866", "eedd88", "ffaabb", "99ddff", "44bb99", "bbcc33",
   "aaaa00"];
 export const COLOUR_OF_OTHERS = "d9dde2";
 
-const GOLDEN_ANGLE = 137.50776405003785; // turned by it, hues stay apart however many there are
-const MIDDLES = [176, 194, 158, 185]; // of the channels: what is near in hue is not as light
-const REACH = 56; // how far they go from it
+const GOLDEN_ANGLE = 137.50776405003785; // hue step that keeps any number of hues distinct
+const MIDDLES = [176, 194, 158, 185]; // of the channels: similar hues differ in lightness
+const REACH = 56; // deviation from the middle
 
-/** A light colour for the one at `position` of things that shall be told apart; none comes twice. */
+/** A light colour for the item at `position`, distinct for every position. */
 export function light_colour_at(position) {
   if (position < CLASS_COLOURS.length) return CLASS_COLOURS[position];
   const middle = MIDDLES[position % MIDDLES.length];
@@ -21,18 +21,18 @@ export function light_colour_at(position) {
   return channel(0) + channel(120) + channel(240);
 }
 
-/** For a style sheet; what is no colour is no danger there. */
+/** For a style sheet; an invalid colour does no harm there. */
 export function css_of(colour) {
   return /^[0-9a-f]+$/i.test(colour) ? `#${colour}` : colour;
 }
 
 let canvas = null;
 
-/** Six hex digits, without the transparency, which a colour input cannot show. */
+/** Six hex digits, without the alpha channel, which a colour input cannot show. */
 export function rgb_of(colour) {
   if (/^[0-9a-f]{6}$/i.test(colour)) return colour.toLowerCase();
   canvas ??= new OffscreenCanvas(1, 1).getContext("2d");
-  canvas.fillStyle = "#000"; // stays so if it is none
+  canvas.fillStyle = "#000"; // unchanged if `colour` is invalid
   canvas.fillStyle = css_of(colour);
   const parsed = canvas.fillStyle;
   if (parsed.startsWith("#")) return parsed.slice(1);

@@ -1,8 +1,8 @@
-// The tiles of one pane of the map, which show all layers that are on. Old tiles stay until the new
-// ones have come, so that the map does not blink; those that fail are kept in mind and asked for again.
+// The tiles of one pane of the map, which show all layers that are on. Old tiles stay until the new ones
+// have loaded, so that the map does not flicker. Failed tiles are recorded and requested again.
 /* global L */
 
-/** Where a tile is missing, the one of the zoom before stays to be seen, as for one that is on its way. */
+/** Where a tile failed, the tile of the previous zoom stays visible, as it does for a loading tile. */
 const PatientTiles = L.TileLayer.extend({
   _tileReady(coords, error, tile) {
     if (error && this._map) this.fire("tileerror", { error, tile, coords });
@@ -15,21 +15,21 @@ export class CombinedTiles {
    * @param map the Leaflet map
    * @param url address of the server's tiles folder, ending in '/'
    * @param pane name of a pane of the map
-   * @param on {failed(url), refused_gone(), came(), loading(how many are wanted, of how many)}
+   * @param on {failed(url), refused_gone(), came(), loading(tiles still loading, all tiles)}
    */
   constructor(map, url, pane, on) {
     this.map_ = map;
     this.url_ = url;
     this.pane_ = pane;
     this.on_ = on;
-    this.shown_ = []; // {key, request, tiles: of Leaflet, images: by place, failed: by image}
+    this.shown_ = []; // {key, request, tiles: Leaflet layer, images: by place, failed: by image}
     this.outdated_ = [];
-    this.split_ = new Set(); // keys of requests that the server would not draw as one
-    this.refused_ = new Set(); // images that are not asked for again
+    this.split_ = new Set(); // keys of requests that the server refused to draw in one tile
+    this.refused_ = new Set(); // images that are not requested again
     this.requests_ = [];
   }
 
-  /** Shows what tile_requests() says; [] shows nothing. */
+  /** Shows the result of tile_requests(); [] shows nothing. */
   show(requests) {
     this.requests_ = requests;
     const wanted = requests.flatMap((request) =>
@@ -49,17 +49,17 @@ export class CombinedTiles {
     this.tidy_();
   }
 
-  /** How many tiles have been asked for in vain. */
+  /** The number of failed tiles. */
   missing() {
     return this.shown_.reduce((sum, { failed }) => sum + failed.size, 0);
   }
 
-  /** Whether some of those are not to be had, however often one asks. */
+  /** Whether the server has refused some of them for good. */
   has_refused() {
     return this.refused_.size > 0;
   }
 
-  /** Asks again for every tile that is missing. */
+  /** Requests every missing tile again. */
   retry() {
     for (const { failed, waiting } of this.shown_) {
       for (const [image, url] of [...failed]) {
@@ -73,8 +73,8 @@ export class CombinedTiles {
   }
 
   /**
-   * The server will not draw the tile at `url`: its layers are drawn one by one from now on.
-   * @returns whether that is possible; else the tile is not asked for again
+   * The server refuses to draw the tile at `url`: from now on its layers are requested one by one.
+   * @returns whether that is possible; otherwise the tile is not requested again
    */
   give_way(url) {
     const sheet = this.shown_.find(({ failed }) => [...failed.values()].includes(url));
@@ -89,7 +89,7 @@ export class CombinedTiles {
   }
 
   new_sheet_(request) {
-    // {r} is "@2x" on a dense screen. Braces of a name are encoded: only ours are replaced.
+    // {r} is "@2x" on a high-density screen. Braces in names are encoded, so only ours are replaced.
     const tiles = new PatientTiles(`${this.url_}${request.path}/{z}/{x}/{y}{r}.png${request.query}`, {
       minZoom: Math.max(request.min_zoom, this.map_.getMinZoom()),
       maxZoom: Math.min(request.max_zoom, this.map_.getMaxZoom()),
@@ -119,7 +119,7 @@ export class CombinedTiles {
       this.tell_loading_();
       this.on_.failed(tile.src);
     });
-    // One that is no longer wanted before it has come is aborted, and not unloaded.
+    // A tile that is no longer needed before it has loaded is aborted, not unloaded.
     tiles.on("tileunload tileabort", ({ tile, coords }) => {
       sheet.images.delete(place_of(coords));
       sheet.waiting.delete(tile);
@@ -140,7 +140,7 @@ export class CombinedTiles {
     this.on_.refused_gone();
   }
 
-  /** Where all of the new has come, what is old would shine through it. */
+  /** Hides old tiles where all new ones have loaded, because they would show through. */
   hide_outdated_at_(place) {
     const has_come = ({ images, waiting, failed }) => {
       const image = images.get(place);
@@ -153,7 +153,7 @@ export class CombinedTiles {
     }
   }
 
-  /** Takes old tiles away when all new ones are there. */
+  /** Removes old tiles when all new ones have loaded. */
   tidy_() {
     const is_whole = this.shown_.every(({ waiting, failed }) => !waiting.size && !failed.size);
     if (is_whole) {

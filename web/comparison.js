@@ -1,4 +1,4 @@
-// Two pictures of one map side by side: what lies left of the divider, and what lies right of it.
+// Compares two renderings of the map side by side, on the left and the right of a divider.
 
 import { element, input } from "./elements.js";
 
@@ -8,7 +8,7 @@ export class Comparison {
   /**
    * @param map the Leaflet map
    * @param left, right panes of the map
-   * @param on_change called with the part of the width that is left of the divider, 0 to 1
+   * @param on_change called with the fraction of the width on the left of the divider, 0 to 1
    */
   constructor(map, left, right, on_change) {
     this.map_ = map;
@@ -27,7 +27,7 @@ export class Comparison {
     this.show(null);
   }
 
-  /** `part` as on_change tells it; null shows the left picture alone. */
+  /** `part`: as for on_change; null shows only the left rendering. */
   show(part, left_text = "", right_text = "") {
     this.node_.hidden = part === null;
     if (part !== null) this.slider_.value = part;
@@ -43,14 +43,14 @@ export class Comparison {
       return;
     }
     const { x: width, y: height } = this.map_.getSize();
-    // The middle of the slider's handle, which stays inside the window.
+    // The centre of the slider's handle, which stays inside the window.
     const middle = HANDLE / 2 + Number(this.slider_.value) * (width - HANDLE);
     this.line_.style.left = `${middle}px`;
     this.left_.style.clipPath = this.clip_path_(0, middle, height);
     this.right_.style.clipPath = this.clip_path_(middle, width, height);
   }
 
-  /** Panes move with the map: the path is in their coordinates. */
+  /** The path is in the coordinates of the panes, which move with the map. */
   clip_path_(left, right, height) {
     const { x, y } = this.map_.containerPointToLayerPoint([0, 0]);
     const corner = (dx, dy) => `${x + dx}px ${y + dy}px`;

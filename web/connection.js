@@ -1,20 +1,20 @@
-// Whether the server answers. When it does not, we ask again with growing pauses until it does.
+// Tracks whether the server responds. If it does not, retries with growing pauses until it does.
 
 const FIRST_PAUSE_S = 1;
 const LONGEST_PAUSE_S = 30;
-const LOADING_PAUSE_S = 1; // so that the percentage moves
-const JITTER = 0.2; // pages that lost a server together shall not come back together
+const LOADING_PAUSE_S = 1; // keeps the percentage current
+const JITTER = 0.2; // spreads the retries of pages that lost the server at the same time
 const ANSWER_MS = 15_000;
 const MOST_NAMED = 6;
-const QUIET_FAILURES = 1; // of a server that is there
+const QUIET_FAILURES = 1; // not reported while the server is there
 const AWAY = ["lost", "loading"];
-const GATEWAY = [502, 504]; // a proxy says that there is nobody behind it
+const GATEWAY = [502, 504]; // a proxy reports that the server behind it does not respond
 
 export class Connection {
   /**
    * @param base address of the server's folder
-   * @param on {tell(text, {aside, bars, action}), back(was_away), refused(url, problem)}: what to say, "" if
-   *   nothing; the server answers again; it will not answer `url`, and why: {status, detail, parameter}
+   * @param on {tell(text, {aside, bars, action}), back(was_away), refused(url, problem)}: shows a message, ""
+   *   for none; the server responds again; it refuses `url`, with the reason {status, detail, parameter}
    */
   constructor(base, on) {
     this.base_ = base;
@@ -29,12 +29,12 @@ export class Connection {
     });
   }
 
-  /** Something came: the next failure is the first one again. */
+  /** A request succeeded: resets the failure count. */
   worked() {
     if (!this.is_waiting_) this.failures_ = 0;
   }
 
-  /** `url` could not be had as a picture: finds out why, waits, and calls back. */
+  /** Loading the image at `url` failed: finds out why, waits, and calls back. */
   async failed(url) {
     this.failed_.add(url);
     if (this.is_waiting_) return;
@@ -49,20 +49,20 @@ export class Connection {
       }
       was_away ||= AWAY.includes(trouble?.kind);
       await this.until_better_(trouble ?? { kind: "unclear" });
-      this.failed_.clear(); // all of them are asked for again
+      this.failed_.clear(); // all of them are requested again
     }
     this.is_waiting_ = false;
     this.on_.back(was_away);
   }
 
-  /** Waits once, or for as long as the server is not there; for those who ask for `url` themselves. */
+  /** Waits once, or for as long as the server is away; for callers that send the request themselves. */
   async after(trouble) {
     this.is_waiting_ = true;
     await this.until_better_(trouble);
     this.is_waiting_ = false;
   }
 
-  /** Nothing is waited for any more. */
+  /** Nothing is pending any more: clears the message. */
   hush() {
     this.failures_ = 0;
     this.on_.tell("");
@@ -73,7 +73,7 @@ export class Connection {
     if (trouble.kind === "busy" || trouble.kind === "loading") {
       trouble = (await this.trouble_of_ready_()) ?? trouble;
     }
-    // At least one pause, or whoever fails though the server is there would ask without end.
+    // At least one pause: otherwise requests that fail while the server is up would repeat in a busy loop.
     do {
       await this.pause_(trouble);
       const now = await this.trouble_of_ready_();
@@ -95,7 +95,7 @@ export class Connection {
       };
     });
     for (let left = seconds; left > 0 && !is_awake; left = (end - performance.now()) / 1000) {
-      // The same whole number of seconds is not said for a fraction more.
+      // Does not show the same number of seconds again for a remaining fraction.
       const told = Math.max(1, Math.ceil(left - 0.05));
       if (words) this.on_.tell(words, this.more_(trouble, told));
       await Promise.race([pressed, sleep(Math.min(1000 * left, 1000 * (left - told + 1) + 10))]);
@@ -113,11 +113,11 @@ export class Connection {
     if (kind === "loading") return retry_after ?? LOADING_PAUSE_S;
     const growing = Math.min(FIRST_PAUSE_S * 2 ** this.failures_, LONGEST_PAUSE_S);
     this.failures_++;
-    // Jitter only prolongs what the server itself wished for.
+    // Jitter never shortens the pause that the server requested.
     return Math.max(growing, retry_after ?? 0) * (1 + JITTER * Math.random());
   }
 
-  /** null when the server is ready, or says nothing of that. */
+  /** null if the server is ready, or does not report readiness. */
   async trouble_of_ready_() {
     const trouble = await trouble_at(new URL("ready", this.base_));
     if (trouble?.kind !== "busy") return trouble;
@@ -125,7 +125,7 @@ export class Connection {
   }
 }
 
-/** Why `url` cannot be had: {kind: "lost", "busy" or "refused", ...}; null if it can. */
+/** Why `url` cannot be loaded: {kind: "lost", "busy" or "refused", ...}; null if it can. */
 export async function trouble_at(url) {
   let response;
   try {
@@ -136,7 +136,7 @@ export async function trouble_at(url) {
   return trouble_in(response);
 }
 
-/** The same of an answer that has come. */
+/** The same for a response that has arrived. */
 export async function trouble_in(response) {
   const { status } = response;
   if (response.ok) {
@@ -178,7 +178,7 @@ function words_for({ kind, words, status }) {
   return "Some tiles could not be loaded.";
 }
 
-/** Which layers are read, and how far; those that are done make room for others. */
+/** The layers that are loading, with their progress; finished layers make room for others. */
 function progress_of(layers) {
   const open = layers.filter(({ percent }) => Number.isFinite(percent) && percent < 100);
   const bars = open.slice(0, MOST_NAMED).map(({ name, title, percent }) =>

@@ -1,15 +1,15 @@
-// The three things that this map can do and others cannot, to be tried by one click each.
+// Three demonstrations of features that other map servers lack, each started with one click.
 
 import { STEPS, simplify_in_words } from "./detail_panel.js";
 import { button, element, input } from "./elements.js";
 
-const FIRST_PIXELS = 4; // what is seen at once
-const PIXELS_APART = 8; // at which gaps are wide
+const FIRST_PIXELS = 4; // a difference that is clearly visible
+const PIXELS_APART = 8; // enough for wide gaps
 
 /**
  * For the TryPanel. `act` is {simplify(pixels), compare_apart(pixels), restyle(look), looks(),
  * is_shown(look), picture_of(look): the address of a tile}; `has_apart`: polygons that share borders are
- * served apart, too.
+ * also served separately.
  */
 export function demonstrations(act, { has_apart }) {
   return [simplify_by_slider(act), ...(has_apart ? [gapless_against_apart(act)] : []),

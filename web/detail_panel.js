@@ -1,4 +1,4 @@
-// What holds for all layers: how far they are simplified, and what is drawn to look inside.
+// Settings for all layers: simplification, and debug rendering.
 
 import { choose, element, input, select } from "./elements.js";
 
@@ -10,7 +10,7 @@ const COMPARISONS = [["full", "Compare with every vertex"],
 const DEBUG = [["mesh", "Trapezoids"], ["vertices", "Vertices"], ["faces", "Faces"],
   ["junctions", "Junctions"], ["tile", "Tile borders"]];
 
-/** "0.25 px", or in words that nothing is left out. */
+/** "0.25 px", or "every vertex". */
 export function simplify_in_words(pixels) {
   return pixels === 0 ? "every vertex" : `${pixels} px`;
 }
@@ -51,8 +51,8 @@ export class DetailPanel {
   }
 
   /**
-   * {shared: Map of parameters, without those that have their usual value; against: "full" or
-   * "apart", null if nothing is compared}.
+   * {shared: Map of parameters, without those at their default; against: "full" or "apart", null if
+   * nothing is compared}.
    */
   read() {
     const debug = this.debug_.filter(({ checked }) => checked).map(({ value }) => value);
@@ -66,12 +66,12 @@ export class DetailPanel {
     return { shared, against: this.comparisons_.find(({ checked }) => checked)?.value ?? null };
   }
 
-  /** `usual` is what holds where `shared` says nothing: a Map of parameters, perhaps not of all. */
+  /** `usual` are the defaults for parameters missing in `shared`: a Map, possibly incomplete. */
   show({ shared, against }, usual) {
     this.usual_ = new Map([...BUILTIN, ...usual]);
     const shown = new Map([...this.usual_, ...shared]);
     this.pixels_ = Number(shown.get("simplify"));
-    // An address may hold any number; the slider then stands at the next smaller step.
+    // An address may contain any number; the slider then shows the next smaller step.
     this.simplify_.value = STEPS.findLastIndex((step) => step <= this.pixels_);
     this.tell_(this.pixels_);
     this.strict_.checked = shown.get("topology") === "strict";
@@ -85,7 +85,7 @@ export class DetailPanel {
     for (const box of this.comparisons_) box.checked = box.value === against;
   }
 
-  /** How far it is simplified now, in pixels. */
+  /** The current simplification tolerance, in pixels. */
   get pixels() {
     return this.pixels_;
   }

@@ -1,4 +1,4 @@
-// Elements of the page, made without markup: nothing that a server says can become a tag.
+// Creates elements of the page without markup, so that no text from a server can become a tag.
 
 export function element(tag, class_name, ...children) {
   const made = document.createElement(tag);
@@ -21,7 +21,7 @@ export function button(text, attributes = {}) {
   return made;
 }
 
-/** `options` are pairs of value and text. */
+/** `options`: pairs of value and text. */
 export function select(options, attributes = {}) {
   const made = document.createElement("select");
   made.append(...options.map(([value, text]) => new Option(text, value)));
@@ -29,7 +29,7 @@ export function select(options, attributes = {}) {
   return made;
 }
 
-/** Chooses `value`, which becomes an option if it is none: it may come from an address. */
+/** Selects `value`, and adds it as an option if missing, because it may come from an address. */
 export function choose(list, value) {
   if (![...list.options].some((option) => option.value === value)) {
     list.append(new Option(value, value));
@@ -37,7 +37,7 @@ export function choose(list, value) {
   list.value = value;
 }
 
-/** Tells people and machines that what stands in `control` is not taken. */
+/** Marks the value of `control` as invalid, for people and for assistive technology. */
 export function mark_wrong(control, is_wrong) {
   if (is_wrong) control.setAttribute("aria-invalid", "true");
   else control.removeAttribute("aria-invalid");

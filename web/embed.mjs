@@ -1,16 +1,16 @@
-// Makes a C++ source of the viewer, for the program to have it within itself: every file as it is, and
-// compressed by gzip and by brotli.
+// Generates a C++ source that embeds the viewer in the binary: every file uncompressed, and compressed with
+// gzip and with brotli.
 //
 //   node embed.mjs SOURCE DEPENDENCIES
 //
-// DEPENDENCIES becomes a rule of make, which names the files that the source is made of.
+// DEPENDENCIES receives a make rule that lists the input files of the source.
 import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { viewerFiles } from "./assemble.mjs";
 
 const COMPRESSIBLE = /\.(css|html|js|json|mjs|svg|txt)$/;
-const LEAST_TO_COMPRESS = 1024; // as kLeastToCompress of server/http/content_encoding.h
+const LEAST_TO_COMPRESS = 1024; // same as kLeastToCompress in server/http/content_encoding.h
 
 function compressed(name, bytes) {
   if (!COMPRESSIBLE.test(name) || bytes.length < LEAST_TO_COMPRESS) return [];
@@ -23,7 +23,7 @@ function compressed(name, bytes) {
   return [gzipSync(bytes, { level: 9 }), brotliCompressSync(bytes, options)];
 }
 
-/** Lines of numbers: a literal of that length would be more than compilers have to take. */
+/** An array of numbers: a string literal of that length would exceed compiler limits. */
 function arrayText(name, bytes) {
   const lines = [];
   for (let at = 0; at < bytes.length; at += 32) lines.push(bytes.subarray(at, at + 32).join(","));

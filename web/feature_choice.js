@@ -1,5 +1,5 @@
-// The place that was clicked, what lies there, and which of it is chosen: told in a panel, and outlined
-// on the map.
+// The clicked place, the features there, and the selected one, which are shown in a panel and outlined on
+// the map.
 
 import { FeaturePanel, ask_features } from "./feature_panel.js";
 import { path_of_layers, query_part, taken_by } from "./tile_query.js";
@@ -8,25 +8,25 @@ import { pixels_across, wrapped_longitude } from "./view_bounds.js";
 const DOUBLE_CLICK_MS = 250;
 
 const OF_SHAPES = ["simplify", "topology"];
-// Over everything, whatever the style: a line that is seen on light and on dark, and a tint that hides
-// nothing.
+// The outline of the selection, on top of every style: a line visible on light and dark colours, and a
+// tint that hides nothing.
 const TINT = "ffffff40";
 const LINE = "c2185b";
 const OUTLINE = [["highlight-stroke", LINE], ["stroke", LINE],
   ["stroke-width", "2.5"], ["stroke-opacity", "1"], ["stroke-dasharray", "1,0"],
   ["fill-opacity", "1"], ["opacity", "1"], ["pattern", "none"]];
-const SMALL = 32; // pixels; an outline fades with what is hardly larger than the line is wide
-// Of what is large, ponds and islets would only be specks of colour.
+const SMALL = 32; // pixels; outlines of features hardly larger than the line width fade
+// In large features, ponds and islets would only be specks of colour.
 const LARGE = 200; // pixels
-const PIXELS_IF_LARGE = 1; // to which its outline is simplified at least
+const PIXELS_IF_LARGE = 1; // minimum tolerance for the outline of a large feature
 
 export class FeatureChoice {
   /**
    * @param map the Leaflet map
    * @param node of the panel
-   * @param look gives {base; layers: those that are on, {name, style}, the lowest first; catalog; shared: what is
-   *   set for all; shapes: the same, with what the named style sets}
-   * @param on {change(), called after the place or the choice has changed; go_to(box in degrees, name
+   * @param look returns {base; layers: those that are on, {name, style}, the lowest first; catalog; shared:
+   *   parameters of all layers; shapes: the same, including those of the named style}
+   * @param on {change(), called after the place or the selection has changed; go_to(box in degrees, name
    *   of a layer); title_of(name)}
    */
   constructor(map, node, look, on) {
@@ -56,7 +56,7 @@ export class FeatureChoice {
     return { at: this.at_, chosen: this.chosen_ };
   }
 
-  /** What the address says; nothing is told where `at` is null. */
+  /** Restores the state from the address; hides the panel if `at` is null. */
   show({ at, chosen }) {
     this.chosen_ = chosen;
     if (at) {
@@ -67,7 +67,7 @@ export class FeatureChoice {
     }
   }
 
-  /** The tiles that outline what is chosen: none or one, see tile_requests(). */
+  /** The requests for the outline of the selected feature: none or one, see tile_requests(). */
   requests() {
     const { layers, catalog, shapes } = this.look_();
     const { layer: name, id } = this.chosen_ ?? {};
@@ -108,13 +108,13 @@ export class FeatureChoice {
     if (is_by_key) this.panel_.focus();
   }
 
-  /** How large on the screen it is that is chosen; as long as that is not known, large. */
+  /** The size of the selected feature on the screen; LARGE while unknown. */
   pixels_across_() {
     const found = this.found_.find((feature) => this.is_chosen_(feature));
     return found ? pixels_across(this.map_, found.part_bbox ?? found.bbox) : LARGE;
   }
 
-  /** `feature` of those found, or nothing. */
+  /** Selects `feature`, one of those found, or nothing. */
   choose_(feature, otherwise = "There is nothing here.") {
     this.chosen_ = feature ? { layer: feature.layer, id: String(feature.id) } : null;
     if (feature) this.panel_.show(this.found_, feature);
@@ -135,7 +135,7 @@ export class FeatureChoice {
   }
 }
 
-/** Calls `act` with the place of a click that is not the first half of a double click. */
+/** Calls `act` with the place of each click that does not start a double click. */
 function on_single_click(map, act) {
   let waiting = null;
   map.on("click", ({ latlng }) => {

@@ -1,11 +1,11 @@
-// What lies under a place: the features with their attributes, one of them chosen.
+// The features at a place with their attributes, one of them selected.
 
 import { button, element } from "./elements.js";
 import { path_of_layers, parameters_of_layers, query_part } from "./tile_query.js";
 
 /**
- * The features of `layers` ({name, style}, the lowest first) as they are drawn at `zoom`, the topmost
- * first. Throws an Error with words for people.
+ * The features of `layers` ({name, style}, the lowest first) at a place, as drawn at `zoom`, the topmost
+ * first. Throws an Error with a user-readable message.
  */
 export async function ask_features(base, layers, shared, { lat, lon }, zoom) {
   const parameters = [["z", zoom], ...parameters_of_layers(layers, shared)];
@@ -43,7 +43,7 @@ export class FeaturePanel {
     this.fill_(element("h2", "", "Features here"), [element("p", "hint", text)]);
   }
 
-  /** `features` of an answer, `chosen` one of them. */
+  /** `features` of a response, `chosen` one of them. */
   show(features, chosen) {
     const title = element("h2", "", this.name_of_(chosen));
     if (chosen.title) title.append(element("span", "of", this.act_.title_of(chosen.layer)));

@@ -1,18 +1,18 @@
-// The list of layers, the topmost first, under the headings of their groups: searched, switched on and
-// off together, put in another order.
+// The list of layers, the topmost first, under group headings, with search, switches for groups, and
+// reordering.
 
 import { button, element, input } from "./elements.js";
 import { make_movable } from "./row_order.js";
 
-const FEW = 3; // can be switched one by one
-const AT_A_GLANCE = 8; // need no search
+const FEW = 3; // up to so many can be switched one by one
+const AT_A_GLANCE = 8; // up to so many need no search
 
 export class LayerList {
   /**
    * @param tools, list empty elements of the page
    * @param layers of the catalog
-   * @param rows of layer_row(), one for each
-   * @param on {switch_all(numbers of layers, is_on), zoom_to(numbers), reorder(numbers, the lowest first)}
+   * @param rows from layer_row(), one per layer
+   * @param on {switch_all(layer numbers, is_on), zoom_to(numbers), reorder(numbers, the lowest first)}
    */
   constructor(tools, list, layers, rows, on) {
     this.list_ = list;
@@ -26,7 +26,7 @@ export class LayerList {
       this.move_(this.number_of_(row), this.number_of_(other)));
   }
 
-  /** `order`: numbers of all layers, the lowest first. */
+  /** `order`: the numbers of all layers, the lowest first. */
   show_order(order) {
     this.order_ = order;
     this.groups_ = [];
@@ -44,7 +44,7 @@ export class LayerList {
     this.show_groups();
   }
 
-  /** After layers were switched on or off. */
+  /** Updates the group boxes after layers were switched on or off. */
   show_groups() {
     for (const { box, numbers } of this.groups_) {
       const on = numbers.filter((i) => this.rows_[i].box.checked).length;
@@ -96,7 +96,7 @@ export class LayerList {
     this.told_.textContent = words.length && this.seen_().length === 0 ? "No layer has that name." : "";
   }
 
-  /** Those that the search shows, the topmost first. */
+  /** The layers matched by the search, the topmost first. */
   seen_() {
     return [...this.order_].reverse().filter((i) => !this.rows_[i].row.hidden);
   }
@@ -105,7 +105,7 @@ export class LayerList {
     return this.rows_.findIndex((one) => one.row === row);
   }
 
-  /** Layer `i` comes to lie where `other` is, which makes room for it. */
+  /** Moves layer `i` to the position of `other`, which makes room for it. */
   move_(i, other) {
     const to = this.order_.indexOf(other);
     const order = this.order_.filter((number) => number !== i);

@@ -1,4 +1,4 @@
-// One row of the list of layers: on or off, colour, and all that makes the style.
+// One row of the list of layers: a switch, the colour, and the style form.
 
 import { button, element, input } from "./elements.js";
 import { over } from "./named_styles.js";
@@ -7,13 +7,13 @@ import { StyleForm } from "./style_form.js";
 /**
  * The row of `layer`. `on` is {change({is_on, style}), called whenever the user changes something;
  * zoom_to()}; see StyleForm for the rest. Returns the element, its handle, the box that switches it on,
- * and functions that show another such state, with the `usual` style, and what the server finds wrong
- * with the style.
+ * and functions that show a given state with the `usual` style, and a problem that the server reports
+ * for the style.
  */
 export function layer_row(layer, builtin_fill, suggest, on) {
   const title = String(layer.title || layer.name);
   const box = input("checkbox");
-  // Features with colours by class have none in common.
+  // With colours by class, there is no single colour to show.
   let usual = new Map();
   const show_colour = (style) => (colour.hidden = over(usual, style).has("color-by"));
   const change = () => {
@@ -44,7 +44,7 @@ export function layer_row(layer, builtin_fill, suggest, on) {
       row.scrollIntoView({ block: "start" });
     }
   });
-  /** @returns whether there is something wrong */
+  /** @returns whether there is a problem */
   const show_where_wrong = () => {
     const told = form.node.querySelector(".problem");
     told?.scrollIntoView({ block: "center" });

@@ -1,4 +1,4 @@
-// What the server says about a style: the entries of its legend, or what is wrong with it.
+// The server's response for a style: its legend entries, or its problem.
 
 import { css_of } from "./colours.js";
 import { element } from "./elements.js";
@@ -15,14 +15,14 @@ const PATTERNS = {
     "transparent 0) 0 0 / 8px 8px"],
 };
 
-const MOST_NAMED = 3; // in one row
+const MOST_NAMED = 3; // names in one row
 const LOOK = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity"];
 
 /**
- * Asks for the legend of one layer in a style, over the one that is named `under`, if any, which is also
- * how a style is proved before tiles are asked for. @returns {entries, and
- * values_title: what the joined values are, if any colour it} or {problem: {detail, parameter}}; neither if
- * there is no answer.
+ * Requests the legend of one layer in a style, on top of the named style `under`, if any. This also
+ * validates a style before tiles are requested. @returns {entries, and values_title: the title of the
+ * joined values, if they colour the layer} or {problem: {detail, parameter}}; neither if there is no
+ * response.
  */
 export async function ask_legend(base, name, style, under) {
   const parameters = parameters_of_layers([{ name, style }], under ? [["style", under]] : []);
@@ -44,15 +44,15 @@ export async function ask_legend(base, name, style, under) {
       };
     }
   } catch {
-    // The tiles will tell whether the server is there.
+    // The tile requests will show whether the server is there.
   }
   return {};
 }
 
 /**
- * One layer of the legend: `entries` of the server, those that look alike together; `style` for what
- * they do not tell.
- * @param layer {title, and title_attribute, where each value stands for one feature}
+ * The legend section of one layer: the server's `entries`, grouped by look; `style` supplies properties
+ * that they do not contain.
+ * @param layer {title, and title_attribute, whose values each identify one feature}
  */
 export function legend_section({ title, title_attribute }, entries, style) {
   if (entries.length <= 1) {
@@ -68,7 +68,7 @@ export function legend_section({ title, title_attribute }, entries, style) {
   return element("section", "", element("h2", "", title), element("ul", "", ...rows));
 }
 
-/** Entries in their order, each with those that look like it. */
+/** Entries in their order, grouped by look. */
 function alike(entries) {
   const groups = new Map();
   for (const entry of entries) {

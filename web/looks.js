@@ -1,13 +1,12 @@
-// Ways to draw a map that go with any layers: what a click on "Restyle" offers beside the styles of the
-// server.
+// Styles that work with any layers, which "Restyle" offers in addition to the styles of the server.
 
 import { light_colour_at } from "./colours.js";
 
-// Land before water, as layers often lie.
+// Land colours before water colours, the usual layer order.
 const FIRST = ["eedd88", "99ddff", "bbcc33", "ffaabb", "77aadd", "ee8866", "44bb99", "aaaa00"];
 const colour_at = (i) => FIRST[i] ?? light_colour_at(i);
 
-/** Each gives the parameters of the layer at position `i`. */
+/** Each returns the parameters of the layer at position `i`. */
 const LOOKS = {
   Pastel: (i) => [["fill", colour_at(i)], ["fill-opacity", "0.75"], ["stroke", "ffffff"],
     ["stroke-width", "0.8"], ["pattern", "none"]],
@@ -19,10 +18,10 @@ const LOOKS = {
 };
 
 /**
- * All that can be chosen: {name, title, styles}, where `name` is that of a style of the server, if any,
- * and `styles` has the parameters of each layer of the catalog, if any are set.
+ * All looks: {name, title, styles}, where `name` is that of a style of the server, if any, and `styles`
+ * contains the parameters of each layer of the catalog, if any are set.
  * @param named names of the server's styles
- * @param usual_of gives what is usual for the layer at a position: a Map of parameters
+ * @param usual_of returns the default style of the layer at a position: a Map of parameters
  */
 export function all_looks(named, count, usual_of) {
   const layers = [...Array(count).keys()];
@@ -35,7 +34,7 @@ export function all_looks(named, count, usual_of) {
   ];
 }
 
-/** Where features usually have colours by class, all have the fill. */
+/** Replaces colours by class in the default style by the single fill. */
 function with_one_colour(style, usual) {
   if (!usual.has("color-by")) return style;
   return new Map([...style, ["color-by", usual.get("color-by")],

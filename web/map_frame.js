@@ -1,4 +1,4 @@
-// The map itself, and how the part of it is measured that no panel covers.
+// The map, and the measurement of its part that no panel covers.
 /* global L */
 
 import { attribution_nodes, link_to } from "./attribution.js";
@@ -6,7 +6,7 @@ import { bounds_around } from "./view_bounds.js";
 
 export const MAX_ZOOM = 22;
 const MAX_LATITUDE = 85.0511287798066;
-const MARGIN = 16; // pixels between what is shown and the edge of what can be seen of the map
+const MARGIN = 16; // pixels between the shown content and the edge of the visible part of the map
 
 export function make_map() {
   const map = L.map("map", {
@@ -16,27 +16,27 @@ export function make_map() {
     maxBounds: [[-MAX_LATITUDE, -1e6], [MAX_LATITUDE, 1e6]],
     maxBoundsViscosity: 1,
     worldCopyJump: true,
-    // Old tiles show through new ones that fade in, and where frames come late (a tile fades for
-    // 200 ms, Leaflet looks after 250) they never go.
+    // Old tiles show through new ones that fade in. If frames are late, they are never removed: a tile
+    // fades for 200 ms, and Leaflet checks after 250.
     fadeAnimation: false,
-    wheelPxPerZoomLevel: 120, // one notch of a mouse wheel is one zoom
+    wheelPxPerZoomLevel: 120, // one notch of the mouse wheel is one zoom level
   });
   L.control.scale({ position: "bottomleft", imperial: false }).addTo(map);
   tell_keys_from_pointers();
   return map;
 }
 
-/** A pane for tiles; those that are made later lie above. */
+/** A pane for tiles; panes created later are on top. */
 export function make_pane(map, name) {
   const pane = map.createPane(name);
-  pane.style.zIndex = 200; // where Leaflet has its own tiles
+  pane.style.zIndex = 200; // as for Leaflet's own tile pane
   map.on("move resize", () => align_to_screen(map, pane));
   return pane;
 }
 
 /**
- * Leaflet puts tiles on whole pixels of the page, which on many screens have 1.25, 1.5 or 2.75 pixels of the
- * screen: where two tiles meet within one of those, a line would show. So the pane is moved by less than one.
+ * Leaflet places tiles at whole CSS pixels, which on many screens are 1.25, 1.5 or 2.75 device pixels. If
+ * two tiles meet within a device pixel, a line shows. The pane is therefore moved by less than one pixel.
  */
 function align_to_screen(map, pane) {
   const ratio = window.devicePixelRatio;
@@ -46,8 +46,8 @@ function align_to_screen(map, pane) {
 }
 
 /**
- * Leaflet's own control takes markup; ours takes nodes, so that no text can become markup. Returns a
- * function that shows lines.
+ * Leaflet's own control accepts markup; this one accepts DOM nodes, so that no text can become markup.
+ * Returns a function that shows lines.
  */
 export function make_attribution(map) {
   const control = L.control({ position: "bottomright" });
@@ -58,7 +58,7 @@ export function make_attribution(map) {
     ...lines.flatMap((line) => [" | ", ...attribution_nodes(line)]));
 }
 
-/** Where all of `boxes` can be seen, or the world if they span most of it from side to side and in height. */
+/** Fits the map to `boxes`, or to the world if they span most of its width and height. */
 export function show_boxes(map, boxes, max_zoom = MAX_ZOOM) {
   const all = bounds_around(boxes);
   const is_world = all.isValid() && all.getEast() - all.getWest() >= 180 &&
@@ -66,12 +66,12 @@ export function show_boxes(map, boxes, max_zoom = MAX_ZOOM) {
   if (all.isValid() && !is_world) {
     map.fitBounds(all, { ...free_padding(map), maxZoom: max_zoom });
   } else {
-    // The smallest whole zoom at which the world is as high as the window.
+    // The smallest integer zoom at which the world is at least as high as the window.
     map.setView([25, 10], Math.max(1, Math.ceil(Math.log2(map.getSize().y / 256))));
   }
 }
 
-/** Shows `place` in the middle of what no panel covers. */
+/** Centres `place` in the part of the map that no panel covers. */
 export function show_place_in_free_part(map, { lat, lon, zoom }) {
   const { left, top, right, bottom } = free_part(map);
   const { x: width, y: height } = map.getSize();
@@ -80,7 +80,7 @@ export function show_place_in_free_part(map, { lat, lon, zoom }) {
   map.setView(map.unproject(centre, zoom), zoom);
 }
 
-/** How far panels reach into the map, as Leaflet takes it. */
+/** The padding for the panels, in the form that Leaflet expects. */
 function free_padding(map) {
   const { left, top, right, bottom } = free_part(map);
   const { x: width, y: height } = map.getSize();
@@ -90,7 +90,7 @@ function free_padding(map) {
   };
 }
 
-/** The map without the panels, in pixels of it: of each panel a whole side is left out, the smallest. */
+/** The map without the panels, in its pixels: each panel excludes a whole side, the smallest one possible. */
 function free_part(map) {
   const { x: width, y: height } = map.getSize();
   const free = { left: 0, top: 0, right: width, bottom: height };
@@ -110,8 +110,8 @@ function free_part(map) {
 }
 
 /**
- * Leaflet gives the map the focus when it is clicked, which browsers may take for a reason to show where
- * the focus is: whoever uses a pointer sees that anyway.
+ * Leaflet focuses the map on a click, after which browsers may draw a focus ring. Pointer users do not
+ * need it.
  */
 function tell_keys_from_pointers() {
   const { classList } = document.documentElement;

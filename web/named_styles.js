@@ -1,18 +1,18 @@
-// Styles that the server knows by name, and what is usual for a layer: its own style, and over it
-// the named one.
+// The named styles of the server, and the default style of a layer: its own style, overridden by the
+// named one.
 
 import { SHARED_PARAMETERS } from "./tile_query.js";
 
-// They make sense together only.
+// These only make sense together.
 export const CLASS_PARAMETERS = ["color-by", "classes", "breaks", "ramp"];
 
-/** Those of the configuration; [] if the server does not tell. */
+/** The names of the styles in the configuration; [] if the server does not return them. */
 export async function load_style_names(base) {
   const told = await ask(new URL("styles", base));
   return Array.isArray(told?.styles) ? told.styles.filter((name) => typeof name === "string") : [];
 }
 
-/** The document of a style; {} for no name or no answer, null if the server has none of that name. */
+/** The document of a style; {} for no name or no response, null if the server has no style of that name. */
 export async function load_style(base, name) {
   if (name === undefined) return {};
   return ask(new URL(`styles/${encodeURIComponent(name)}`, base), {});
@@ -27,21 +27,21 @@ async function ask(url, otherwise = null) {
   }
 }
 
-/** What holds for a layer of the catalog where nothing else is set: a Map of parameters. */
+/** The default style of a layer of the catalog: a Map of parameters. */
 export function usual_style(layer, named) {
   const { layers, ...of_all } = named;
   const usual = over(parameters_in(layer.style), parameters_in(of_all));
   return over(usual, parameters_in(layers?.[layer.name]));
 }
 
-/** What a named style sets for all layers alike. */
+/** The parameters that a named style sets for all layers. */
 export function usual_shared(named) {
   const all = parameters_in(named);
   return new Map(SHARED_PARAMETERS.filter((name) => all.has(name)).map((name) =>
     [name, all.get(name)]));
 }
 
-/** `upper` over `lower`; rules that make classes are taken as a whole or not at all. */
+/** `lower` overridden by `upper`; class parameters are replaced as a group. */
 export function over(lower, upper) {
   const has_classes = CLASS_PARAMETERS.some((name) => upper.has(name));
   const kept = [...lower].filter(([name]) => !has_classes || !CLASS_PARAMETERS.includes(name));

@@ -1,4 +1,4 @@
-// The line at the foot of the map: of all that is to be said, what matters most.
+// The line at the bottom of the map: the most important of all current messages.
 
 import { button, element } from "./elements.js";
 
@@ -12,9 +12,9 @@ export class Notices {
   }
 
   /**
-   * `kind` is one of ORDER, `text` "" where there is nothing more to say. `more` may have {aside: what
-   * changes too often to be read out, bars: [{name, percent}], more: what stands below them, action: [text, function], for_ms: after
-   * which it goes}.
+   * `kind` is one of ORDER; an empty `text` removes the message. `more` may have {aside: text that changes
+   * too often for screen readers, bars: [{name, percent}], more: text below the bars, action: [text,
+   * function], for_ms: time after which the message is removed}.
    */
   say(kind, text, more = {}) {
     clearTimeout(this.timers_.get(kind));
@@ -42,7 +42,7 @@ export class Notices {
       ...(said.more ? [element("span", "more", said.more)] : []));
   }
 
-  /** Only what is new is built anew: a button keeps the focus while the seconds pass. */
+  /** Called only for a new message, so that a button keeps the focus while a countdown changes. */
   build_({ text, action }, key) {
     this.now_ = key;
     this.aside_ = element("span", "aside");

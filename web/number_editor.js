@@ -1,11 +1,11 @@
-// Colours by one's own numbers: a table is pasted, kept by the server, joined to the layer by a key, and
-// parted into classes.
+// Edits colours by the user's own numbers: a pasted table is stored by the server, joined to the layer by
+// a key, and divided into classes.
 
 import { ramp_list } from "./class_editor.js";
 import { button, choose, element, mark_wrong, select } from "./elements.js";
 import { columns_of, fit_in_words, post_table } from "./value_tables.js";
 
-const VALUE = "value"; // as the server calls joined values
+const VALUE = "value"; // the server's name for joined values
 const WAYS = [["quantile", "quantiles"], ["equal", "equal steps"], ["jenks", "natural breaks"],
   ["pretty", "round numbers"], ["stddev", "standard deviations"]];
 const COUNTS = [3, 4, 5, 6, 7, 8, 9];
@@ -15,7 +15,7 @@ const COPIED_MS = 1500;
 export class NumberEditor {
   /**
    * @param layer of the catalog: {name, title, fields: usable ones, title_attribute}
-   * @param on_change called with pairs of parameter and value; none if there are no numbers any more
+   * @param on_change called with pairs of parameter and value; empty if the numbers were removed
    */
   constructor(layer, on_change) {
     this.layer_ = layer;
@@ -56,7 +56,7 @@ export class NumberEditor {
       ["ramp", this.ramp_.value]];
   }
 
-  /** `style`: a Map of the parameters that on_change is told; an empty one takes the numbers away. */
+  /** `style`: a Map of the parameters passed to on_change; an empty one removes the numbers. */
   show(style) {
     const is_on = style.size > 0;
     if (this.values_ !== (is_on ? style.get("values") : null)) this.told_.textContent = "";
@@ -116,7 +116,7 @@ export class NumberEditor {
     this.show_columns_();
   }
 
-  /** Which columns are meant has to be said only if there are more than two. */
+  /** The columns need to be chosen only if there are more than two. */
   show_columns_() {
     const columns = columns_of(this.text_.value);
     const fields = this.layer_.fields.map(({ name }) => name);
@@ -161,13 +161,13 @@ export class NumberEditor {
       this.copy_.textContent = "Copied";
       setTimeout(() => (this.copy_.textContent = "Copy the link"), COPIED_MS);
     } catch {
-      // No clipboard without a secure connection, or without leave.
+      // No clipboard without a secure connection, or without permission.
       this.told_.textContent = "The link is the address of this page: copy it from there.";
     }
   }
 }
 
-/** By what features are called, or else the first attribute of texts. */
+/** Selects the attribute that names features, or else the first text attribute. */
 function choose_usual_key(join, { fields, title_attribute }) {
   const usual = fields.find(({ name }) => name === title_attribute) ??
     fields.find(({ type }) => type === "string") ?? fields[0];

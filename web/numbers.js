@@ -1,5 +1,5 @@
-// Numbers of one's own in the style of a layer. The controls for them come when they are to be seen:
-// few need them.
+// The user's own numbers in the style of a layer. The controls are loaded when they become visible, because
+// few users need them.
 
 import { element } from "./elements.js";
 import { CLASS_PARAMETERS } from "./named_styles.js";
@@ -20,7 +20,7 @@ export class Numbers {
     this.node.addEventListener("toggle", () => this.node.open && this.load_());
   }
 
-  /** Whether the layer is coloured by numbers of a table, parted by a rule. */
+  /** Whether the layer is coloured by numbers of a table, classified by a rule. */
   is_on() {
     return this.style_.size > 0;
   }
@@ -30,7 +30,7 @@ export class Numbers {
     return [...this.style_];
   }
 
-  /** `style`: a Map of parameters; one that is of something else takes the numbers away. */
+  /** `style`: a Map of parameters; one without such numbers removes them. */
   show(style) {
     const is_of_numbers = style.has("values") && style.get("color-by") === "value" &&
       RULE.test(style.get("breaks") ?? "");
@@ -39,7 +39,7 @@ export class Numbers {
     this.editor_?.show(this.style_);
   }
 
-  /** From now on the style can be seen. */
+  /** Called when the style becomes visible. */
   open() {
     if (this.is_on()) this.node.open = true;
   }

@@ -1,18 +1,18 @@
-// What the viewer shows, as the part of its address behind '#':
+// The state of the viewer, as the part of its address after '#':
 //
 //   #4/51.5074/-0.1278                          zoom, latitude, longitude
 //   ...&on=countries                            only these layers (default: all)
 //   ...&water.fill=ff8800&water.pattern=hatch   parameters of a layer, where changed
 //   ...&simplify=4&debug=mesh                   parameters of all layers, where changed
-//   ...&style=night                             a style that the server knows by that name
+//   ...&style=night                             a named style of the server
 //   ...&compare=0.5                             full detail to the right of the middle
-//   ...&compare=0.5&against=apart               there, each polygon simplified by itself
+//   ...&compare=0.5&against=apart               each polygon simplified by itself there
 //   ...&order=water,countries                   from the lowest to the topmost (default: as served)
-//   ...&at=51.5,-0.12                           the place whose features are told
-//   ...&chosen=countries/12                     which of them is outlined
+//   ...&at=51.5,-0.12                           the place whose features are shown
+//   ...&chosen=countries/12                     the outlined feature
 //
-// Names and values are percent-encoded. Whatever cannot be understood is left out, never an error:
-// people shorten and mistype addresses. Values of a layer's parameters are for the server to judge.
+// Names and values are percent-encoded. Parts that cannot be parsed are ignored and never an error,
+// because people shorten and mistype addresses. The server validates the values of a layer's parameters.
 
 import { encode } from "./tile_query.js";
 
@@ -38,7 +38,7 @@ const READ_SHARED = {
  *   chosen: ?{layer: string, id: string}}} View
  */
 
-/** @returns {View} null, or empty, is what the hash does not say */
+/** @returns {View} members missing in the hash are null or empty */
 export function parse_hash(hash) {
   const [place, ...rest] = hash.replace(/^#/, "").split("&");
   const view = {
@@ -133,12 +133,12 @@ function parse_feature(text) {
 }
 
 function format_place({ zoom, lat, lon }) {
-  // One pixel of a tile is 360 / 2^(zoom + 8) degrees: enough digits for less than that.
+  // One pixel of a tile is 360 / 2^(zoom + 8) degrees: uses enough digits for less than a pixel.
   const digits = Math.max(0, Math.ceil(((zoom + 8) * Math.LN2 - Math.log(360)) / Math.LN10) + 1);
   return [Number(zoom.toFixed(2)), lat.toFixed(digits), lon.toFixed(digits)].join("/");
 }
 
-/** The comma is a separator here. */
+/** Also encodes the comma, which is a separator here. */
 function encode_name(name) {
   return encodeURIComponent(name).replaceAll(",", "%2C");
 }

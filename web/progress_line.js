@@ -1,8 +1,8 @@
-// A thin line at the top of the page while tiles are on their way. It is for the eye alone.
+// A thin line at the top of the page while tiles are loading. It is hidden from screen readers.
 
 import { element } from "./elements.js";
 
-const PATIENCE_MS = 150; // what comes sooner needs no line
+const PATIENCE_MS = 150; // tiles that load faster need no line
 
 export class ProgressLine {
   constructor() {
@@ -14,7 +14,7 @@ export class ProgressLine {
     this.timer_ = null;
   }
 
-  /** `part` of the map still waits for so many tiles. */
+  /** `waiting`: the number of tiles that `part` of the map still waits for. */
   show(part, waiting) {
     this.parts_.set(part, waiting);
     const left = [...this.parts_.values()].reduce((sum, count) => sum + count, 0);
@@ -23,7 +23,7 @@ export class ProgressLine {
       return;
     }
     this.most_ = Math.max(this.most_, left);
-    // Something is seen from the start, and it never looks done before it is.
+    // Visible from the start, and never full before loading has finished.
     this.node_.style.transform = `scaleX(${0.08 + 0.9 * (1 - left / this.most_)})`;
     this.timer_ ??= setTimeout(() => this.node_.classList.add("shown"), PATIENCE_MS);
   }

@@ -1,12 +1,12 @@
-// Rows of a list are moved by dragging their handles, and by arrow keys on them.
+// Reorders the rows of a list by dragging their handles, or with the arrow keys on them.
 
-const EDGE = 32; // pixels from the ends of a list, where it scrolls while something is dragged
-const SCROLL = 8; // pixels a frame
+const EDGE = 32; // pixels from the ends of a list, within which dragging scrolls it
+const SCROLL = 8; // pixels per frame
 
 /**
  * @param list the element; it scrolls if it is too high
- * @param rows gives the rows that can be seen, from top to bottom: elements with a handle
- * @param on_move called with two of these rows: the first shall lie where the second is
+ * @param rows returns the visible rows, from top to bottom: elements with a handle
+ * @param on_move called with two of these rows: the first is to be moved to the position of the second
  */
 export function make_movable(list, rows, on_move) {
   list.addEventListener("keydown", (event) => {
@@ -22,7 +22,7 @@ export function make_movable(list, rows, on_move) {
   list.addEventListener("pointerdown", (event) => {
     const row = row_at(event.target);
     if (!row || event.button !== 0) return;
-    event.preventDefault(); // no text is selected
+    event.preventDefault(); // prevents text selection
     event.target.focus();
     drag(list, row, rows(), event, on_move);
   });
@@ -54,7 +54,7 @@ function drag(list, row, rows, { target, pointerId, clientY }, on_move) {
   const move = (event) => (y = event.clientY);
   const end = ({ type, clientY: last_y }) => {
     cancelAnimationFrame(frame);
-    // No frame may have come since the pointer moved.
+    // There may have been no frame since the pointer moved.
     if (type === "pointerup") to = position_of(rows, last_y, from);
     row.classList.remove("dragged");
     for (const other of rows) other.classList.remove("drop-above", "drop-below");
@@ -72,7 +72,7 @@ function drag(list, row, rows, { target, pointerId, clientY }, on_move) {
   frame = requestAnimationFrame(scroll);
 }
 
-/** Where among the rows something dropped at height `y` comes to lie that was at `from`. */
+/** The position among the rows for a row from position `from` that is dropped at height `y`. */
 function position_of(rows, y, from) {
   const middles = rows.map((row) => {
     const { top, height } = row.getBoundingClientRect();

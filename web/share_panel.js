@@ -1,4 +1,4 @@
-// The way out: what is on the screen, as texts and addresses for other programs.
+// Exports the current view as snippets and addresses for other programs.
 
 import { attribution_nodes } from "./attribution.js";
 import { button, element, input } from "./elements.js";
@@ -11,7 +11,7 @@ import { parameters_of_layers, query_part } from "./tile_query.js";
 import { LONGEST, LONGEST_PLACE, MOST_LAYERS } from "./tile_requests.js";
 
 const COPIED_MS = 1500;
-const POSTED_TABLE = /^[0-9a-f]{40}$/; // its id; those of a configuration have names
+const POSTED_TABLE = /^[0-9a-f]{40}$/; // its id; tables of the configuration have names
 
 const TABS = [
   ["Leaflet", (map) => [snippet("A whole page: save it as a file and open it.", leaflet_page(map))]],
@@ -31,7 +31,7 @@ const TABS = [
 export class SharePanel {
   /**
    * @param base address of the server's folder
-   * @param look gives what is on the screen: {names and titles of layers, the lowest first;
+   * @param look returns the current view: {names and titles of layers, the lowest first;
    *   attributions; drawn and settings for shared_style(); place, min_zoom, max_zoom}
    */
   constructor(base, look) {
@@ -69,7 +69,7 @@ export class SharePanel {
       this.body_, element("footer", "", this.note_, this.long_row_));
     this.node_.setAttribute("aria-labelledby", "share-title");
     this.node_.addEventListener("click", (event) => {
-      if (event.target === this.node_) this.node_.close(); // beside the panel
+      if (event.target === this.node_) this.node_.close(); // a click beside the panel
     });
     document.body.append(this.node_);
   }
@@ -86,14 +86,14 @@ export class SharePanel {
     else this.fill_();
   }
 
-  /** The server keeps what was changed by hand. */
+  /** Stores the edited style on the server. */
   async keep_(document) {
     const seen = this.seen_;
     this.body_.replaceChildren(element("p", "hint", "Posting the style to the server."));
     this.note_.textContent = "";
     this.long_row_.hidden = true;
     try {
-      // Whenever the panel opens: the server may have forgotten what it kept.
+      // Posted every time the panel opens, because the server may have evicted the style.
       this.id_ = await keep_style(this.base_, document);
     } catch (error) {
       this.problem_ = error.message;
@@ -142,7 +142,7 @@ export class SharePanel {
     this.tabs_[to].focus();
   }
 
-  /** What is on the screen, with its addresses. */
+  /** The current view, with its addresses. */
   map_() {
     const { titles, attributions, style, place, view, min_zoom, max_zoom } = this.seen_;
     const sheets = this.sheets_();
@@ -163,13 +163,13 @@ export class SharePanel {
     };
   }
 
-  /** As few addresses as there can be, the lowest first. */
+  /** As few addresses as possible, the lowest first. */
   sheets_() {
     const query_of = this.query_(this.id_ === null || this.long_.checked);
     const lasting_of = this.query_(true);
     const sheets = [];
     const sheet_of = (names, is_lowest) => {
-      // What fills the tile would hide the sheets below.
+      // A background would hide the sheets below.
       const above = is_lowest ? [] : [["background", "0000"]];
       const parameters = [...query_of(names), ...above];
       const path = `${this.base_}tiles/${encoded_list(names)}`;
@@ -199,7 +199,7 @@ export class SharePanel {
     ].map(([name, ...rest]) => [name.trim(), ...rest]);
   }
 
-  /** From names of layers to the parameters that give them the style; by its id unless `is_long`. */
+  /** A function from layer names to the parameters of their style; by its id unless `is_long`. */
   query_(is_long) {
     const { name, document, styled, shared } = this.seen_.style;
     if (document && !is_long) return () => [["style", this.id_]];
@@ -213,7 +213,7 @@ function encoded_list(names) {
   return names.map(encodeURIComponent).join(",");
 }
 
-/** Apostrophes may end a string of a shell. */
+/** Encodes apostrophes, which could end a string in a shell. */
 function query_text_of(parameters) {
   return query_part(parameters).replaceAll("'", "%27");
 }
@@ -227,12 +227,12 @@ function safe_markup(line) {
   return box.innerHTML;
 }
 
-// ---- what stands under a tab
+// ---- contents of the tabs
 
 function snippet(words, text) {
   const code = element("code", "", text);
   const box = element("pre", text.includes("\n") ? "" : "wrapped", code);
-  box.tabIndex = 0; // it can be scrolled by keys
+  box.tabIndex = 0; // for scrolling with the keyboard
   return element("section", "snippet",
     element("div", "over", element("p", "hint", words), copy_button(text, code)), box);
 }
@@ -243,7 +243,7 @@ function copy_button(text, shown) {
     try {
       await navigator.clipboard.writeText(text);
     } catch {
-      // No clipboard without a secure connection, or without leave: the old way.
+      // No clipboard without a secure connection, or without permission: falls back to execCommand.
       getSelection().selectAllChildren(shown);
       document.execCommand("copy");
     }

@@ -1,4 +1,4 @@
-// Texts to copy that show the map elsewhere. Pages are whole: saved as a file, they show the map.
+// Snippets to copy that show the map elsewhere. Pages are complete: saved as a file, they show the map.
 
 import { query_text } from "./tile_query.js";
 
@@ -9,18 +9,18 @@ const MAPLIBRE = "https://unpkg.com/maplibre-gl@6.17.0/dist";
 /**
  * @typedef {object} SharedMap
  * @property {string} title
- * @property {string} attribution  markup of text and links alone
+ * @property {string} attribution  markup that contains only text and links
  * @property {{names: string[], lasting: [string, string][], path: string, query: string}[]} sheets
- *   layers; parameters of their style that need nothing that the server keeps in memory; address of
- *   their tiles without the part that says which tile; the lowest first, more than one where the
- *   server cannot draw all layers in one
+ *   layers; parameters of their style that do not depend on the server's memory; address of their tiles
+ *   without the tile coordinates; the lowest first, more than one if the server cannot draw all layers
+ *   in one tile
  * @property {{lat: number, lon: number, zoom: number}} place
- * @property {[number, number, number, number]} view  what is on the screen: west, south, east, north
+ * @property {[number, number, number, number]} view  the visible part of the map: west, south, east, north
  * @property {number} min_zoom @property {number} max_zoom
  * @property {string} wmts  address
  */
 
-/** Address of the tiles of one sheet, with what stands for the tile as in "{z}/{x}/{y}{r}". */
+/** Tile address of one sheet; `tile` is a template such as "{z}/{x}/{y}{r}". */
 export function address({ path, query }, tile) {
   return `${path}/${tile}.png${query}`;
 }
@@ -82,7 +82,7 @@ export function maplibre_page(map) {
     const map = new maplibregl.Map({
       container: "map",
       center: [${lon}, ${lat}],
-      zoom: ${round(zoom - 1)}, // MapLibre counts zooms by tiles of 512 pixels
+      zoom: ${round(zoom - 1)}, // MapLibre zooms refer to tiles of 512 pixels
       style: {
         version: 8,
         sources: {
@@ -98,7 +98,7 @@ ${names.map((name) => `          { id: "${name}", type: "raster", source: "${nam
   </script>`);
 }
 
-/** Of the tile in the middle of the map. */
+/** An <img> of the tile in the middle of the map. */
 export function image_tag(map) {
   const tile = middle_tile(map);
   const at = (scale) => attribute(address(map.sheets[0], `${tile}${scale}`));
@@ -108,11 +108,11 @@ export function image_tag(map) {
 }
 
 export function curl_command(map) {
-  // Single quotes keep everything from the shell, and addresses here have none.
+  // Single quotes protect the address from the shell; these addresses contain none.
   return `curl -o map.png '${address(map.sheets[0], `${middle_tile(map)}@2x`)}'`;
 }
 
-/** What the screen shows, down to its zoom, into an archive of that number. */
+/** The command that writes the current view, up to its zoom, into the archive with that number. */
 export function seed_command({ place, view, min_zoom }, { names, lasting }, number) {
   const zoom = Math.max(min_zoom, Math.round(place.zoom));
   const style = query_text(lasting).replaceAll("'", "%27");
@@ -137,7 +137,7 @@ ${connections.join("\n")}
 `;
 }
 
-/** "z/x/y" of the tile that holds the middle of the map. */
+/** "z/x/y" of the tile that contains the middle of the map. */
 export function middle_tile({ place: { lat, lon, zoom } }) {
   const z = Math.max(0, Math.round(zoom));
   const side = 2 ** z;
@@ -164,7 +164,7 @@ ${script}
 `;
 }
 
-/** The address as an expression of `dense`. Braces of names are encoded: these are ours. */
+/** The address as a JavaScript expression with `dense`. Braces in names are encoded: these are ours. */
 function for_any_screen(sheet) {
   return quoted(address(sheet, "{z}/{x}/{y}{dense}"))
     .replace("{dense}", '" + (dense ? "@2x" : "") + "');
@@ -178,7 +178,7 @@ function lines(items, indent) {
   return items.map((item) => `${" ".repeat(indent)}${item},`).join("\n");
 }
 
-/** In a script within a page: nothing ends the script before its time. */
+/** A string literal for an inline script, which cannot end the script element. */
 function quoted(value) {
   return JSON.stringify(value).replaceAll("</", "<\\/").replace(/<(?=!|script)/gi, "\\u003c");
 }
@@ -191,7 +191,7 @@ function attribute(value) {
   return text(value).replaceAll('"', "&quot;");
 }
 
-/** As one word of a shell, whatever it holds. */
+/** Any text as one shell word. */
 function for_shell(word) {
   return /^[\w,./:-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }

@@ -1,18 +1,17 @@
-// The style that is on the screen under a short address: its name, or the id under which the server
-// keeps it.
+// The current style in a short form for addresses: its name, or the id under which the server stores it.
 
 import { over } from "./named_styles.js";
 import { divide_shared } from "./tile_query.js";
 
-// What was clicked is not part of a map that goes elsewhere.
+// The selection is not part of an exported map.
 const SELECTION = ["highlight", "highlight-fill", "highlight-stroke"];
 
 /**
  * @param drawn {name, style}, the lowest first
  * @param settings {layers: of the catalog; shared: parameters of all layers; named: document of the
  *   named style among them, else {}}
- * @returns {name: of a style, or undefined; document: for POST /styles where something was changed by
- *   hand, else null; styled, shared: the same as parameters of a request}
+ * @returns {name: of a style, or undefined; document: for POST /styles if the style was edited, else null;
+ *   styled, shared: the same as request parameters}
  */
 export function shared_style(drawn, { layers, shared, named }) {
   const plain = drawn.map(({ name, style }) => ({ name, style: without(style, SELECTION) }));
@@ -23,7 +22,7 @@ export function shared_style(drawn, { layers, shared, named }) {
   return { name, document: is_changed ? document_of(parts.styled, rest, named) : null, ...parts };
 }
 
-/** `named` with what was changed over it. */
+/** `named` with the edits applied. */
 function document_of(styled, shared, named) {
   const { layers: of_layers = {}, ...of_all } = named;
   const layers = {};
@@ -41,7 +40,7 @@ function without(parameters, names) {
   return new Map([...parameters].filter(([name]) => !names.includes(name)));
 }
 
-/** The id under which the server keeps `document`; throws an Error with words for people. */
+/** Posts `document` and returns its id; throws an Error with a user-readable message. */
 export async function keep_style(base, document) {
   let response;
   try {

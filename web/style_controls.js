@@ -1,7 +1,7 @@
-// Controls of single parameters. Each has {parameter, node, builtin, read, show, mark_wrong}: `read`
-// gives the value as the parameter takes it, `show` takes such a value, which may come from an
-// address and is kept as it was written until the user touches the control. `builtin` tells what
-// holds where neither a layer nor a style nor a query says anything; `show` of null shows that.
+// Controls for single parameters. Each has {parameter, node, builtin, read, show, mark_wrong}: `read`
+// returns the value in the syntax of the parameter. `show` accepts such a value, which may come from an
+// address and is kept as written until the user changes the control. `builtin` returns the value that
+// applies if neither a layer nor a style nor a query sets one; `show` with null shows it.
 
 import { rgb_of } from "./colours.js";
 import { choose, element, input, mark_wrong, select } from "./elements.js";
@@ -28,8 +28,8 @@ export function colour_control(parameter, label, builtin, on_change) {
 }
 
 /**
- * As colour_control, with a box that switches what the colour belongs to on and off; it has
- * besides {is_on, switch_to}. `first`: colour before one is picked.
+ * Like colour_control, with a box that switches the coloured item on and off; it also has {is_on,
+ * switch_to}. `first`: the colour before one is picked.
  */
 export function switched_colour_control(parameter, label, first, on_change) {
   const box = input("checkbox");
@@ -53,10 +53,10 @@ export function switched_colour_control(parameter, label, first, on_change) {
   return control;
 }
 
-/** `range`: {min, max, step, builtin: a function that tells the number, format: number to text}. */
+/** `range`: {min, max, step, builtin: a function that returns the number, format: number to text}. */
 export function number_control(parameter, label, range, on_change) {
   const { min, max, step, builtin, format } = range;
-  // Else the name would be that of its label, which holds the number, too.
+  // Without it, the accessible name would be that of the label, which contains the number, too.
   const slider = input("range", { min, max, step, "aria-label": label });
   const told = document.createElement("output");
   let value = null;
@@ -77,8 +77,8 @@ export function number_control(parameter, label, range, on_change) {
     refresh: () => control.show(value),
     mark_wrong: (is_wrong) => mark_wrong(slider, is_wrong),
   };
-  // A slider being dragged tells its number at once; the map follows on release, since every step
-  // of it would be a screen full of new tiles.
+  // While dragged, the slider shows its number immediately; the map follows on release, because every
+  // step would request a screen full of new tiles.
   slider.addEventListener("input", () => tell(slider.value));
   slider.addEventListener("change", () => {
     value = String(Number(slider.value));
@@ -87,7 +87,7 @@ export function number_control(parameter, label, range, on_change) {
   return control;
 }
 
-/** `options`: pairs of value and text; the first is built in. */
+/** `options`: pairs of value and text; the first is the built-in default. */
 export function choice_control(parameter, label, options, on_change) {
   const list = select(options);
   const builtin = options[0][0];

@@ -1,4 +1,4 @@
-// The style of one layer: a control for every parameter, told apart by what it is for.
+// The style form of one layer: a control for every parameter, grouped by purpose.
 
 import { ClassEditor } from "./class_editor.js";
 import { button, element } from "./elements.js";
@@ -12,7 +12,7 @@ const DASHES = [["1,0", "solid"], ["6,4", "dashed"], ["1,3", "dotted"],
   ["9,3,1,3", "dash and dot"]];
 const PATTERNS = ["none", "hatch", "crosshatch", "stripes", "dots", "checker"];
 const UPRIGHT_PATTERNS = ["dots", "checker"];
-const FIRST_STROKE = "33414f"; // friendlier than what a width alone gives:
+const FIRST_STROKE = "33414f"; // friendlier than the default of a width alone:
 const BUILTIN_STROKE = "000000";
 
 const percent = (number) => `${Math.round(100 * number)}%`;
@@ -22,8 +22,8 @@ const degrees = (number) => `${number}°`;
 export class StyleForm {
   /**
    * @param layer of the catalog: {name, title, fields}
-   * @param builtin_fill colour where not even the layer has one
-   * @param suggest of the name of a property: its values, see ClassEditor
+   * @param builtin_fill the colour if the layer has none either
+   * @param suggest returns the values of a property, see ClassEditor
    * @param on_change called without arguments when the user has changed something
    */
   constructor(layer, builtin_fill, suggest, on_change) {
@@ -39,7 +39,7 @@ export class StyleForm {
     this.node = this.make_node_();
   }
 
-  /** The style as a Map of parameters and values, without those that have their usual value. */
+  /** The style as a Map of parameters and values, without those at their default. */
   read() {
     const style = new Map(this.kept_);
     for (const { gate, controls } of this.groups_) {
@@ -57,7 +57,7 @@ export class StyleForm {
     return style;
   }
 
-  /** `style` as read() gives it, over the `usual` one. */
+  /** `style` as returned by read(), on top of the `usual` one. */
   show(style, usual) {
     this.usual_ = usual;
     const shown = over(usual, style);
@@ -68,20 +68,20 @@ export class StyleForm {
     this.numbers_.show(shown);
     this.classes_.show(this.numbers_.is_on() ? without_classes(shown) : shown);
     this.show_gates_();
-    // What has no control here, such as stroke-linejoin of an address, stays as it is.
+    // Parameters without a control, such as stroke-linejoin from an address, stay unchanged.
     const known = [...controls.map(({ parameter }) => parameter), ...CLASS_PARAMETERS,
       ...(this.numbers_.is_on() ? NUMBER_PARAMETERS : [])];
     this.kept_ = new Map([...style].filter(([parameter]) => !known.includes(parameter)));
     this.show_problem(null);
   }
 
-  /** From now on it can be seen. */
+  /** Called when the form becomes visible. */
   open() {
     this.classes_.open();
     this.numbers_.open();
   }
 
-  /** What the server found wrong: {detail, parameter}, or null. */
+  /** Shows a problem reported by the server: {detail, parameter}, or null. */
   show_problem(problem) {
     this.problem_.remove();
     this.problem_.textContent = problem?.detail ?? "";
@@ -96,7 +96,7 @@ export class StyleForm {
   make_controls_() {
     const change = () => this.change_();
     this.stroke_ = switched_colour_control("stroke", "Outline", FIRST_STROKE, () => {
-      // What was off may have had no width.
+      // An outline that was off may have had no width.
       if (this.stroke_.is_on() && Number(this.stroke_width_.read()) === 0) {
         this.stroke_width_.show(has_outline(this.usual_) ? this.usual_.get("stroke-width") : null);
       }
@@ -116,7 +116,7 @@ export class StyleForm {
     const change = () => this.change_();
     const fields = (Array.isArray(layer.fields) ? layer.fields : [])
       .filter((field) => typeof field?.name === "string");
-    // Either the one or the other colours the layer.
+    // Only one of the two colours the layer.
     this.classes_ = new ClassEditor(fields, suggest, () => {
       this.numbers_.show(new Map());
       change();
@@ -211,7 +211,7 @@ export class StyleForm {
     return element("div", "style-form", fill, this.class_group_, ...others, reset);
   }
 
-  /** Pairs of parameter and value; none if the classes are the usual ones. */
+  /** Pairs of parameter and value; empty if the classes are the default ones. */
   changed_classes_() {
     const pairs = this.numbers_.is_on() ? this.numbers_.read() : this.classes_.read();
     const parameters = this.numbers_.is_on() ? [...NUMBER_PARAMETERS, ...CLASS_PARAMETERS] : CLASS_PARAMETERS;
@@ -220,7 +220,7 @@ export class StyleForm {
       pairs.every(([name, value]) => this.usual_.get(name) === value);
     if (is_usual) return [];
     if (pairs.length > 0) return pairs;
-    // No classes where there usually are some: one for all features.
+    // Classes were removed although the default style has some: uses one class for all features.
     return [["color-by", this.usual_.get("color-by")], ["classes", `*:${this.fill.read()}`]];
   }
 
@@ -229,7 +229,7 @@ export class StyleForm {
       (gate ? [gate.control, ...controls] : controls));
   }
 
-  /** Where the parameter is set; the last group if it has no control. */
+  /** The group that contains the parameter; the last group if it has no control. */
   group_of_(parameter) {
     if ([...CLASS_PARAMETERS, ...NUMBER_PARAMETERS].includes(parameter)) return this.class_group_;
     const found = this.groups_.find(({ gate, controls }) =>
@@ -244,7 +244,7 @@ export class StyleForm {
   }
 
   change_() {
-    this.pattern_angle_.refresh(); // as it may depend on the pattern
+    this.pattern_angle_.refresh(); // its default may depend on the pattern
     this.show_gates_();
     this.on_change_();
   }

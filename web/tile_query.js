@@ -1,26 +1,26 @@
-// Addresses of tiles, legends and features, from what is set in the viewer.
+// Addresses of tiles, legends and features, from the settings in the viewer.
 
-/** What holds for all layers alike; everything else is set layer by layer. */
+/** Parameters that are set for all layers; all others are set per layer. */
 export const SHARED_PARAMETERS = ["style", "simplify", "topology", "small", "debug"];
 
-/** `parameters`: a Map, or pairs, of name and value. Ends up as "a=b&c=d". */
+/** `parameters`: a Map, or pairs, of name and value. Returns "a=b&c=d". */
 export function query_text(parameters) {
   return [...parameters].map(([name, value]) => `${encode(name)}=${encode(value)}`).join("&");
 }
 
-/** Whether a layer, as /catalog has it, is served with topology=fast. */
+/** Whether a layer of /catalog is served with topology=fast. */
 export function has_fast_topology({ topologies }) {
   return Array.isArray(topologies) && topologies.includes("fast");
 }
 
-/** What of the parameters for all layers holds for one of /catalog. */
+/** Those of the shared parameters that apply to a layer of /catalog. */
 export function taken_by(layer, shared) {
   return [...shared].filter(([name]) => name !== "topology" || has_fast_topology(layer));
 }
 
 /**
- * The same for a picture of several: where not all of them are served with topology=fast, it is
- * written for those that are. `layers` are {name, style}, `catalog` is all that there are.
+ * The same for an image of several layers: if not all of them are served with topology=fast, the
+ * parameter is set individually for those that are. `layers` are {name, style}; `catalog` has all layers.
  */
 export function divide_shared(layers, catalog, shared) {
   const takes = ({ name }) => has_fast_topology(catalog.find((layer) => layer.name === name));
@@ -33,16 +33,16 @@ export function divide_shared(layers, catalog, shared) {
   };
 }
 
-/** With the '?' if there is anything to ask. */
+/** Includes the '?' unless there are no parameters. */
 export function query_part(parameters) {
   const text = query_text(parameters);
   return text && `?${text}`;
 }
 
 /**
- * The parameters of a picture of several layers: `layers` are {name, style}, the lowest first.
- * A layer's own are written with its name before them, unless it is alone and no named style is there,
- * which may say something of this layer: of all layers one cannot say otherwise.
+ * The parameters of an image of several layers: `layers` are {name, style}, the lowest first. Parameters
+ * of one layer are prefixed with its name, unless it is the only layer and there is no named style. A named
+ * style may set parameters for this layer, which unprefixed parameters cannot override.
  */
 export function parameters_of_layers(layers, shared) {
   const is_plain = layers.length === 1 && !new Map(shared).has("style");
@@ -55,7 +55,7 @@ export function path_of_layers(layers) {
   return layers.map(({ name }) => encodeURIComponent(name)).join(",");
 }
 
-/** Commas and colons part lists, and may stand in a query as they are. */
+/** Keeps commas and colons, which separate list items and are valid in a query. */
 export function encode(text) {
   return encodeURIComponent(text).replaceAll("%2C", ",").replaceAll("%3A", ":");
 }

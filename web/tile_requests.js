@@ -1,11 +1,11 @@
-// Which tiles show the layers that are on: one request for all of them, or as few as the server takes.
+// The tile requests for the layers that are on: one for all of them, or as few as the server accepts.
 
 import {
   divide_shared, parameters_of_layers, path_of_layers, query_part, taken_by,
 } from "./tile_query.js";
 
 export const MOST_LAYERS = 16; // in one tile
-export const LONGEST = 4000; // bytes of path and query; the server takes 4096
+export const LONGEST = 4000; // bytes of path and query; the server accepts 4096
 export const LONGEST_PLACE = "/22/4194303/4194303@2x.png".length;
 
 /**
@@ -13,7 +13,7 @@ export const LONGEST_PLACE = "/22/4194303/4194303@2x.png".length;
  * @param settings {layers: of the catalog; shared: parameters of all layers; has_background: whether
  *   the named style among them fills the tile; folder: path of the server's tiles}
  * @returns requests, the lowest first: {layers: names, path, query, min_zoom, max_zoom, parts}, where
- *   `parts` are the same layers one by one
+ *   `parts` are requests for the same layers one by one
  */
 export function tile_requests(drawn, settings) {
   const requests = [];
@@ -47,7 +47,7 @@ function request_for(group, { layers, shared, has_background }, is_lowest) {
   const of_one = group.length === 1;
   const { styled, shared: rest } = of_one
     ? { styled: group, shared: taken_by(known[0], shared) } : divide_shared(group, layers, shared);
-  // The background would hide what lies below: the lowest request alone brings it along.
+  // The background would hide the requests below, so only the lowest request includes it.
   const cover = has_background && !is_lowest ? [["background", "0000"]] : [];
   return {
     layers: group.map(({ name }) => name),

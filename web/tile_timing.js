@@ -1,8 +1,8 @@
-// How long tiles take, from what the browser measures and what the server says of its work.
+// Tile latencies, as measured by the browser and as reported by the server.
 
 const LATEST = 60;
 
-/** Calls `tell` with a line of words whenever tiles have come; `tiles` is where they come from. */
+/** Calls `tell` with a summary line whenever tiles have loaded; `tiles` is the prefix of their addresses. */
 export function watch_tiles(tiles, tell) {
   const latest = [];
   const observer = new PerformanceObserver((list) => {
@@ -12,17 +12,17 @@ export function watch_tiles(tiles, tell) {
     latest.push(...come.map(summary_of));
     latest.splice(0, latest.length - LATEST);
     tell(line_of(latest));
-    performance.clearResourceTimings(); // else nothing is measured after the first 250
+    performance.clearResourceTimings(); // otherwise nothing is measured after the first 250
   });
   observer.observe({ type: "resource", buffered: true });
 }
 
-/** A tile that the server kept carries no times of drawing. */
+/** A tile from the server's cache has no drawing times. */
 function summary_of(entry) {
   const steps = entry.serverTiming.map(({ duration }) => duration);
   const is_drawn = steps.length > 0 && entry.transferSize > 0;
   return {
-    // Not what the browser waits before it asks: it asks for six tiles at a time.
+    // Excludes the wait before the request: the browser requests six tiles at a time.
     total: entry.responseEnd - (entry.requestStart || entry.startTime),
     drawing: is_drawn ? steps.reduce((sum, step) => sum + step) : null,
   };

@@ -1,15 +1,15 @@
-// What to try first: a few buttons, each with a sentence, that show what this map can do and others
-// cannot. While one of them runs, its control takes their place.
+// Suggestions for the first visit: a few buttons with a sentence each, which demonstrate features that other
+// map servers lack. While a demonstration runs, its control replaces the buttons.
 
 import { button, element } from "./elements.js";
 
 export class TryPanel {
   /**
    * @param node the empty element of the panel
-   * @param opener the button that shows it again
+   * @param opener the button that reopens the panel
    * @param demonstrations {title, words, start(), control: a node}
-   * @param places to go to: {title, go()}
-   * @param on {started(), ended(): what was there before shall come back}
+   * @param places to zoom to: {title, go()}
+   * @param on {started(), ended(): the previous state is to be restored}
    */
   constructor(node, opener, demonstrations, places, on) {
     this.node_ = node;
@@ -21,7 +21,7 @@ export class TryPanel {
       this.open();
       node.querySelector("button").focus();
     });
-    // What lies at the foot of the window makes room for it.
+    // Elements at the bottom of the window make room for it.
     new ResizeObserver(() => document.documentElement.style.setProperty("--try",
       `${node.offsetHeight}px`)).observe(node);
   }

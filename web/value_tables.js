@@ -1,6 +1,6 @@
-// Tables of numbers as people have them in spreadsheets, and how the server takes them.
+// Tables of numbers from spreadsheets, and posting them to the server.
 
-/** What the columns of a pasted table are called; [] if there is no line of names. */
+/** The column names of a pasted table; [] if there is no header line. */
 export function columns_of(text) {
   const [line = ""] = text.trim().split(/\r?\n|\r/, 1);
   const delimiter = ["\t", ";", ","].find((one) => line.includes(one));
@@ -9,8 +9,8 @@ export function columns_of(text) {
 }
 
 /**
- * Posts a table, to be joined to a layer. @returns {table}: what the server says of it, as POST /values
- * answers; or {problem: words for people}.
+ * Posts a table, to be joined to a layer. @returns {table}: the response of POST /values; or {problem: a
+ * user-readable message}.
  * @param columns {key, value}: their names
  * @param join the attribute of the layer that is the key
  */
@@ -34,7 +34,7 @@ export async function post_table(base, text, columns, layer, join) {
   };
 }
 
-/** How a table fits a layer, in words. */
+/** Describes in words how a table matches a layer. */
 export function fit_in_words({ type, first_word, rows_without_key, joins }) {
   const { matched = 0, unmatched = 0, unmatched_keys = [], features_without_value = 0 } = joins?.[0] ?? {};
   const parts = [`${matched} ${matched === 1 ? "row matches" : "rows match"}.`];

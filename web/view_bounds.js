@@ -1,26 +1,25 @@
-// Boxes in degrees, [west, south, east, north] as the catalog gives them, and what of them is on the
-// screen.
+// Boxes in degrees, [west, south, east, north] as in the catalog, and their visible parts.
 /* global L */
 
 const MAX_LATITUDE = 85.05;
-const LEAST_PIXELS = 12; // what is smaller on the screen is not there to be seen
+const LEAST_PIXELS = 12; // smaller boxes count as invisible
 
 export function is_box(bounds) {
   return Array.isArray(bounds) && bounds.length === 4 && bounds.every(Number.isFinite) &&
     bounds[0] <= bounds[2] && bounds[1] <= bounds[3];
 }
 
-/** As Leaflet takes it; of boxes that are none, nothing. */
+/** The bounds of `boxes` for Leaflet; invalid boxes are ignored. */
 export function bounds_around(boxes) {
   return L.latLngBounds(boxes.filter(is_box).flatMap(([w, s, e, n]) => [[s, w], [n, e]]));
 }
 
-/** Of any number of degrees the like from -180 to 180. */
+/** Any longitude, wrapped to -180 to 180. */
 export function wrapped_longitude(lon) {
   return lon - 360 * Math.floor((lon + 180) / 360);
 }
 
-/** Whether some of `box` can be seen on the map, in any copy of the world. */
+/** Whether a part of `box` is visible on the map, in any copy of the world. */
 export function is_in_view(map, box) {
   if (!is_box(box)) return false;
   const [west, south, east, north] = box;
@@ -30,14 +29,14 @@ export function is_in_view(map, box) {
   return is_there && pixels_across(map, box) >= LEAST_PIXELS;
 }
 
-/** The longer side of `box` on the screen. */
+/** The longer side of `box` on the screen, in pixels. */
 export function pixels_across(map, [west, south, east, north]) {
   const low = map.project([south, west]);
   const high = map.project([north, east]);
   return Math.max(high.x - low.x, low.y - high.y);
 }
 
-/** What the map shows, as a box; all longitudes where it reaches over the edge of the world. */
+/** The visible box; all longitudes if it extends beyond the edge of the world. */
 export function box_in_view(map) {
   const view = map.getBounds();
   const turn = wrapped_longitude(view.getWest()) - view.getWest();

@@ -1,5 +1,5 @@
-// The viewer: all layers of the server over each other, with the place and what was changed kept
-// in the address.
+// The viewer: all layers of the server on top of each other, with the place and the changes kept in the
+// address.
 
 import { ask_values } from "./attribute_values.js";
 import { load_catalog } from "./catalog.js";
@@ -34,28 +34,28 @@ import { watch_tiles } from "./tile_timing.js";
 import { TryPanel } from "./try_panel.js";
 import { box_in_view, is_in_view, wrapped_longitude } from "./view_bounds.js";
 
-const BUILTIN_FILL = "808080"; // of layers whose style the catalog does not tell
+const BUILTIN_FILL = "808080"; // for layers whose style is missing in the catalog
 const NARROW = "(max-width: 1100px)";
-const UPRIGHT = "(max-width: 900px)"; // of a tablet, half of which the panel would cover
+const UPRIGHT = "(max-width: 900px)"; // a tablet, half of which the panel would cover
 const MESSAGE_MS = 6000;
-const LEAST_ZOOM_TO = 18; // a layer that does not say how true it is
+const LEAST_ZOOM_TO = 18; // for a layer without detail_zoom
 
 const BASE = document.baseURI;
 const TILES = new URL("tiles/", BASE).href;
 const $ = (id) => document.getElementById(id);
 
-// ---- what is said at the foot of the map
+// ---- messages at the bottom of the map
 
 const notices = new Notices($("status"));
 
-/** Said for a moment. */
+/** Shows a message for a short time. */
 function mention(text) {
   notices.say("message", text, { for_ms: MESSAGE_MS });
 }
 
-// ---- layers as the catalog gives them
+// ---- layers of the catalog
 
-/** Anything may stand in the catalog: only what has a name can be shown. */
+/** The catalog is untrusted: only layers with a name can be shown. */
 function usable_layers(catalog) {
   return catalog.layers.filter((layer) => typeof layer?.name === "string" && layer.name !== "");
 }
@@ -65,7 +65,7 @@ function in_quotes(names) {
   return names.length > 3 ? `${some} and ${names.length - 3} more` : some;
 }
 
-/** Why the server will not draw a tile, and what helps. */
+/** Why the server refuses to draw a tile, and what helps. */
 function refusal_in_words({ status, detail }) {
   if (status === 404) return "Some tiles no longer exist. Reload the page.";
   if (/drawing|draw/.test(detail)) return "There is too much to draw here. Zoom in, or simplify more.";
@@ -74,14 +74,14 @@ function refusal_in_words({ status, detail }) {
 
 // ---- the page
 
-/** The first of the languages of the browser, if it is among those of the catalog, else undefined. */
+/** The preferred language of the browser if the catalog lists it, else undefined. */
 function language_among(languages) {
   const [whole, first] = [navigator.language, navigator.language.split("-")[0]];
   return Array.isArray(languages) ? languages.find((tag) => tag === whole) ??
     languages.find((tag) => tag === first) : undefined;
 }
 
-/** The zoom beyond which a layer of the catalog has no more to show. */
+/** The zoom beyond which a layer of the catalog has no more detail. */
 function zoom_of_detail(layer) {
   return Number.isInteger(layer?.detail_zoom) ? layer.detail_zoom : LEAST_ZOOM_TO;
 }
@@ -113,7 +113,7 @@ function make_address_copyable() {
     try {
       await navigator.clipboard.writeText($("tile-url").value);
     } catch {
-      // No clipboard without a secure connection, or without leave: the old way.
+      // No clipboard without a secure connection, or without permission: falls back to execCommand.
       $("tile-url").select();
       document.execCommand("copy");
     }
@@ -122,7 +122,7 @@ function make_address_copyable() {
   });
 }
 
-/** Keeps panels, map and address the same, whichever of them changes. */
+/** Keeps panels, map and address in sync. */
 class Viewer {
   constructor(catalog, connection) {
     this.connection_ = connection;
@@ -152,12 +152,12 @@ class Viewer {
       this.tell_end_of_detail_();
     });
     this.map_.on("zoomanim zoomend", ({ type }) => (this.is_zooming_ = type === "zoomanim"));
-    // As it was typed: by now location may say again what write_address_ wrote.
+    // Uses newURL: write_address_ may have overwritten location in the meantime.
     window.addEventListener("hashchange", ({ newURL }) => this.read_address_(new URL(newURL).hash));
     this.show_view_(view);
   }
 
-  // ---- made once
+  // ---- created once
 
   make_map_layers_() {
     const simplified = make_pane(this.map_, "simplified");
@@ -179,14 +179,14 @@ class Viewer {
     });
   }
 
-  // ---- tiles that do not come
+  // ---- failed tiles
 
   ask_again_(was_away) {
     for (const tiles of this.all_tiles_()) tiles.retry();
     if (was_away) this.tell_other_layers_();
   }
 
-  /** A server that was away may have come back with other layers. */
+  /** Reports if a server that was away has come back with different layers. */
   async tell_other_layers_() {
     const response = await fetch(new URL("catalog", BASE)).catch(() => null);
     const catalog = response?.ok ? await response.json().catch(() => null) : null;
@@ -260,7 +260,7 @@ class Viewer {
     });
   }
 
-  /** What a few open comes when they do. */
+  /** Loads the panel on demand, because few users open it. */
   async open_share_panel_() {
     const module = await import("./share_panel.js").catch(() => null);
     if (!module) return mention("The server cannot be reached. Reload the page.");
@@ -276,14 +276,14 @@ class Viewer {
     return String(this.layers_.find((layer) => layer.name === name)?.title || name);
   }
 
-  // ---- what is shown
+  // ---- the view
 
-  /** What `hash` says, or else what the server wants to be seen first. */
+  /** The view in `hash`, or else the server's start view. */
   view_of_(hash) {
     return parse_hash(hash.length > 1 ? hash : `#${this.start_}`);
   }
 
-  /** Everything but the place; nothing new is drawn before its named style has come. */
+  /** Shows everything except the place; nothing new is drawn before the named style has loaded. */
   async show_view_(view) {
     this.view_ = view;
     this.shared_ = view.shared;
@@ -294,11 +294,11 @@ class Viewer {
       const style = view.styles.get(name) ?? new Map();
       return {
         is_on: view.on === null || view.on.includes(name),
-        style, // as it stands in the panel
-        // The last style that the server took; what sets nothing is right.
+        style, // as shown in the panel
+        // The last style that the server accepted; an empty style is always valid.
         drawn: style.size === 0 ? style : (this.states_?.[i].drawn ?? null),
         entries: [], // of its legend
-        usual: new Map(), // what holds where the style says nothing
+        usual: new Map(), // defaults for parameters missing in the style
       };
     });
     this.list_.show_order(this.order_);
@@ -316,7 +316,7 @@ class Viewer {
     this.states_.forEach((_, i) => this.prove_style_(i));
   }
 
-  /** Numbers of all layers, the lowest first: the named ones in their order, and the others above. */
+  /** The numbers of all layers, the lowest first: those of `names` in that order, then the others above. */
   order_of_(names) {
     const named = [...new Set(names.map((name) =>
       this.layers_.findIndex((layer) => layer.name === name)))].filter((i) => i >= 0);
@@ -330,7 +330,7 @@ class Viewer {
     if (unknown.length > 1) mention(`There are no layers ${in_quotes(unknown)} here.`);
   }
 
-  /** The panel, after what is usual may have changed. */
+  /** Updates the panel after the defaults may have changed. */
   show_usual_() {
     this.states_.forEach((state, i) => {
       state.usual = usual_style(this.layers_[i], this.named_);
@@ -340,7 +340,7 @@ class Viewer {
     this.detail_.show({ shared: this.shared_, against }, usual_shared(this.named_));
     choose($("style"), this.shared_.get("style") ?? "");
     $("style-row").hidden = $("style").options.length < 2;
-    // Seen until tiles come, and in hair lines between them on some screens.
+    // Visible until tiles load, and on some screens in hairlines between them.
     $("map").style.background = css_of(String(this.named_.background ?? "").replace(/^#/, ""));
   }
 
@@ -353,7 +353,7 @@ class Viewer {
     $("style-row").hidden = $("style").options.length < 2;
   }
 
-  /** What the style is made of that is named in `shared`, from which an unknown name is taken. */
+  /** The document of the style named in `shared`; removes an unknown name from it. */
   async load_named_style_(shared) {
     const named = await load_style(BASE, shared.get("style"));
     if (named) return named;
@@ -414,9 +414,9 @@ class Viewer {
     this.refresh_();
   }
 
-  // ---- what is tried
+  // ---- demonstrations
 
-  /** All that a demonstration may change. */
+  /** All settings that a demonstration may change. */
   settings_() {
     return {
       shared: new Map(this.shared_), compare: this.compare_, against: this.against_,
@@ -471,7 +471,7 @@ class Viewer {
     return `${TILES}${lowest.path}/${zoom}/${((x % across) + across) % across}/${y}.png${lowest.query}`;
   }
 
-  /** The map keeps the last style that was right: the server judges before tiles are asked for. */
+  /** Validates a style on the server before tiles are requested; the map keeps the last valid style. */
   async prove_style_(i) {
     const state = this.states_[i];
     const { style } = state;
@@ -491,7 +491,7 @@ class Viewer {
     this.refresh_();
   }
 
-  /** In place of a style of the address that was wrong from the start. */
+  /** Draws the default style instead of an invalid style from the address. */
   async draw_usual_(i, state, name) {
     state.drawn = new Map();
     const { entries = [], values_title } =
@@ -500,7 +500,7 @@ class Viewer {
     this.show_legend_();
   }
 
-  /** Map and address, once for all that changes at a time. */
+  /** Updates map and address, once for all simultaneous changes. */
   refresh_() {
     if (this.is_stale_) return;
     this.is_stale_ = true;
@@ -514,7 +514,7 @@ class Viewer {
   draw_() {
     const is_apart = this.against_ === "apart";
     const compared = new Map([...this.shared_, is_apart ? ["topology", "fast"] : ["simplify", "0"]]);
-    // What is not yet proved comes in a moment; the map waits for it, to ask once and for all.
+    // Styles not yet validated will be soon; the map waits for them, so that tiles are requested only once.
     const is_proved = this.states_.every(({ is_on, drawn }) => !is_on || drawn !== null);
     if (is_proved) {
       this.tiles_.show(this.tile_requests_(this.shared_));
@@ -539,7 +539,7 @@ class Viewer {
     return tile_requests(this.drawn_layers_(), this.request_settings_(shared));
   }
 
-  /** With the language of the browser, where there are labels that may be in it. */
+  /** Adds the language of the browser if a layer has labels. */
   in_language_(shared) {
     const has_label = (i) => (this.style_shown_(i).get("label") ?? "none") !== "none";
     return this.language_ && this.layers_on_().some(has_label)
@@ -551,7 +551,7 @@ class Viewer {
     return over(usual, drawn ?? style);
   }
 
-  /** Markup of layers, and of the tables that those of them are joined to which are on. */
+  /** The attribution markup of layers, and of the tables joined to those that are on. */
   attributions_of_(layers) {
     const of_tables = layers.filter((i) => this.states_[i].is_on)
       .map((i) => this.tables_[this.style_shown_(i).get("values")]?.attribution);
@@ -568,7 +568,7 @@ class Viewer {
     };
   }
 
-  /** Of the layers that are on and in view, the topmost first. */
+  /** Shows the legend of the layers that are on and in view, the topmost first. */
   show_legend_() {
     const sections = this.layers_on_().flatMap((i) => {
       const { drawn, entries, values_title, usual } = this.states_[i];
@@ -581,7 +581,7 @@ class Viewer {
     $("legend").hidden = sections.length === 0;
   }
 
-  /** Says where the data ends of all that is in view. */
+  /** Reports when the zoom is beyond the detail of all layers in view. */
   tell_end_of_detail_() {
     const zoom = this.map_.getZoom();
     const ends = this.layers_on_().map((i) => this.layers_[i])
@@ -596,12 +596,12 @@ class Viewer {
     }
   }
 
-  /** Numbers of the layers that are on, the lowest first. */
+  /** The numbers of the layers that are on, the lowest first. */
   layers_on_() {
     return this.order_.filter((i) => this.states_[i].is_on);
   }
 
-  /** Those that are on, the lowest first, in the style that is drawn. */
+  /** The layers that are on, the lowest first, in the style that is drawn. */
   drawn_layers_() {
     return this.layers_on_().filter((i) => this.states_[i].drawn)
       .map((i) => ({ name: this.layers_[i].name, style: this.states_[i].drawn }));
@@ -637,10 +637,10 @@ class Viewer {
     };
   }
 
-  // ---- features under a place
+  // ---- features at a place
 
   what_is_asked_() {
-    // Of the address, and not yet proved, is as good as drawn here.
+    // Here, a style from the address that is not yet validated is treated like a drawn one.
     const layers = this.layers_on_().map((i) => {
       const { drawn, style } = this.states_[i];
       return { name: this.layers_[i].name, style: drawn ?? style };
@@ -658,7 +658,7 @@ class Viewer {
     this.outline_tiles_.show(this.choice_.requests());
   }
 
-  /** How the values of an attribute are spread, in view or in all of the layer. */
+  /** The distribution of the values of an attribute, in view or in the whole layer. */
   ask_values_(i, attribute, is_all) {
     const { drawn } = this.states_[i];
     const filter = [...(drawn ?? [])].filter(([name]) => name === "filter");
@@ -672,14 +672,14 @@ class Viewer {
     const view = this.view_of_(hash);
     await this.show_view_(view);
     if (!view.place) return;
-    // Moving writes the address: of this view, unless another has come meanwhile.
+    // Moving writes the address; skipped if another view has been requested in the meantime.
     const go = () => this.view_ === view && this.go_to_(view.place);
-    // Leaflet takes no other place while it zooms.
+    // Leaflet accepts no other place while it zooms.
     if (this.is_zooming_) this.map_.once("zoomend", go);
     else go();
   }
 
-  /** Says only what differs from the defaults, and makes no step in the history. */
+  /** Writes only differences from the defaults, and adds no history entry. */
   write_address_() {
     const { lat, lng } = this.map_.getCenter();
     const names = (numbers) => numbers.map((i) => this.layers_[i].name);
@@ -688,7 +688,7 @@ class Viewer {
     const hash = format_hash({
       place: { zoom: this.map_.getZoom(), lat, lon: lng },
       on: on.length === this.layers_.length ? null : on,
-      // Until the server has judged it, what the address said.
+      // The style from the address until the server has validated it.
       styles: new Map(this.layers_.map(({ name }, i) =>
         [name, this.states_[i].drawn ?? this.states_[i].style])),
       shared: this.shared_,
@@ -697,7 +697,7 @@ class Viewer {
       order: is_as_served ? null : names(this.order_),
       ...this.choice_.now,
     });
-    // Browsers take their time for it, and some refuse it when it comes too often.
+    // Slow in browsers, and some refuse frequent calls.
     if (hash !== location.hash) history.replaceState(null, "", hash);
   }
 }
