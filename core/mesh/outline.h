@@ -23,8 +23,8 @@ LoopSize loop_size_of(double area);
 /// In cells.
 double extent_of(LoopSize size);
 
-/// The length of the boundary from the beginning of a loop to a vertex, as it is drawn at a level:
-/// in cells, modulo 2^32. 0 where a loop begins, and where several meet: lengths begin anew there.
+/// The length of the boundary from the beginning of a loop to a vertex, as drawn at a level: in
+/// cells, modulo 2^32. 0 where a loop begins and where several meet: lengths restart there.
 using Milestone = std::uint32_t;
 
 /// A view of the arrays of a layer, or of a mapped file. Missing entries have size 255 and
