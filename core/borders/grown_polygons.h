@@ -5,7 +5,6 @@
 // touch have the same points on both sides: no overlap and no gap arises between them that was not
 // there before.
 //
-//
 //     triangles end on cells,         +-----------+        an area left over between them, or of
 //     beside the edge on which     ___|  growth   |___     another polygon below them, is less than
 //     they stand              ----'---------------'----    a cell wide and becomes a part of the

@@ -5,7 +5,6 @@
 // farther than the middle of the edge. The curve is the parabola that touches both edges in these
 // points, drawn as a few chords.
 //
-//
 //            v                 If the triangle contains no other vertex of the boundary, no edge
 //           /^\                enters it: see "When a vertex may be removed" in core/README.md. Nor
 //          / | \               does another triangle: if two triangles overlapped, neither with a

@@ -3,15 +3,14 @@
 //
 // Three lengths are computed at points p along the boundary of a face:
 //
-//   width      the distance from p, straight into the face, to its opposite side; but at least the
-//              diameter of a disc within the face beside p, so that corners of wide features do not
-//              count as narrow;
-//   growth     half of what the width lacks. The boundary there moves outwards by that distance,
-//   and
+//   width      the distance from p, straight into the face, to its opposite side; but at least
+//              the diameter of a disc within the face beside p, so that corners of wide features
+//              do not count as narrow;
+//   growth     half of what the width lacks. The boundary there moves outwards by that much, and
 //              corners remain corners;
-//   reserve    where the face is wide enough: half of the excess of the diameter of a disc within
-//   it
-//              beside p over the requested width. Others may grow over the face at p by so much.
+//   reserve    where the face is wide enough: half of the excess of the diameter of a disc
+//              within it beside p over the requested width. Others may grow over the face at p
+//              by so much.
 //
 //        |      :          |             a, narrow here, grows by the same on both sides, up to
 //        |  a   :<- growth |   b         the dotted line. Between a and b, which grows towards it,
