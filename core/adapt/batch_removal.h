@@ -160,7 +160,7 @@ class BatchRemoval {
   unsigned threads_;
   Held held_;
   std::vector<std::unique_ptr<BatchLane>> lanes_;
-  std::size_t looked_at_ = 0;  // candidates of which too few in a row are due
+  std::size_t looked_at_ = 0;  // up to here, too few candidates in a row are due
 };
 
 }  // namespace trapeze

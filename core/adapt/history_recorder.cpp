@@ -234,7 +234,7 @@ void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level)
   for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
 }
 
-/// Only the features of one of the two faces have lost, or gained, the area.
+/// Only features that cover just one of the two faces have lost, or gained, the area.
 void HistoryRecorder::note_taken(const Taken& taken, Level level) {
   add_grains(taken.axis, taken.area, level, taken.face, taken.taker);
   add_grains(taken.axis, -taken.area, level, taken.taker, taken.face);

@@ -25,9 +25,9 @@ class HistoryRecorder {
  public:
   /// Appends the history of `graph` to `history`. Face f belongs to the features whose rows are
   /// rows.of(f); faces become blocks by `plan`, if it is not null. Afterwards `graph` is adapted to
-  /// the coarsest tolerance. If `share` is given, it is told from time to time how many of the
-  /// vertices have been removed. Runs on up to `threads` threads; the history does not depend on
-  /// their number. Throws std::length_error if there are more versions than 32 bits can count.
+  /// the coarsest tolerance. If given, `share` receives the fraction of the vertices removed, from
+  /// time to time. Runs on up to `threads` threads; the history does not depend on their number.
+  /// Throws std::length_error if there are more versions than 32 bits can count.
   ///
   /// The time of a removal grows with the number of trapezoids along the edges that are joined.
   /// Where that is a few for most removals and thousands for all (a star of a hundred thousand

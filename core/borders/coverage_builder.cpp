@@ -218,8 +218,8 @@ class SetFaces {
     }
   }
 
-  /// Gives wide places of several features faces of their own. The arguments are those of the
-  /// constructor.
+  /// Gives wide places of several features faces of their own. `sets` and `left_out` are those of
+  /// the constructor.
   void tell_apart(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out,
                   const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
     collect_places(sets, left_out);

@@ -169,8 +169,8 @@ class Pieces {
 void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, DividedVoid& divided) {
   if (is_above(a, b)) {
     divided.segments.emplace_back(a, b);
-    divided.sides.emplace_back(right_of_ab, left_of_ab);  // what is right of one that goes down
-  } else {                                                // is on the left of the map
+    divided.sides.emplace_back(right_of_ab, left_of_ab);  // the right side of a segment that goes
+  } else {                                                // down is on the left of the map
     divided.segments.emplace_back(b, a);
     divided.sides.emplace_back(left_of_ab, right_of_ab);
   }

@@ -9,7 +9,7 @@
 //                 that ended beside its tip now ends at it;
 //   adjustment    a trapezoid keeps its top and bottom and gets another edge or another vertex.
 //
-// All changes go through the edit log. Whether a vertex may be removed is decided beforehand (see
+// All changes go through the edit log. Whether a vertex may be removed is decided first (see
 // topological_consistency.h).
 #pragma once
 

@@ -149,8 +149,8 @@ std::vector<Part> parts_of(const Rings& rings) {
   return parts;
 }
 
-/// Sides of boundaries, drawn narrower. Small rings count less: a label may lie over a pond, and
-/// need not keep the same distance from it as from the border of its country.
+/// Sides of boundaries, drawn narrower. Small rings count less: a label may cover a pond, and need
+/// not keep the same distance from it as from the border of its country.
 class Boundary {
  public:
   void clear() {

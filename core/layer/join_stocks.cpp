@@ -559,7 +559,7 @@ void order_milestones(GrowingLayer& layer, LayerContents& to) {
     levels[place] = note.level;
   }
   layer.milestone_notes = {};
-  // The begins of the vertices have advanced to their ends.
+  // The begin of each vertex has advanced to its end.
   ends.pop_back();
   ends.shrink_to_fit();
   to.milestone_ends = std::move(ends);

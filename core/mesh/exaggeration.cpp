@@ -41,7 +41,7 @@ constexpr unsigned kStepsBetweenChecks = 1024;
 // the thickness counts for less by this factor times the excess distance.
 constexpr double kOpening = 0.36;
 constexpr double kThinnerBeyond = 2;
-// For reserves, whose thickness is reduced only by distances beyond the radius of a disc.
+// For reserves: the same factor, for the distance beyond the radius of the disc.
 constexpr double kLessReserve = 0.5;
 
 // The boundary met by a ray is the opposite side of a face if it is about parallel to the present

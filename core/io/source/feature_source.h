@@ -107,7 +107,7 @@ class FeatureSource {
   // If only features with certain ids are read: these ids and the features found for them, in
   // order.
   std::optional<std::vector<std::int64_t>> ids_;
-  std::string condition_;  // for the other cases, in SQL; empty: no condition
+  std::string condition_;  // with ids: the condition that applies as well, in SQL; empty: none
   std::vector<OGRFeatureUniquePtr> by_id_;
 
   std::function<bool(std::size_t)> is_wanted_;  // empty: all are wanted

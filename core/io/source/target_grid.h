@@ -24,8 +24,8 @@ struct TargetGrid {
   double middle_y = 0;
   double half_side = 0;
   // The drawn area, in degrees: the area of use extended on each side by half of its longer side,
-  // but at most 30 degrees, and by less where the projection does not extend so far. West is less
-  // than east, which may exceed 180; the full circle is -180 to 180.
+  // but at most 30 degrees, and by less if the projection fails there or the square would become
+  // too large. West is less than east, which may exceed 180; the full circle is -180 to 180.
   double west = 0;
   double south = 0;
   double east = 0;
