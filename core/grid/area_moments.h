@@ -28,7 +28,6 @@ struct AreaMoments {
   /// moment, place and direction; so its width, the area divided by its length, is that of a
   /// straight strip. For needles, such a rectangle sticks out at the thick end; the line does not
   /// leave the box. Ends are rounded to cells and lie on the grid.
-  /// end: the line does not leave the box. Ends are rounded to cells and lie on the grid.
   Axis axis() const;
 
   /// Whether the area fills its place: the rectangle with the same two second moments is at most

@@ -2,7 +2,6 @@
 //
 // Thread-safety: all functions may be called from any thread. Changes become visible soon but
 // impose no ordering on other memory accesses.
-// nothing else.
 #pragma once
 
 #include <atomic>

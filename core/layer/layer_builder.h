@@ -49,7 +49,6 @@ class LayerBuilder {
   /// clean. Runs on up to `threads` threads. If the group is taken over, the outcome lacks the
   /// faces and the areas of features that are not below others. `classes` are the classes for
   /// merging into blocks, see LayerOptions::merging(); by feature, or empty.
-  /// become a block, see LayerOptions::merging(); by feature, or empty.
   Assembly add_coverage(std::span<const std::uint32_t> rows, std::span<const Rings* const> features,
                         unsigned threads = 1, std::span<const std::uint64_t> classes = {});
 

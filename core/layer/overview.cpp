@@ -101,7 +101,6 @@ class OverviewBuilder::Adding {
  private:
   /// Numbers the features of which something is left, in their original order: later ones are drawn
   /// over others.
-  /// others.
   void number_rows() {
     for (std::size_t i = 0; i < from_.feature_of.size(); ++i) {
       if (from_.lifespans[i].dies > state_.first_level) rows_[from_.feature_of[i]] = 0;

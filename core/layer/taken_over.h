@@ -73,7 +73,6 @@ class TakenOver {
   std::vector<std::uint32_t> row_now_;  // by earlier row
   // By earlier row: the first present row of its graph. For rows that are not taken over, that of
   // the last preceding graph that is.
-  // before it that is.
   std::vector<std::uint32_t> graph_now_;
   bool is_in_order_ = true;  // graphs are in their earlier order
 };
