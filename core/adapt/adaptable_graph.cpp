@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffff;
 
-/// Heaps, the smallest one first.
+/// Heap operations; the smallest candidate is first.
 template <typename Candidate>
 void add_to(std::vector<Candidate>& retries, const std::type_identity_t<Candidate>& candidate) {
   retries.push_back(candidate);
@@ -129,7 +129,7 @@ std::optional<PriorityStack::Candidate> PriorityStack::next_candidate() {
   }
   if (position_ > 0) main_.epsilon = std::max(main_.epsilon, order_[position_ - 1].weight);
   const bool has_more = position_ < order_.size();
-  // A candidate that is due already precedes those still to come.
+  // A candidate that is already due precedes those still to come.
   const auto is_next = [&](const Candidate& retry) {
     return !has_more || retry.weight <= main_.epsilon || retry < order_[position_];
   };
@@ -147,7 +147,7 @@ bool PriorityStack::is_before_put_off(const Candidate& retry) const {
   return retry.weight <= main_.epsilon || retry < next.key;
 }
 
-/// What is to be tried, if it is.
+/// Returns the next candidate to try. None if the item was something else to do.
 std::optional<PriorityStack::Candidate> PriorityStack::next_put_off() {
   const PutOff next = put_off_[next_put_off_++];
   main_.epsilon = std::max(main_.epsilon, next.key.weight);
@@ -172,7 +172,7 @@ PriorityStack::Candidate PriorityStack::pop_retry(Lane& lane) {
   return next;
 }
 
-/// Of corners and regions; null if nothing is to be tried again.
+/// The next corner or region to be tried again; null if there is none.
 const PriorityStack::Candidate* PriorityStack::next_retry() const {
   if (region_retries_.empty()) return main_.retries.empty() ? nullptr : &main_.retries.front();
   if (main_.retries.empty()) return &region_retries_.front();
@@ -242,17 +242,17 @@ std::optional<double> PriorityStack::remove_next([[maybe_unused]] const Trapezoi
   return std::nullopt;
 }
 
-/// A loop that has gone in a batch.
+/// Reports a loop that was removed in a batch.
 void PriorityStack::report(const PutOff& lost, EditLog& log) {
   if (graph_->is_coverage()) borders_.note_lost_loop(lost.loop);
   last_corner_ = lost.corner;
   last_removal_ = Removal::loop;
-  log.begin();  // nothing is left to be changed
+  log.begin();  // nothing remains to be changed
 }
 
 bool PriorityStack::remove_corner(Lane& lane, CornerId c, EditLog& log) {
   const TrapezoidalGraph& graph = *graph_;
-  if (!graph.corner(c).is_alive()) return false;  // went with its loop
+  if (!graph.corner(c).is_alive()) return false;  // removed with its loop
   if (lane.batch != nullptr && !lane.batch->may_try(c)) return false;
   if (is_to_wait(lane, c)) return false;
   const Decision decision = decide_removal(graph, c, options_.topology);
@@ -288,12 +288,12 @@ bool PriorityStack::remove_corner(Lane& lane, CornerId c, EditLog& log) {
   return true;
 }
 
-/// Of a coverage, after a corner went; `edge_before` led to it.
+/// In a coverage, after the removal of a corner; `edge_before` led to it.
 void PriorityStack::note_joined(const Corner& gone, CornerId corner, EdgeId edge_before) {
   const EdgeId joined = graph_->corner(gone.prev).edge;
   const EdgeId other = joined == edge_before ? gone.edge : edge_before;
   borders_.note_joined(other, joined, gone.prev);
-  // Two circles become one when the successors of one of each are exchanged.
+  // Two circular lists are joined by exchanging the successors of one element of each.
   next_gone_[corner] = corner;
   for (const EdgeId edge : {joined, other}) {
     if (!gone_from_[edge].is_none()) {
@@ -306,7 +306,7 @@ void PriorityStack::note_joined(const Corner& gone, CornerId corner, EdgeId edge
   is_in_place_[gone.next] = 1;
 }
 
-/// A corner that is weighed where it stands is weighed whenever it is popped.
+/// A corner that is weighed in place is weighed whenever it is popped.
 bool PriorityStack::is_to_wait(Lane& lane, CornerId c) {
   if (!graph_->is_coverage() || is_in_place_[c] == 0) return false;
   weights_[c] = weight_in_place(c);
@@ -334,7 +334,7 @@ double PriorityStack::weight_in_place(CornerId c) const {
   return std::sqrt(squared);
 }
 
-/// Gives a weight to the remaining anchors of rings; false if there are none.
+/// Assigns weights to the remaining anchors of rings; false if there are none.
 bool PriorityStack::enqueue_anchors() {
   bool has_any = false;
   for (std::size_t i = 0; i < graph_->corners().size(); ++i) {
@@ -361,7 +361,7 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
   last_removal_ = Removal::region;
   for (const VertexId v : borders_.changed()) retry_waiting(main_, v);
   for (const CornerId c : borders_.dissolved()) {
-    if (!graph_->corner(c).is_alive()) continue;  // went with a region that was united later
+    if (!graph_->corner(c).is_alive()) continue;  // removed with a region that was united later
     is_in_place_[c] = 1;
     is_to_wait(main_, c);
     if (state_[c] != State::queued) {
@@ -373,8 +373,8 @@ bool PriorityStack::remove_region(RegionId region, EditLog& log) {
   return true;
 }
 
-/// What has grown is not measured again before it is popped; of a block, what is known of any part
-/// of it will do.
+/// A united region is not weighed again before it is popped. For a block, the known weight of any
+/// of its parts is enough.
 void PriorityStack::requeue_united(const RegionBorders::United& united) {
   double known = 0;
   std::size_t unknown = 0;
@@ -425,8 +425,8 @@ AdaptableGraph::AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptio
 void AdaptableGraph::adapt_to(double epsilon) {
   while (log_.applied() > 0 && epsilon_of_edit_[log_.applied() - 1] >= epsilon) log_.revert();
   while (log_.applied() < log_.size() && epsilon_of_edit_[log_.applied()] < epsilon) log_.apply();
-  // The sequence continues from where it was followed to before; the tolerance of the next removal
-  // is known only once it has been made, so one too many is made and reverted.
+  // The sequence continues where it ended before. The tolerance of the next removal is known only
+  // once it has been made, so one removal too many is made and reverted.
   while (log_.applied() == log_.size() && !exhausted_) {
     const std::optional<double> made = stack_.remove_next(graph_, log_);
     if (!made) {

@@ -1,23 +1,23 @@
-// One polygon's trapezoidal graph, adapted in place to any tolerance, forward and back (paper,
+// One polygon's trapezoidal graph, adapted in place to any tolerance, forwards and back (paper,
 // section 3.2).
 //
 // All vertices are in a priority stack, ordered by weight and then by vertex. Adapting to a
 // tolerance pops every vertex of smaller weight and removes it, unless the topological consistency
-// test blocks it; a blocked vertex is tried again as soon as its blocker or one of its neighbours
+// test blocks it. A blocked vertex is tried again as soon as its blocker or one of its neighbours
 // in the ring has been removed, with the weight of the vertex popped last. So there is one fixed
-// sequence of removals, and the graph at a tolerance is the result of a prefix of it: it depends on
+// sequence of removals, and the graph at a tolerance is the result of a prefix of it. It depends on
 // the tolerance only, never on the tolerances it was adapted to before.
 //
 // The two anchors of a ring, between which all its other vertices are weighed, have no finite
 // weight and are removed with its last triangle. Where rings hook into each other so that all
 // vertices of finite weight are blocked, the anchors are given weights as well: an innermost ring
-// always has two vertices whose triangle is empty, so that in the end nothing is left.
+// always has two vertices whose triangles are empty, so in the end everything is removed.
 //
 // In a coverage, each arc is weighed by itself, so that a border is the same for the polygons on
-// both sides, and regions are in the stack as well (see region_borders.h). Where a junction has
-// become a corner of one arc, the weights of the arcs that met there no longer say how far that arc
-// will be from what it was: it, and the corners beside those that go so, are weighed where they
-// stand, by all vertices that went between their neighbours.
+// both sides, and regions are in the stack too (see region_borders.h). Where a junction has become
+// a corner of one arc, the weights of the arcs that met there no longer bound how far that arc
+// deviates from its original position. So that corner, and the corners next to corners removed this
+// way, are weighed in place: by all vertices removed between their neighbours.
 //
 // Thread-safety: none; different graphs may be used by different threads.
 #pragma once
@@ -41,18 +41,18 @@ namespace trapeze {
 class BatchLane;
 class BatchRemoval;
 
-/// The corners of a graph in the order in which they are to be removed, and those that are blocked.
+/// The corners of a graph in order of removal, and the corners that are blocked.
 class PriorityStack {
  public:
-  /// Weighs all corners of the graph and sorts them. `graph` must outlive the stack's use, and so
-  /// must the plan by which regions of a coverage become blocks, if it is not null. On up to
-  /// `threads` threads.
+  /// Weighs all corners of the graph and sorts them, on up to `threads` threads. `graph` must
+  /// outlive the use of the stack, and so must `plan`, which says how regions of a coverage become
+  /// blocks, if it is not null.
   void assign(const TrapezoidalGraph& graph, const GeneralizationOptions& options,
               unsigned threads = 1, const MergePlan* plan = nullptr);
 
-  /// Carries out the next removal of the sequence, through `log`, and returns its tolerance
-  /// (cells): the graph at a tolerance has had all removals of smaller ones. None if no vertex of
-  /// finite weight can be removed any more.
+  /// Carries out the next removal of the sequence through `log` and returns its tolerance in cells:
+  /// the graph at a tolerance has had all removals of smaller ones. None if no vertex of finite
+  /// weight can be removed any more.
   std::optional<double> remove_next(const TrapezoidalGraph& graph, EditLog& log);
 
   struct Counts {
@@ -61,7 +61,7 @@ class PriorityStack {
     std::uint64_t walked = 0;   // trapezoids examined for them
     std::uint64_t touched = 0;  // trapezoids changed by removals
     std::uint64_t at_once = 0;  // removals carried out in batches
-    /// Of the trapezoids walked and touched: those at the same time as others, if every thread of
+    /// The part of `walked` and `touched` that runs in parallel with other work, if every thread of
     /// a batch has a core.
     std::uint64_t beside = 0;
   };
@@ -70,18 +70,18 @@ class PriorityStack {
   /// Whether any vertex has been blocked so far.
   bool has_blocked() const { return main_.has_blocked; }
 
-  /// The corner that went last, and how it went.
+  /// The corner removed last, and how it was removed.
   CornerId last_corner() const { return last_corner_; }
   Removal last_removal() const { return last_removal_; }
-  /// In a coverage: the areas that went to another face when a loop or a region was removed last.
+  /// In a coverage: the areas that went to another face in the last removal of a loop or a region.
   std::span<const Taken> last_taken() const { return borders_.taken(); }
-  /// Of the block that a region became a part of when it was removed last (cells squared), if any.
+  /// Area of the block that the region removed last became a part of, if any (cells squared).
   std::optional<double> last_block_area() const { return borders_.block_area(); }
   double weight(CornerId c) const { return weights_[c]; }
 
  private:
-  /// A corner with what it is ordered by, so that sorting looks nowhere else. Numbers of corners
-  /// that there are not stand for regions, which come after the vertices of their weight.
+  /// A corner with its sort keys, so that sorting reads nothing else. Corner numbers beyond the
+  /// existing ones represent regions, which come after the vertices of the same weight.
   struct Candidate {
     double weight;
     VertexId vertex;
@@ -90,24 +90,24 @@ class PriorityStack {
   };
 
   enum class State : std::uint8_t { ahead, blocked, queued };
-  // Of corners blocked by one vertex, one and the next of them.
+  // A list of the corners blocked by one vertex: a corner and the index of the next one.
   struct Waiting {
     CornerId corner;
     std::uint32_t next;
   };
-  /// What is done otherwise while a batch is carried out; see batch_removal.h.
+  /// What is done differently while a batch is carried out; see batch_removal.h.
   class Batch {
    public:
     virtual ~Batch() = default;
-    /// False if it has been put off.
+    /// False if the corner has been put off.
     virtual bool may_try(CornerId c) = 0;
-    /// Removes the corner if it is not blocked; false if it has been put off.
+    /// Removes the corner if it is not blocked. False if it has been put off.
     virtual bool carry_out(CornerId c, const Decision& decision, EditLog& log) = 0;
     virtual void wait_for(CornerId corner, VertexId blocker) = 0;
     virtual void retry_waiting(VertexId gone) = 0;
   };
-  /// Removals that go one after another: all of them as a rule, and those of one part of the graph
-  /// while a batch is carried out.
+  /// Removals in sequence: usually all of them; while a batch is carried out, those of one part of
+  /// the graph.
   struct Lane {
     double epsilon = 0;              // greatest weight popped
     std::vector<Candidate> retries;  // corners to be tried again, smallest first (a heap)
@@ -115,10 +115,10 @@ class PriorityStack {
     Counts counts;
     Batch* batch = nullptr;
   };
-  /// Less than any other.
+  /// Precedes every other candidate.
   static constexpr Candidate kFirst = {-1, VertexId(0), CornerId(0)};
-  /// What a batch has left to be done in its place in the sequence: when `key` is due, and after
-  /// what is tried before `at` then.
+  /// Work that a batch leaves to be done in its place in the sequence: when `key` is due, and after
+  /// everything that is tried before `at` then.
   struct PutOff {
     enum class What : std::uint8_t { to_try, to_retry, to_report };
 
@@ -168,8 +168,8 @@ class PriorityStack {
   LargeArray<Candidate> order_;
   std::size_t position_ = 0;
   Lane main_;
-  std::vector<Candidate> region_retries_;  // as those of lanes, so that the next one is at hand
-  std::vector<PutOff> put_off_;            // by the last batch, in the sequence
+  std::vector<Candidate> region_retries_;  // as in lanes, so that the next one is at hand
+  std::vector<PutOff> put_off_;            // by the last batch, in sequence order
   std::size_t next_put_off_ = 0;
   std::optional<PutOff> to_report_;
 
@@ -179,11 +179,11 @@ class PriorityStack {
   VertexWeights ring_weights_;
   std::vector<Point> ring_;
   std::vector<CornerId> ring_corners_;
-  // Of a coverage.
+  // In a coverage.
   RegionBorders borders_;
-  Table<RegionId, double> region_weights_;     // as they were queued last
-  Table<CornerId, std::uint8_t> is_in_place_;  // is weighed where it stands
-  // Corners that went from an edge: one of them, and from each of them to the next, around.
+  Table<RegionId, double> region_weights_;     // as last queued
+  Table<CornerId, std::uint8_t> is_in_place_;  // whether weighed in place
+  // Corners removed from an edge, as a circular list: one of them by edge, and the next of each.
   Table<EdgeId, CornerId> gone_from_;
   Table<CornerId, CornerId> next_gone_;
   CornerId last_corner_;
@@ -192,16 +192,16 @@ class PriorityStack {
 
 class AdaptableGraph {
  public:
-  /// `plan`, if it is not null, must outlive the graph.
+  /// `plan`, if not null, must outlive the graph.
   explicit AdaptableGraph(TrapezoidalGraph graph, const GeneralizationOptions& options = {},
                           const MergePlan* plan = nullptr);
   AdaptableGraph(const AdaptableGraph&) = delete;
   AdaptableGraph& operator=(const AdaptableGraph&) = delete;
 
-  /// Adapts the graph to the tolerance `epsilon` (cells, >= 0), forward or back.
+  /// Adapts the graph to the tolerance `epsilon` (cells, >= 0), forwards or back.
   void adapt_to(double epsilon);
 
-  /// The tolerances at which the graph is the present one: those greater than `above`, up to and
+  /// The tolerances at which the graph equals the present one: greater than `above`, up to and
   /// including `up_to`.
   struct Unchanged {
     double above = -1;  // below zero: nothing has been removed

@@ -15,13 +15,14 @@ namespace {
 constexpr std::uint32_t kNobody = 0xffffffff;
 constexpr std::uint32_t kOfLane = 0x80000000;
 
-// So few removals are not worth starting threads for.
+// With fewer removals, starting threads is not worthwhile.
 constexpr std::size_t kFewest = 2048;
-constexpr std::size_t kFewestOfVertices = 256;  // one in so many
+constexpr std::size_t kFewestOfVertices = 256;  // at least one vertex in so many
 constexpr std::size_t kLanesPerThread = 4;
-constexpr std::size_t kMostLanes = 32;  // more of them put more off than threads gain
+constexpr std::size_t kMostLanes = 32;  // with more lanes, more removals are put off than threads
+                                        // gain
 constexpr std::size_t kFewestVerticesPerLane = 1024;
-// Who has a longer list of nodes along its edges is put off.
+// Corners with more nodes along their edges are put off.
 constexpr std::size_t kMostNodes = 64;
 
 }  // namespace
@@ -82,8 +83,8 @@ void BatchLane::take(const Candidate& retry) {
   PriorityStack::enqueue(lane_, retry);
 }
 
-/// Neighbours and those that wait for it are tried again when the corner has gone, and all of its
-/// neighbours go with it if it is the last of a loop.
+/// Once the corner is removed, its neighbours and the corners that wait for it are tried again; if
+/// it is the last one of a loop, its neighbours are removed with it. So all of these are held too.
 void BatchLane::hold(CornerId c) {
   to_hold_.assign(1, c);
   while (!to_hold_.empty()) {
@@ -176,7 +177,7 @@ bool BatchLane::may_try(CornerId c) {
   return false;
 }
 
-/// Whether nothing that its removal reads is held.
+/// Whether nothing that the removal of the corner reads is held.
 bool BatchLane::is_free(CornerId c) const {
   const Corner& corner = graph_.corner(c);
   std::size_t nodes = 0;
@@ -200,7 +201,7 @@ bool BatchLane::is_free(EdgeId e, std::size_t& nodes) const {
   return true;
 }
 
-/// As is_free(), of a corner of a triangle that is, and of its two other corners.
+/// Like is_free(), for the whole triangle, given one of its corners that is free.
 bool BatchLane::is_free_loop(CornerId c) const {
   std::size_t nodes = 0;
   return is_free(graph_.corner(graph_.corner(c).next).edge, nodes);
@@ -313,7 +314,7 @@ bool BatchRemoval::run(Level level, const Removed& removed) {
   return true;
 }
 
-/// As lanes are taken one after another by whichever thread is free.
+/// Assumes that lanes are taken one after another by whichever thread is free.
 void BatchRemoval::note_work() const {
   std::vector<std::uint64_t> by_thread(threads_, 0);
   std::uint64_t all = 0;
@@ -324,7 +325,8 @@ void BatchRemoval::note_work() const {
   stack_.main_.counts.beside += all - *std::ranges::max_element(by_thread);
 }
 
-/// Gives each lane what is due up to `end`, and holds what may reach into two slabs.
+/// Gives each lane its candidates due up to `end`, and holds everything that may reach into two
+/// slabs.
 void BatchRemoval::gather(std::size_t end) {
   held_.assign(graph_);
   const std::span<const PriorityStack::Candidate> due =
@@ -347,7 +349,7 @@ void BatchRemoval::gather(std::size_t end) {
   }
 }
 
-/// Those that may fall due before `end`, if there is one.
+/// The retrials that may fall due before `end`, if there is one.
 void BatchRemoval::gather_retries(const PriorityStack::Candidate* end) {
   using Candidate = PriorityStack::Candidate;
   std::vector<Candidate>& retries = stack_.main_.retries;
@@ -373,7 +375,7 @@ bool BatchRemoval::leads_out(CornerId c) const {
   return !lane_of(graph_.corner(c).vertex).has(c);
 }
 
-/// Where the level ends, or the next region may be due.
+/// The end of the level, or the place where the next region may be due.
 std::size_t BatchRemoval::end_of_batch(Level level) const {
   using Candidate = PriorityStack::Candidate;
   const auto begin = stack_.order_.begin() + static_cast<std::ptrdiff_t>(stack_.position_);
@@ -386,7 +388,7 @@ std::size_t BatchRemoval::end_of_batch(Level level) const {
   return static_cast<std::size_t>(std::find_if(begin, end, is_region) - stack_.order_.begin());
 }
 
-/// Of one share of the corners: those that are blocked and reach into two slabs.
+/// Collects, from one share of the corners, blocked ones that reach into two slabs.
 void BatchRemoval::collect_blocked(std::size_t share, std::vector<CornerId>& leading_out) const {
   const std::size_t corners = stack_.state_.size();
   const std::size_t end = corners * (share + 1) / lanes_.size();

@@ -1,16 +1,15 @@
-// Batch generalization (paper, section 6): the removals of one level are carried out at once, on
-// several threads, and the result is, record by record, that of one after another.
+// Batch generalization (paper, section 6): the removals of one level are carried out on several
+// threads, and the result equals, record by record, that of removing one vertex after another.
 //
-// The graph is divided into slabs by the order of the sweep, one for each lane, and a lane carries
-// out the removals within its slab in their sequence. Removals that have no record of the graph in
-// common may change places in the sequence. So what cannot be done at once is put off: a removal
-// that reaches into another slab, one that changes what a removal before it, put off, is going to
-// read or change. What is put off holds what it may come to touch, so that nothing that follows it
-// in the sequence and meets it can overtake it; it is carried out after the batch, by the stack, in
-// its place in the sequence. Why this is right is in core/README.md.
+// The graph is divided into slabs in sweep order, one for each lane, and a lane carries out the
+// removals within its slab in their sequence. Removals that share no record of the graph commute.
+// Others are put off: removals that reach into another slab, and removals that change something
+// that an earlier removal, itself put off, is going to read or change. A removal that is put off
+// holds everything that it may touch, so that no later removal that meets it can overtake it. The
+// stack carries it out after the batch, in its place in the sequence. core/README.md has the proof.
 //
-// Regions reach as far as their borders: a batch ends where the next one of them is due. That a
-// loop has gone is reported after the batch, as the regions on both sides of it become one.
+// Regions reach as far as their borders, so a batch ends where the next region is due. Loops that
+// were removed are reported after the batch, as the regions on both sides of them become one.
 #pragma once
 
 #include <cstddef>
@@ -28,14 +27,15 @@
 
 namespace trapeze {
 
-/// What removals that were put off may come to touch.
+/// The records that removals put off may touch.
 class Held {
  public:
   void assign(const TrapezoidalGraph& graph);
 
-  /// A corner whose next removal, or retrial, is to be put off; lanes may ask for any corner.
+  /// Whether the next removal, or retrial, of the corner is to be put off; lanes may query any
+  /// corner.
   bool has(CornerId c) const { return state(c) != kFree; }
-  /// The corner with all it may touch.
+  /// Whether the corner is held together with everything its removal may touch.
   bool has_whole(CornerId c) const { return state(c) == kWhole; }
   bool has(EdgeId e) const { return edges_[e] != 0; }
   bool has(VertexId v) const { return vertices_[v] != 0; }
@@ -60,7 +60,8 @@ class Held {
   Table<VertexId, std::uint8_t> vertices_;
 };
 
-/// The removals of a batch in one slab. One thread at a time, and no two for one slab.
+/// The removals of a batch in one slab. Call it from one thread at a time; no two lanes share a
+/// slab.
 class BatchLane : public PriorityStack::Batch {
  public:
   using Removed = std::function<void(const EditLog&)>;
@@ -69,9 +70,9 @@ class BatchLane : public PriorityStack::Batch {
   BatchLane(const BatchLane&) = delete;
   BatchLane& operator=(const BatchLane&) = delete;
 
-  /// The slab: the vertices from `first` to `last`.
+  /// Sets the slab: the vertices from `first` to `last`.
   void begin(VertexId first, VertexId last);
-  /// Takes what of these is due in the slab.
+  /// Takes the candidates that are due in the slab.
   void gather(std::span<const PriorityStack::Candidate> due);
   void take(const PriorityStack::Candidate& retry);
   /// Corners of the batch in the slab whose edges lead out of it.
@@ -79,10 +80,11 @@ class BatchLane : public PriorityStack::Batch {
   bool has(VertexId v) const { return reach_.first <= v && v <= reach_.last; }
   /// Whether the corner and its neighbours lie in the slab.
   bool has(CornerId c) const;
-  /// Holds the corner and what its removal may touch, and so on for all that may go with it.
+  /// Holds the corner and everything its removal may touch, and does the same for all corners that
+  /// may be removed with it.
   void hold(CornerId c);
 
-  /// Carries out what was gathered, and what is to be tried again before `end`, if there is one.
+  /// Carries out the gathered removals, and retrials due before `end`, if there is one.
   void run(const PriorityStack::Candidate* end, const Removed& removed);
 
   // Called by the stack.
@@ -93,7 +95,8 @@ class BatchLane : public PriorityStack::Batch {
 
   /// Trapezoids walked and touched.
   std::uint64_t work() const { return lane_.counts.walked + lane_.counts.touched; }
-  /// Gives the stack what is left: corners that wait, or are to be tried again, and counts.
+  /// Returns the remaining work to the stack: corners that wait or are to be tried again, and the
+  /// counts.
   void end(std::vector<PriorityStack::PutOff>& put_off);
 
  private:
@@ -119,11 +122,11 @@ class BatchLane : public PriorityStack::Batch {
   std::size_t position_ = 0;
   std::vector<CornerId> leading_out_;
   std::vector<CornerId> to_hold_;
-  Candidate key_;  // that fell due last
-  Candidate at_;   // what is tried
+  Candidate key_;  // fell due last
+  Candidate at_;   // being tried
   std::vector<PutOff> put_off_;
-  // Corners that wait, and for which vertex; their numbers have a bit that those of the stack do
-  // not have.
+  // Corners that wait, and the vertex that each waits for. Their numbers have a bit that those of
+  // the stack do not have.
   std::vector<Waiting> waiting_;
   std::vector<VertexId> blockers_;
 };
@@ -133,14 +136,14 @@ class BatchRemoval {
   /// Called after each removal, on the thread of the lane.
   using Removed = std::function<void(std::size_t lane, const EditLog&)>;
 
-  /// `stack` is that of `graph`; both must outlive this.
+  /// `stack` is the stack of `graph`; both must outlive this object.
   BatchRemoval(PriorityStack& stack, TrapezoidalGraph& graph, unsigned threads);
   ~BatchRemoval();
 
   std::size_t lanes() const { return lanes_.size(); }
 
-  /// If many removals of the level come next in the sequence of the stack: carries out those that
-  /// may be carried out now. The others are the stack's next ones. False if they are too few.
+  /// If many removals of the level come next in the sequence of the stack, carries out those that
+  /// can be carried out now; the others are next on the stack. Returns false if there are too few.
   bool run(Level level, const Removed& removed);
 
  private:
@@ -157,7 +160,7 @@ class BatchRemoval {
   unsigned threads_;
   Held held_;
   std::vector<std::unique_ptr<BatchLane>> lanes_;
-  std::size_t looked_at_ = 0;  // candidates of which too few are due in a row
+  std::size_t looked_at_ = 0;  // up to here, too few candidates in a row are due
 };
 
 }  // namespace trapeze

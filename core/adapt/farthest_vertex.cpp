@@ -10,7 +10,7 @@
 namespace trapeze {
 namespace {
 
-/// The greatest and the least of what is measured.
+/// The smallest and the greatest of the measured values.
 struct Range {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -std::numeric_limits<double>::infinity();
@@ -21,8 +21,8 @@ struct Range {
   }
 };
 
-/// Of successive corners of a side the last one up to which each lies farther in the direction (x,
-/// y) than the one before. A side turns by less than half a circle: if it goes back first, its
+/// The last of the successive corners of a side up to which each lies farther in the direction (x,
+/// y) than the one before. A side turns by less than half a circle: if it recedes first, its
 /// farthest corner is at one of its ends.
 Point climb(std::span<const Point> side, std::int64_t x, std::int64_t y) {
   const auto goes_on = [&](std::size_t i) {
@@ -56,8 +56,8 @@ double SegmentDistance::squared_bound(std::span<const Point> hull) const {
                                            [&](const Point& p) { return is_above(*(&p - 1), p); });
   const std::span<const Point> right(hull.begin(), bottom);
   const std::span<const Point> left(bottom - 1, hull.end());
-  // The box around the hull whose sides are parallel to the segment. Any direction will do for one
-  // that is a point.
+  // The box around the hull whose sides are parallel to the segment. For a segment that is a point,
+  // any direction will do.
   const bool is_point = squared_length_ == 0;
   const std::int64_t dx = is_point ? 1 : std::int64_t{b_.x} - a_.x;
   const std::int64_t dy = is_point ? 0 : std::int64_t{b_.y} - a_.y;
@@ -87,7 +87,7 @@ struct FarthestVertex::Search {
   std::size_t piece_begin;
   std::size_t piece_end;
   Found best;
-  std::size_t lap = 0;  // added to the index of a vertex in the ring, for that in the piece
+  std::size_t lap = 0;  // added to the index of a vertex in the ring to get its index in the piece
 
   std::size_t off_middle(std::size_t i) const { return std::max(i - piece_begin, piece_end - i); }
 };
@@ -125,8 +125,8 @@ void FarthestVertex::build_tree() {
   has_tree_ = true;
 }
 
-/// The hull of points_, which is put in order: its right side from top to bottom, then its left
-/// side from bottom to top (Andrew's monotone chain).
+/// The hull of points_, which are sorted in the process: its right side from top to bottom, then
+/// its left side from bottom to top (Andrew's monotone chain).
 void FarthestVertex::append_hull(Row& row) {
   std::sort(points_.begin(), points_.end(), is_above);
   points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
@@ -163,7 +163,7 @@ FarthestVertex::Found FarthestVertex::find(std::size_t begin, std::size_t end) {
   return search.best;
 }
 
-/// The vertices [begin, end) of the piece.
+/// Examines the vertices [begin, end) of the piece.
 void FarthestVertex::examine_all(std::size_t begin, std::size_t end, Search& search) const {
   Found& best = search.best;
   const std::size_t n = ring_.size();
@@ -183,9 +183,10 @@ bool FarthestVertex::wins_tie(std::size_t i, const Search& search) const {
   return p == best ? i < search.best.vertex : is_above(p, best);
 }
 
-/// Vertices [begin, end) of the ring. The leaves that are cut are examined; between them, the
-/// nodes that fill the range go first by how far away a vertex of theirs may be. A node beyond the
-/// range would promise what lies outside, and lead to where there is nothing.
+/// Searches vertices [begin, end) of the ring. Leaves that are cut by the range are examined.
+/// Between them, the nodes that fill the range are searched in order of the greatest distance that
+/// their vertices may have. A node that extends beyond the range would promise distances of
+/// vertices outside, and be searched in vain.
 void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_t lap,
                                   Search& search) const {
   if (begin >= end) return;
@@ -209,7 +210,7 @@ void FarthestVertex::search_range(std::size_t begin, std::size_t end, std::size_
 FarthestVertex::TreeNode FarthestVertex::node(std::size_t row, std::size_t index,
                                               const Search& search) const {
   const double bound = search.distance.squared_bound(rows_[row][index]);
-  // Twice the greatest error of a distance by rounding.
+  // Twice the greatest rounding error of a distance.
   constexpr double kRounding = 4e-6;
   return {row, index, bound + 2 * kRounding * std::sqrt(bound) + kRounding * kRounding};
 }

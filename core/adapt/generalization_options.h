@@ -1,4 +1,4 @@
-// By which rules a graph is generalized.
+// The rules by which a graph is generalized.
 #pragma once
 
 #include "core/adapt/vertex_weight.h"

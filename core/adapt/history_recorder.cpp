@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kNoVersion = 0xffffffff;
 constexpr std::uint64_t kRemovalsBetweenShares = 1024;
 constexpr std::uint32_t kHorizontalBit = 0x80000000;
-constexpr std::size_t kMostVersions = kHorizontalBit - 1;  // of nodes: the bit is taken
+constexpr std::size_t kMostVersions = kHorizontalBit - 1;  // of nodes: one bit is a flag
 
 /// Equal, except that top or bottom may be another vertex of the same y.
 bool covers_the_same(const History& history, const MeshTrapezoid& a, const MeshTrapezoid& b) {
@@ -44,13 +44,15 @@ Lifespan& lifespan_of(History& history, std::uint32_t version) {
              : history.horizontal_edges[version ^ kHorizontalBit].lifespan;
 }
 
-/// Whether one of the levels from `level` up to that before `next` is a tolerance of whole zooms.
+/// Whether one of the levels from `level` up to, but not including, `next` is the tolerance of a
+/// whole zoom.
 bool reaches_tolerance_of_zoom(int level, int next) {
   return level % kLevelsPerOctave == 1 || next - level >= kLevelsPerOctave;
 }
 
-/// Puts the flagged ids in ascending order: neighbours lie side by side in memory, while the order
-/// in which they were touched is that of weights, all over the map, and of threads.
+/// Puts the flagged ids in ascending order, in which neighbours are near each other in memory. The
+/// order in which they were touched is that of weights, which is scattered over the map, and of
+/// threads.
 template <class IdType>
 void put_in_order(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& flags) {
   constexpr std::size_t kSparse = 16;
@@ -69,7 +71,7 @@ void put_in_order(std::vector<IdType>& ids, const Table<IdType, std::uint8_t>& f
 std::uint64_t HistoryRecorder::most_work(std::size_t vertices) {
   constexpr std::uint64_t kAlways = std::uint64_t{1} << 27;
   constexpr std::uint64_t kPerVertexAndDoubling =
-      48;  // outlines of any size take 12 to 16 a vertex
+      48;  // outlines of any size take 12 to 16 per vertex
   return kAlways + kPerVertexAndDoubling * vertices * std::bit_width(vertices);
 }
 
@@ -204,7 +206,7 @@ void HistoryRecorder::note_touched(const EditLog& log, Touched& touched) {
   }
 }
 
-/// The nodes along edges that got another face are in another feature now.
+/// The nodes along edges whose face changed now belong to another feature.
 void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& log) {
   for (const auto& kept : log.touched_edges()) {
     const Edge& edge = graph.edge(kept.id);
@@ -213,7 +215,7 @@ void HistoryRecorder::touch_along(const TrapezoidalGraph& graph, const EditLog& 
       continue;
     }
     if (const std::optional<double> area = stack_.last_block_area()) {
-      // It is a part of a larger outline now.
+      // The edge is now part of a larger outline.
       loop_sizes_[kept.id] = std::max(loop_sizes_[kept.id], loop_size_of(*area));
       edge_version_[kept.id] = kNoVersion;
     }
@@ -232,7 +234,7 @@ void HistoryRecorder::note_lost_area(const TrapezoidalGraph& graph, Level level)
   for (const Taken& taken : stack_.last_taken()) note_taken(taken, level);
 }
 
-/// Features of one face only have lost the area, or gained it.
+/// Only features that cover just one of the two faces have lost, or gained, the area.
 void HistoryRecorder::note_taken(const Taken& taken, Level level) {
   add_grains(taken.axis, taken.area, level, taken.face, taken.taker);
   add_grains(taken.axis, -taken.area, level, taken.taker, taken.face);
@@ -243,7 +245,7 @@ void HistoryRecorder::add_grains(const Axis& axis, double area, Level level, Fac
   bool is_covered = !rows_->of(other).empty();
   for_each_apart(rows_->of(face), rows_->of(other), [&](std::uint32_t row) {
     history_->grains.push_back({axis, area, level, row, is_covered});
-    is_covered = true;  // by the first one
+    is_covered = true;  // by the first feature
   });
 }
 
@@ -268,12 +270,12 @@ void HistoryRecorder::end_level(const TrapezoidalGraph& graph, Level level) {
   touched_.nodes.clear();
 }
 
-/// Others lie between pieces of the void and are not seen.
+/// Edges without features on either side lie between pieces of the void and are not visible.
 bool HistoryRecorder::has_features_beside(const Edge& edge) const {
   return !rows_->of(edge.face[kLeft]).empty() || !rows_->of(edge.face[kRight]).empty();
 }
 
-/// An edge whose ends have changed begins a new version, and so do the inside nodes along it.
+/// An edge whose ends have changed starts a new version, and so do the inside nodes along it.
 void HistoryRecorder::renew_edge(const TrapezoidalGraph& graph, EdgeId e) {
   if (graph.is_frame(e)) return;
   const Edge& edge = graph.edge(e);
@@ -321,8 +323,8 @@ void HistoryRecorder::renew_node(const TrapezoidalGraph& graph, NodeId n, Level 
   version = rows.empty() ? kNoVersion : open_node(now, rows, level);
 }
 
-/// The features that have the node, or whose boundary the edge of one without height is: on both
-/// sides of that there may be others.
+/// The features to which the node belongs. For a node without height: the features whose boundary
+/// its horizontal edge is, since other features may lie on both sides of that.
 std::span<const std::uint32_t> HistoryRecorder::rows_of(const TrapezoidalGraph& graph,
                                                         const Node& node,
                                                         const MeshTrapezoid& trapezoid) {
@@ -360,7 +362,7 @@ bool HistoryRecorder::is_open(std::uint32_t version, const MeshTrapezoid& trapez
   return !is_copy(version + static_cast<std::uint32_t>(rows.size()), version);
 }
 
-/// Whether both are of one node at one time, for several features.
+/// Whether both versions represent the same node at the same time, for several features.
 bool HistoryRecorder::is_copy(std::uint32_t version, std::uint32_t of) const {
   if (rows_->shared().empty()) return false;
   const std::uint32_t i = version & ~kHorizontalBit;

@@ -23,23 +23,22 @@ class BatchRemoval;
 /// Reusable memory for recording; one call at a time.
 class HistoryRecorder {
  public:
-  /// Appends the history of `graph` to `history`. Face f is that of the features whose rows are
-  /// rows.of(f). Afterwards `graph` is adapted to the coarsest tolerance. Tells `share` now and
-  /// then, if there is one, how many of the vertices have gone. Throws std::length_error if there
-  /// are more versions than 32 bits count. On up to `threads` threads; the history does not depend
-  /// on their number.
+  /// Appends the history of `graph` to `history`. Face f belongs to the features whose rows are
+  /// rows.of(f); faces become blocks by `plan`, if it is not null. Afterwards `graph` is adapted to
+  /// the coarsest tolerance. If given, `share` receives the fraction of the vertices removed, from
+  /// time to time. Runs on up to `threads` threads; the history does not depend on their number.
+  /// Throws std::length_error if there are more versions than 32 bits can count.
   ///
-  /// The time of a removal grows with the trapezoids along the edges that are joined. Where that is
-  /// a few for most and thousands for all (a star of a hundred thousand rays), the removals end
-  /// after most_work() of it: levels from then on have the vertices that were left, which several
-  /// threads find out somewhat later. Returns the tolerance at which that was (cells), and none as
-  /// a rule.
-  /// Faces become blocks by `plan`, if it is not null.
+  /// The time of a removal grows with the number of trapezoids along the edges that are joined.
+  /// Where that is a few for most removals and thousands for all (a star of a hundred thousand
+  /// rays), removing stops after most_work(): levels from then on keep the remaining vertices.
+  /// Several threads notice this somewhat later. Returns the tolerance at which that happened
+  /// (cells); usually none.
   std::optional<double> record(TrapezoidalGraph& graph, const FaceFeatures& rows,
                                const GeneralizationOptions& options, History& history,
                                WorkShare* share = nullptr, unsigned threads = 1,
                                const MergePlan* plan = nullptr);
-  /// The same of a single polygon, which is the feature of row 0.
+  /// The same for a single polygon, which is the feature of row 0.
   std::optional<double> record(TrapezoidalGraph& graph, const GeneralizationOptions& options,
                                History& history);
 
@@ -47,13 +46,13 @@ class HistoryRecorder {
   /// as real outlines and coverages of any size need, and at least 2^27 (half a second).
   static std::uint64_t most_work(std::size_t vertices);
 
-  /// Of the last recording.
+  /// The stack of the last recording.
   const PriorityStack& stack() const { return stack_; }
 
  private:
   void begin(const TrapezoidalGraph& graph, History& history);
   void measure_loops(const TrapezoidalGraph& graph);
-  /// Since the last level, in any order.
+  /// Records changed since the last level, in any order.
   struct Touched {
     std::vector<EdgeId> edges;
     std::vector<NodeId> nodes;
@@ -84,19 +83,19 @@ class HistoryRecorder {
   const FaceFeatures* rows_ = nullptr;
   std::uint32_t vertex_base_ = 0;
   PriorityStack stack_;
-  // The version that is open at present, by edge and by node; kNoVersion if there is none. That of
-  // a node without height is a horizontal edge, flagged with kHorizontalBit, if it has one. Where
+  // The currently open version by edge and by node; kNoVersion if there is none. The version of a
+  // node without height is its horizontal edge, if it has one, flagged with kHorizontalBit. If
   // several features have one, it is that of the first.
   Table<EdgeId, std::uint32_t> edge_version_;
   Table<NodeId, std::uint32_t> node_version_;
-  Table<EdgeId, LoopSize> loop_sizes_;  // as it was at first
+  Table<EdgeId, LoopSize> loop_sizes_;  // as at the start
   Milestones milestones_;
   std::vector<std::uint32_t> apart_;  // for rows_of()
   Touched touched_;
-  std::vector<Touched> touched_by_lane_;  // of a batch
+  std::vector<Touched> touched_by_lane_;  // in a batch
   Table<EdgeId, std::uint8_t> edge_is_touched_;
   Table<NodeId, std::uint8_t> node_is_touched_;
-  // Loops as they were at first.
+  // Loops as at the start.
   struct Loop {
     Axis axis;
     double area = 0;  // cells squared

@@ -9,7 +9,7 @@
 namespace trapeze {
 namespace {
 
-/// What hangs together.
+/// Groups of connected items.
 class Groups {
  public:
   explicit Groups(std::size_t count) {
@@ -33,10 +33,10 @@ class Groups {
 /// A loop, or an arc between junctions: edges with the same faces on their sides.
 struct Piece {
   CornerId first;
-  // What it adds to twice the area of the features on its left, as one walks along it, and takes
-  // from that of those on its right; cells squared.
+  // The area that it adds, doubled, to the features on its left when followed, and subtracts from
+  // those on its right; cells squared.
   Int128 doubled_area = 0;
-  // In boundaries_: of the features that are on one of its sides only.
+  // In boundaries_: those of features that are on only one of its sides.
   std::uint32_t first_boundary = 0;
   std::uint32_t end_boundary = 0;
 };
@@ -156,7 +156,7 @@ class Measuring {
   std::vector<FeatureBoundary> boundaries_;  // by piece
   Table<CornerId, std::uint8_t> is_in_piece_;
   std::vector<std::tuple<VertexId, std::uint32_t, std::uint32_t>>
-      ends_;  // of arcs, and boundaries there
+      ends_;  // ends of arcs, with the boundaries there
   Groups groups_{0};
   std::vector<Int128> doubled_areas_;  // by first boundary of a group
 };

@@ -1,4 +1,4 @@
-// How large the loops of a boundary are, edge by edge.
+// Sizes of the loops of a boundary, by edge.
 #pragma once
 
 #include "core/borders/face_features.h"
@@ -7,11 +7,11 @@
 
 namespace trapeze {
 
-/// Sets the size of every edge of the graph as it is: that of its loop. In a coverage, an edge may
-/// be part of the boundaries of several features; each of these consists of what hangs together at
-/// vertices, and the larger one counts: the outline of a large feature is whole where it has small
-/// neighbours. That of a feature is as large beside others as by itself. Sizes of the edges of the
-/// frame are not specified.
+/// Sets the size of every edge of the present graph to that of its loop. In a coverage, an edge may
+/// be part of the boundaries of several features. Each boundary is split into the parts connected
+/// at vertices, and the larger of these counts: the outline of a large feature is complete where it
+/// has small neighbours. A feature has the same sizes next to others as by itself. Sizes of frame
+/// edges are unspecified.
 void measure_loop_sizes(const TrapezoidalGraph& graph, const FaceFeatures& faces,
                         Table<EdgeId, LoopSize>& sizes);
 

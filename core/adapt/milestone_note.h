@@ -1,4 +1,4 @@
-// What is noted of the milestones of a graph while it is simplified.
+// A note of a milestone, recorded while a graph is simplified.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace trapeze {
 
-/// The milestone of a vertex from that level on, see OutlineView.
+/// The milestone of a vertex from a level on; see OutlineView.
 struct MilestoneNote {
   std::uint32_t vertex = 0;
   Milestone milestone = 0;

@@ -8,8 +8,8 @@ namespace trapeze {
 namespace {
 
 constexpr Milestone kUnknown = 0xffffffff;
-// One in so many vertices has to go before loops are looked at again, and so much of a loop's
-// length before it is numbered again.
+// One in so many vertices has to be removed before loops are examined again, and a loop has to lose
+// this fraction of its length before its milestones are noted again.
 constexpr std::uint64_t kVerticesOfOneGone = 16;
 constexpr double kWornShare = 1.0 / 16;
 
@@ -61,7 +61,7 @@ void Milestones::count_visits() {
   }
 }
 
-/// A loop begins at the corner that goes last, so that it has the same beginning all the time.
+/// A loop begins at the corner that is removed last, so that its beginning never changes.
 void Milestones::note_from(CornerId first) {
   loop_.clear();
   CornerId c = first;

@@ -1,5 +1,5 @@
-// How far along its loop every vertex lies, noted anew whenever a loop has become much shorter, so
-// that dashes along its outline have their lengths at every tolerance.
+// The distance of every vertex along its loop, noted again whenever a loop has become much shorter,
+// so that dashes along its outline have the right length at every tolerance.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -15,13 +15,13 @@ namespace trapeze {
 
 class Milestones {
  public:
-  /// `graph` is as it was built, and weighed by `stack`; both must outlive the use of this.
+  /// `graph` is as built and weighed by `stack`. Both must outlive the use of this object.
   void begin(const TrapezoidalGraph& graph, const PriorityStack& stack);
 
-  /// Appends what has changed since the last call: all milestones of every loop, and of every arc
-  /// between junctions, whose length has shrunk so much that dashes would be visibly shortened, and
-  /// all at the first call. The vertex of the number n becomes vertex base + n - 1. Does nothing
-  /// while only few vertices have gone since then.
+  /// Appends the changes since the last call: all milestones of every loop, and of every arc
+  /// between junctions, whose length has shrunk so much that dashes would be visibly shorter. The
+  /// first call appends all milestones. Vertex n of the graph becomes vertex base + n - 1. Does
+  /// nothing while only few vertices have been removed since.
   void note(Level level, std::uint32_t base, std::vector<MilestoneNote>& notes);
 
  private:

@@ -8,15 +8,15 @@ namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-// What is left of an area whose triangle has no height.
+// The factor for the area of a triangle without height.
 constexpr double kFlattest = 0.25;
-// What is left of one whose triangle has its tip above an end of its base, or beyond.
+// The factor for a triangle whose tip is above an end of its base, or beyond it.
 constexpr double kSkewest = 0.75;
-// How many times its area the triangle at a right angle counts: more than twice, so that both far
-// corners of a bump go before one of its corners does.
+// The factor for a triangle with a right angle: more than twice, so that both far corners of a bump
+// are removed before one of its corners is.
 constexpr double kRight = 4;
-// An angle counts as right the more the nearer it is, and not at all from about 10 degrees on: 1
-// over the square of the cosine there.
+// An angle counts the more as right the nearer it is to a right angle, and not at all from a
+// deviation of about 10 degrees on: 1 over the square of its cosine at that limit.
 constexpr double kRightness = 33;
 
 double squared_length(Point a, Point b) {
@@ -29,14 +29,14 @@ double triangle_area(Point a, Point b, Point c) {
   return std::abs(static_cast<double>(orientation(a, b, c))) / 2;
 }
 
-/// From kFlattest to 1, which an area has from that of a triangle on that is half as high as its
+/// From kFlattest to 1, which is reached by the area of a triangle at least half as high as its
 /// base is long: that of a right angle between equal sides.
 double filter_of_flatness(double area, double squared_base) {
   const double height = squared_base > 0 ? std::min(1.0, 4 * area / squared_base) : 1.0;
   return kFlattest + (1 - kFlattest) * height;
 }
 
-/// From kSkewest to 1, by how far from the middle of its base the tip of a triangle is.
+/// From kSkewest to 1, by the distance of the tip of a triangle from the middle of its base.
 double filter_of_skewness(double squared_a, double squared_b, double squared_base) {
   const double off = std::abs(squared_a - squared_b);
   return 1 - (1 - kSkewest) * (off < squared_base ? off / squared_base : 1.0);
@@ -47,8 +47,8 @@ double dot_at(Point v, Point p, Point q) {
          (static_cast<double>(p.y) - v.y) * (static_cast<double>(q.y) - v.y);
 }
 
-/// From 0 to 1, where the angle at v is right. p and q may change places: to the last bit, as
-/// everything here.
+/// From 0 to 1, which means that the angle at v is right. Symmetric in p and q to the last bit,
+/// like everything here.
 double rightness(Point p, Point v, Point q) {
   const double to_p = squared_length(v, p);
   const double to_q = squared_length(v, q);
@@ -58,13 +58,14 @@ double rightness(Point p, Point v, Point q) {
   return std::max(0.0, 1 - kRightness * cosine);
 }
 
-/// From 0 to 1, where an edge from p to q runs along that from p to v, or at a right angle to it.
+/// From 0 to 1, which means that an edge from p to q is parallel to the one from p to v, or at a
+/// right angle to it.
 double alignment(Point p, Point v, Point q) {
   const double to_v = squared_length(p, v);
   const double to_q = squared_length(p, q);
   if (to_v == 0 || to_q == 0) return 1;
   const auto cross = static_cast<double>(orientation(p, v, q));
-  const double product = (cross / to_v) * (dot_at(p, v, q) / to_q);  // of sine and cosine
+  const double product = (cross / to_v) * (dot_at(p, v, q) / to_q);  // product of sine and cosine
   return std::max(0.0, 1 - kRightness * product * product);
 }
 
@@ -80,9 +81,9 @@ double cost_of_vertex(Point p, Point v, Point q) {
   return area * (filter + rightness(p, v, q) * (kRight - filter));
 }
 
-// Where both angles are right, and the new edge neither follows the old ones nor is at right angles
-// to them, right angles are lost as when one vertex goes. So a step goes by this if it is low for
-// the length of its walls, and a bump, however it is made.
+// If both angles are right, and the new edge is neither parallel nor at right angles to the old
+// ones, right angles are lost, as in the removal of one vertex. So a step is removed as a pair if
+// it is low compared with the length of its walls, and a bump in any case.
 //
 // Where v and w lie on different sides of the line pq, vw crosses it and there are two triangles:
 //
@@ -101,7 +102,7 @@ double cost_of_pair(Point p, Point v, Point w, Point q) {
     area = triangle_area(p, v, w) * (std::abs(of_v) / both) +
            triangle_area(v, w, q) * (std::abs(of_w) / both);
   } else {
-    // The area of the quadrangle, by the distance of its diagonals.
+    // The area of the quadrangle, from the cross product of its diagonals.
     const double across = (static_cast<double>(w.x) - p.x) * (static_cast<double>(q.y) - v.y);
     const double down = (static_cast<double>(w.y) - p.y) * (static_cast<double>(q.x) - v.x);
     area = std::abs(across - down) / 2;
@@ -113,8 +114,8 @@ double cost_of_pair(Point p, Point v, Point w, Point q) {
   return area * (filter + lost * (kRight - filter));
 }
 
-/// For a heap with the least cost on top; of equal costs one vertex goes before two, and then what
-/// is farther up.
+/// For a heap with the least cost on top. For equal costs, one vertex comes before two, and then
+/// the upper ones come first.
 bool ShapeWeights::Candidate::operator<(const Candidate& other) const {
   if (cost != other.cost) return cost > other.cost;
   const bool is_one = first == last;
@@ -148,8 +149,8 @@ void ShapeWeights::enqueue_pair(std::size_t first) {
   enqueue(cost_of_pair_[first], first, last);
 }
 
-/// Whether something has changed since it was enqueued. Where the costs are the same all the same,
-/// so is what it does.
+/// Whether something has changed since the candidate was enqueued. If the costs are nevertheless
+/// the same, so is the effect.
 bool ShapeWeights::is_stale(const Candidate& candidate) const {
   const std::size_t first = candidate.first;
   if (before_[first] == kNone) return true;

@@ -1,19 +1,19 @@
 // Vertex weights by shape: effective area, weighed.
 //
-// As with effective area, what changes the area of the shape least is taken away, again and again.
-// Two things are different. First, areas are multiplied by how much their form matters (Zhou and
+// As with effective area, the vertex that changes the area of the shape least is removed,
+// repeatedly. Two things differ. First, areas are multiplied by a factor for their form (Zhou and
 // Jones, Shape-Aware Line Generalisation with Weighted Effective Area, 2005, the paper's reference
-// 22): flat triangles, and skew ones, count less than their area, and those at right angles more.
-// Second, what is taken away is one vertex or both ends of an edge, whichever counts less: both
-// ends of the step in a wall, or of a bump, go at one tolerance, and so do the four corners of a
-// rectangle when nothing else is left of it.
+// 22): flat and skew triangles count less than their area, right-angled ones more. Second, a
+// removal takes one vertex or both ends of an edge, whichever costs less: both ends of the step in
+// a wall, or of a bump, are removed at one tolerance, and so are the four corners of a rectangle
+// when nothing else is left of it.
 //
-// Of the filters that Zhou and Jones propose, that of convexity is not there: what juts out on one
-// side of a shared border recedes on the other, and both have to agree on its weight. Nor are their
-// functions used: those here have no more in them than sums, products, quotients and square roots
-// of doubles, which IEEE 754 rounds alike everywhere.
+// The convexity filter that Zhou and Jones propose is omitted: what juts out on one side of a
+// shared border recedes on the other, and both sides must agree on its weight. Their functions are
+// not used either: those here consist only of sums, products, quotients and square roots of
+// doubles, which IEEE 754 rounds alike everywhere.
 //
-// Thread-safety: a ShapeWeights may be used by one thread at a time.
+// Thread-safety: one thread at a time per ShapeWeights.
 #pragma once
 
 #include <cstddef>
@@ -29,17 +29,17 @@ class ShapeWeights {
  public:
   enum class Line : std::uint8_t { ring, arc };
 
-  /// Writes the weights, in cells, of all vertices but two: of the ends of an arc, and of the two
-  /// of a ring that nothing is left of without. They depend neither on the first point of a ring
-  /// nor on the direction, and none is less than that of a vertex removed before. `weights` is as
-  /// long as `points`: a ring has three or more, an arc two or more.
+  /// Writes the weights, in cells, of all vertices but two: the ends of an arc, or the two vertices
+  /// without which nothing is left of a ring. Weights depend neither on the first point of a ring
+  /// nor on its direction, and none is less than that of a vertex removed before. `weights` is as
+  /// long as `points`: at least three for a ring, at least two for an arc.
   void weigh(std::span<const Point> points, Line line, std::span<double> weights);
 
  private:
-  // One vertex, or two that follow each other: what it would cost to remove them.
+  // One vertex, or two consecutive ones, with the cost of removing them.
   struct Candidate {
     double cost;
-    Point upper;  // of the two; both are the same where there is one
+    Point upper;  // of the two vertices; both are the same if there is only one
     Point lower;
     std::size_t first;
     std::size_t last;
@@ -58,16 +58,16 @@ class ShapeWeights {
   std::size_t left_ = 0;
   std::vector<std::size_t> before_;
   std::vector<std::size_t> after_;
-  std::vector<double> cost_of_one_;   // by vertex, as it was enqueued last
-  std::vector<double> cost_of_pair_;  // by the first of both
+  std::vector<double> cost_of_one_;   // by vertex, as last enqueued
+  std::vector<double> cost_of_pair_;  // by the first vertex of the pair
   std::vector<Candidate> queue_;      // a heap
 };
 
-/// What it costs to remove v from between p and q, in cells squared: the area of the triangle,
-/// times a filter of its form. It does not matter which of p and q comes first.
+/// The cost of removing v between p and q, in cells squared: the area of the triangle times a
+/// filter of its form. Symmetric in p and q.
 double cost_of_vertex(Point p, Point v, Point q);
 
-/// The same of two vertices v and w from p, v, w, q: the area between the old and the new boundary.
+/// The same for two vertices v and w in p, v, w, q: the area between the old and the new boundary.
 double cost_of_pair(Point p, Point v, Point w, Point q);
 
 }  // namespace trapeze

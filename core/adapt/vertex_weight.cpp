@@ -50,8 +50,8 @@ std::span<const double> VertexWeights::weigh_arc(std::span<const Point> arc, Wei
   return weights_;
 }
 
-/// The uppermost vertex and the one farthest from it: a choice that does not depend on the first
-/// point of the ring or on its direction.
+/// The uppermost vertex and the one farthest from it: a choice that depends neither on the first
+/// point of the ring nor on its direction.
 VertexWeights::Anchors VertexWeights::anchors_of(std::span<const Point> ring) {
   Anchors anchors{0, 0};
   for (std::size_t i = 1; i < ring.size(); ++i) {
@@ -114,8 +114,8 @@ void VertexWeights::weigh_by_area(std::span<const Point> points, bool is_arc) {
     before_[i] = i == 0 ? n - 1 : i - 1;
     after_[i] = i + 1 == n ? 0 : i + 1;
   }
-  // Smallest area first, of equal ones the uppermost vertex. An entry is stale once the area of its
-  // vertex has changed.
+  // Smallest area first; of equal areas, the uppermost vertex. An entry is stale once the area of
+  // its vertex has changed.
   struct Entry {
     double area;
     Point point;

@@ -1,10 +1,9 @@
 // Vertex weights: how much a vertex matters for the shape of its ring (paper, section 3.2).
 //
-// A weight is a distance in grid cells; a vertex is to be removed at every tolerance greater
-// than its weight. Two corners of a ring, its anchors, have infinite weight: they are removed with
-// the ring.
+// A weight is a distance in grid cells; a vertex is removed at every tolerance greater than its
+// weight. Two corners of a ring, its anchors, have infinite weight: they are removed with the ring.
 //
-// Thread-safety: a VertexWeights may be used by one thread at a time.
+// Thread-safety: one thread at a time per VertexWeights.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +25,13 @@ enum class WeightRule : std::uint8_t {
   /// Douglas-Peucker at that tolerance.
   douglas_peucker,
   /// The paper's adjustment, Eq. (1): the same distances, but a parent is raised to the greatest
-  /// weight of its children, so that no vertex is removed before one that was split off below it.
+  /// weight of its children, so that no vertex is removed before one split off below it.
   raised_parents,
-  /// Visvalingam-Whyatt: the square root of the area of the triangle with the neighbours that are
-  /// left, never less than that of a vertex removed before.
+  /// Visvalingam-Whyatt: the square root of the area of the triangle with the remaining neighbours,
+  /// never less than that of a vertex removed before.
   effective_area,
-  /// Effective area weighed by shape: flat corners go first, right angles last, and both ends of an
-  /// edge go together where that changes less than one of them by itself. See shape_weight.h.
+  /// Effective area weighted by shape: flat corners are removed first, right angles last, and both
+  /// ends of an edge together if that changes less than one of them alone. See shape_weight.h.
   shape,
 };
 
@@ -46,13 +45,13 @@ inline constexpr NameTable<WeightRule, 4> kWeightNames({
 /// Reusable memory for weighing rings.
 class VertexWeights {
  public:
-  /// The weight of every vertex of a closed ring of at least three points, in the order given. The
-  /// weights depend neither on the first point of the ring nor on its direction. The span is valid
-  /// until the next call.
+  /// Returns the weight of every vertex of a closed ring of at least three points, in the order
+  /// given. The weights depend neither on the first point of the ring nor on its direction. The
+  /// span is valid until the next call.
   std::span<const double> weigh(std::span<const Point> ring, WeightRule rule);
 
-  /// The same for an arc of at least two points. Its two ends stay and have infinite weight; they
-  /// may be the same point.
+  /// The same for an arc of at least two points. Its two ends are kept and have infinite weight;
+  /// they may be the same point.
   std::span<const double> weigh_arc(std::span<const Point> arc, WeightRule rule);
 
  private:
@@ -65,8 +64,8 @@ class VertexWeights {
   };
   static Anchors anchors_of(std::span<const Point> ring);
 
-  // A piece of the ring between two kept vertices, its ends included; indices run past the end of
-  // the ring and are taken modulo its length. `parent` is the split above it.
+  // A piece of the ring between two kept vertices, its ends included. Indices may run past the end
+  // of the ring and are taken modulo its length. `parent` is the split above it.
   struct Piece {
     std::size_t begin;
     std::size_t end;

@@ -16,7 +16,7 @@ Spoke spoke_of(const TrapezoidalGraph& graph, VertexId v, EdgeId e, RegionId lef
 
 // Those that go down from left to right, then those that go up from right to left. Negative
 // orientation is to the right of an edge that goes down from the centre, and to the left of one
-// that comes from above: the same comparison turns the same way in both halves.
+// that comes from above: the same comparison yields the same direction of rotation in both halves.
 void sort_around(Point centre, std::vector<Spoke>& spokes) {
   std::sort(spokes.begin(), spokes.end(), [centre](const Spoke& a, const Spoke& b) {
     if (a.goes_down != b.goes_down) return a.goes_down;
@@ -24,11 +24,11 @@ void sort_around(Point centre, std::vector<Spoke>& spokes) {
   });
 }
 
-// A pair that has been found is taken out of the circle, and the edges before and after it become
+// A pair that has been found is removed from the circle, and the edges before and after it become
 // neighbours: between them lies the region that was on both sides of the pair.
 std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spokes) {
   std::vector<std::pair<EdgeId, EdgeId>> pairs;
-  std::vector<Spoke> left;  // those up to the present one that have no partner
+  std::vector<Spoke> left;  // edges up to the present one that have no partner
   for (const Spoke& spoke : spokes) {
     if (!left.empty() && left.back().before == spoke.following) {
       pairs.emplace_back(left.back().edge, spoke.edge);
@@ -37,7 +37,7 @@ std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spo
       left.push_back(spoke);
     }
   }
-  // Where the circle closes.
+  // Pairs across the point where the circle closes.
   std::span<const Spoke> open(left);
   while (open.size() > 1 && open.back().before == open.front().following) {
     pairs.emplace_back(open.back().edge, open.front().edge);
@@ -56,7 +56,7 @@ void BorderArcs::trace(const Boundary& boundary, FaceId faces, const Regions& re
     pair_edges(VertexId(v), regions, graph);
   }
   graph.corners_.assign(count, Corner{});
-  // First the arcs that have ends, each from one of its ends; the edges that remain form loops.
+  // First the arcs that have ends, each from one of its ends; the remaining edges form loops.
   for (std::size_t i = 0; i < count; ++i) {
     const EdgeId e(i);
     for (const VertexId v : {boundary.edges[e].upper, boundary.edges[e].lower}) {

@@ -1,7 +1,7 @@
 // Finds the arcs of a coverage and stores them as the corners of its graph.
 //
 // An arc is a run of edges between the same two regions. It ends at junctions, where three or more
-// regions meet; where two pieces of boundary merely touch at a vertex, as two lakes in the middle
+// regions meet. Where two pieces of boundary merely touch at a vertex, as two lakes in the middle
 // of a country may, the arcs continue. So a vertex can be the end of some arcs and in the middle of
 // others.
 #pragma once
@@ -33,16 +33,15 @@ Spoke spoke_of(const TrapezoidalGraph& graph, VertexId v, EdgeId e, RegionId lef
 /// Sorts the spokes of one vertex counterclockwise around it.
 void sort_around(Point centre, std::vector<Spoke>& spokes);
 
-/// The pairs of edges by which arcs continue through a vertex: two edges that bound a wedge with
-/// the same region on both sides of it. The spokes are in order around the vertex. No two pairs
-/// cross.
+/// The pairs of edges by which arcs continue through a vertex: two edges that bound a wedge and
+/// have the same region beyond both. The spokes are in order around the vertex. No two pairs cross.
 std::vector<std::pair<EdgeId, EdgeId>> pair_spokes(const std::vector<Spoke>& spokes);
 
-/// Holds working memory for reuse; one thread at a time.
+/// Holds working memory for reuse. One thread at a time.
 class BorderArcs {
  public:
-  /// Fills the corners of `graph` from its edges and regions; edge i leaves corner i. Its faces are
-  /// those of `faces` polygons.
+  /// Fills the corners of `graph` from its edges and regions. Edge i leaves corner i. The graph has
+  /// the faces of `faces` polygons.
   void trace(const Boundary& boundary, FaceId faces, const Regions& regions,
              TrapezoidalGraph& graph);
 

@@ -18,7 +18,7 @@ inline double length_of(const TrapezoidalGraph& graph, const Edge& edge) {
   return std::hypot(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
 }
 
-/// Lengths of borders by the face beyond.
+/// Lengths of borders, by the face beyond.
 class BorderLengths {
  public:
   void add(FaceId beyond, double length) {
@@ -33,13 +33,13 @@ class BorderLengths {
 
   std::size_t faces() const { return lengths_.size(); }
 
-  /// The face with the longest border, the one of the smallest number if there are several;
-  /// kOutside if there is none.
+  /// The face with the longest border; of several, the one with the smallest number. kOutside if
+  /// there is none.
   FaceId longest() const {
     const auto found = find_longest();
     return found == lengths_.end() ? kOutside : found->first;
   }
-  /// Of that border; 0 if there is none.
+  /// The length of that border; 0 if there is none.
   double greatest_length() const {
     const auto found = find_longest();
     return found == lengths_.end() ? 0 : found->second;

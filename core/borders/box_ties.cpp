@@ -9,8 +9,8 @@
 namespace trapeze {
 namespace {
 
-/// Ties the owners of boxes that meet, by a sweep from north to south over strips that hold about
-/// as many boxes, and in each from west to east.
+/// Unites the owners of boxes that intersect, by a sweep from north to south over strips that
+/// contain about the same number of boxes, and from west to east within each strip.
 class BoxTies {
  public:
   BoxTies(std::span<const Box> boxes, std::span<const std::uint32_t> owners, DisjointSets& sets)
@@ -26,7 +26,7 @@ class BoxTies {
     for (std::size_t begin = 0; begin < order.size();) {
       const std::int32_t north = boxes_[order[begin]].min_y;
       std::erase_if(strip_, [&](std::uint32_t i) { return boxes_[i].max_y < north; });
-      // As long as what reaches into it, so that this is not looked at too often.
+      // At least as many boxes as extend into the strip, so that these are not examined too often.
       const std::size_t size = std::max(kLeastStrip, strip_.size());
       const std::size_t end = std::min(begin + size, order.size());
       strip_.insert(strip_.end(), order.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -38,7 +38,7 @@ class BoxTies {
 
  private:
   static constexpr std::size_t kLeastStrip = 4096;
-  // Beyond that, boxes of a strip are tied that need not be: groups are larger, and not wrong.
+  // Beyond that, boxes of a strip are united that need not be: groups become larger, but not wrong.
   static constexpr std::size_t kMostStepsOfEach = 4096;
 
   void tie_strip() {
@@ -58,7 +58,7 @@ class BoxTies {
 
   void sweep_over(std::uint32_t i) {
     const Box& box = boxes_[i];
-    bool is_hidden = false;  // whatever meets it later meets one that is open as well
+    bool is_hidden = false;  // any later box that intersects it also intersects another open one
     std::erase_if(open_, [&](std::uint32_t other) {
       const Box& open = boxes_[other];
       if (open.max_x < box.min_x) return true;

@@ -1,4 +1,4 @@
-// Ties what lies near each other, as far as boxes tell.
+// Groups nearby items by their bounding boxes.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace trapeze {
 
-/// Ties the owners of boxes that meet. Where so many meet that looking at all of them would take
-/// seconds, some that do not meet are tied as well.
+/// Unites the owners of boxes that intersect. If there are so many intersections that examining all
+/// of them would take seconds, some owners whose boxes do not intersect are united as well.
 void tie_meeting(std::span<const Box> boxes, std::span<const std::uint32_t> owners,
                  DisjointSets& sets);
 

@@ -37,7 +37,7 @@ struct Crossing {
     std::ranges::set_difference(right_set, left_set, std::back_inserter(right));
   }
 
-  /// The pairs of features that overlap on one of its sides and not on the other.
+  /// The number of pairs of features that overlap on one of its sides and not on the other.
   std::size_t pairs() const {
     const auto on_side = [this](std::size_t n) { return n * staying.size() + n * (n - 1) / 2; };
     return (left.empty() ? 0 : on_side(left.size())) + (right.empty() ? 0 : on_side(right.size()));
@@ -45,7 +45,7 @@ struct Crossing {
 };
 
 /// Sums up the areas of features, and of pairs of them, from the edges of a subdivision by sets:
-/// the strip of an edge counts for the features that are on one side of it only. Exact.
+/// the strip of an edge counts only for features on one side of it. Exact.
 class OverlapAreas {
  public:
   explicit OverlapAreas(std::size_t features) : doubled_(features, 0) {}
@@ -55,7 +55,7 @@ class OverlapAreas {
     add_side(crossing.right, crossing.staying, -doubled_strip);
   }
 
-  /// Where at most one feature is on either side.
+  /// For at most one feature on either side.
   void add(const std::vector<std::uint32_t>& left, const std::vector<std::uint32_t>& right,
            Int128 doubled_strip) {
     if (!left.empty()) doubled_[left.front()] += doubled_strip;
@@ -139,7 +139,7 @@ std::vector<std::size_t> count_common_edges(const TrapezoidalGraph& g, const Bor
   return count;
 }
 
-/// The overlaps of more than the share `most` of the area of the smaller feature.
+/// The overlaps that exceed the fraction `most` of the area of the smaller feature.
 std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most) {
   std::vector<Overlap> overlaps;
   for (const Overlap& overlap : outcome.overlaps) {
@@ -150,8 +150,8 @@ std::vector<Overlap> large_overlaps(const CoverageOutcome& outcome, double most)
 }
 
 /// Features without which no two overlap, in ascending order. Those that share the fewest edges
-/// with neighbours are left out first: an overseas region that occurs a second time as a country,
-/// and not the mainland. Of several, it is the one with the most overlaps, and of these the last.
+/// with neighbours are left out first: an overseas region that also occurs as a country, and not
+/// the mainland. Ties go to the feature with the most overlaps, then to the last one.
 std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& overlaps,
                                                  const std::vector<std::size_t>& common_edges) {
   std::vector<std::vector<std::uint32_t>> overlapping(common_edges.size());
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
     overlapping[overlap.lower].push_back(overlap.upper);
     overlapping[overlap.upper].push_back(overlap.lower);
   }
-  std::vector<std::size_t> count;  // of the overlaps with features that are still there
+  std::vector<std::size_t> count;  // number of overlaps with features not left out
   count.reserve(overlapping.size());
   for (const auto& others : overlapping) count.push_back(others.size());
   const auto goes_first = [&](std::uint32_t a, std::uint32_t b) {
@@ -175,7 +175,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
     waiting.erase(waiting.begin());
     apart.push_back(worst);
     for (const std::uint32_t other : overlapping[worst]) {
-      // Its place in the order changes; features that were left out before are no longer in it.
+      // Its place in the order changes. Features left out before are no longer in it.
       if (waiting.erase(other) > 0 && --count[other] > 0) waiting.insert(other);
     }
   }
@@ -183,7 +183,7 @@ std::vector<std::uint32_t> features_to_leave_out(const std::vector<Overlap>& ove
   return apart;
 }
 
-/// Leaves features out of what was found of all; they are in ascending order.
+/// Removes features, given in ascending order, from the findings for all features.
 void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outcome) {
   const auto is_out = [&features](std::uint32_t feature) {
     return std::binary_search(features.begin(), features.end(), feature);
@@ -196,7 +196,7 @@ void leave_out(const std::vector<std::uint32_t>& features, CoverageOutcome& outc
   std::ranges::sort(outcome.apart);
 }
 
-/// Leaves features out until none overlap by more than that share of the smaller one.
+/// Leaves features out until none overlap by more than that fraction of the smaller one.
 void leave_out_overlaps(const TrapezoidalGraph& g, const SetMap& map, double most,
                         CoverageOutcome& outcome) {
   const std::vector<Overlap> overlaps = large_overlaps(outcome, most);
@@ -209,7 +209,7 @@ void leave_out_overlaps(const TrapezoidalGraph& g, const SetMap& map, double mos
 /// The faces of a subdivision by sets.
 class SetFaces {
  public:
-  /// Those of the uppermost features. Of sets without the features that are left out, which are in
+  /// The faces of the uppermost features of sets, ignoring the features left out, which are in
   /// ascending order.
   SetFaces(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out) {
     face_of_.reserve(sets.size());
@@ -218,7 +218,8 @@ class SetFaces {
     }
   }
 
-  /// Gives wide places of several features faces of their own. Of the same sets.
+  /// Gives wide places of several features faces of their own. `sets` and `left_out` are those of
+  /// the constructor.
   void tell_apart(const FeatureSets& sets, const std::vector<std::uint32_t>& left_out,
                   const TrapezoidalGraph& g, double narrowest, FaceFeatures& faces) {
     collect_places(sets, left_out);
@@ -240,7 +241,7 @@ class SetFaces {
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  // What the same features cover.
+  // The area covered by the same features.
   struct Place {
     std::vector<std::uint32_t> features;
     double area = 0;    // cells squared
@@ -294,8 +295,8 @@ class SetFaces {
   std::vector<Place> places_;
 };
 
-/// Whether so many features lie over each other that a graph with trapezoids for each of them would
-/// be much larger than those of single features; they have that many vertices.
+/// Whether so many features overlap that a graph with trapezoids for each of them would be much
+/// larger than those of single features, which have that many vertices.
 bool is_crowded(const TrapezoidalGraph& g, const SetFaces& faces, const FaceFeatures& features,
                 std::size_t vertices) {
   constexpr std::size_t kMostAtAPlace = 64;
@@ -315,7 +316,7 @@ bool is_crowded(const TrapezoidalGraph& g, const SetFaces& faces, const FaceFeat
   return sides > kAlways + kMostPerVertex * vertices;
 }
 
-/// How many the features have that are not left out.
+/// The number of vertices of the features that are not left out.
 std::size_t count_vertices(std::span<const Rings* const> features,
                            const std::vector<std::uint32_t>& left_out) {
   std::size_t vertices = 0;
@@ -326,7 +327,7 @@ std::size_t count_vertices(std::span<const Rings* const> features,
 }
 
 /// The faces of those features that can share a graph; others are left out. None if fewer than two
-/// remain, or too many over each other.
+/// remain, or if they form a crowd.
 std::optional<SetFaces> choose_faces(const TrapezoidalGraph& g, const SetMap& map,
                                      std::span<const Rings* const> features,
                                      const CoverageTolerance& tolerance, CoverageOutcome& outcome) {
@@ -401,7 +402,7 @@ std::size_t fill_gaps(const TrapezoidalGraph& g, double widest_gap, Sides& sides
   return filled;
 }
 
-/// Whether there are features on both sides, and others on either.
+/// Whether there are features on both sides, and different ones.
 bool parts_features(const FaceFeatures& faces, const Edge& edge) {
   const auto left = faces.of(edge.face[kLeft]);
   const auto right = faces.of(edge.face[kRight]);
@@ -446,9 +447,9 @@ std::size_t count_distinct(const std::vector<VertexId>& sorted) {
   return count;
 }
 
-/// Whenever a region disappears, all arcs that end at its junctions are looked at: the squares of
-/// their numbers must not add up to more than a fraction of a second's work. The reason if they do,
-/// or empty.
+/// Whenever a region disappears, all arcs that end at its junctions are examined: the squares of
+/// their numbers must not add up to more than a fraction of a second's work. Returns the reason if
+/// they do, or an empty string.
 std::string crowd_at_a_junction(const std::vector<VertexId>& ends, std::size_t edges) {
   constexpr std::size_t kAlways = std::size_t{1} << 24;  // 4,096 at one vertex
   constexpr std::size_t kMostPerEdge = 256;
@@ -515,7 +516,7 @@ CoverageOutcome CoverageBuilder::build(std::span<const Rings* const> features,
   return outcome;
 }
 
-/// Of a coverage that is built otherwise.
+/// For a coverage that has been built except for blocks.
 void CoverageBuilder::plan_blocks(const Merging& merging, TrapezoidalGraph& graph, unsigned threads,
                                   CoverageOutcome& outcome) {
   const auto first_void = static_cast<FaceId>(outcome.faces.face_count() + 1);
@@ -533,7 +534,7 @@ void CoverageBuilder::plan_blocks(const Merging& merging, TrapezoidalGraph& grap
 
 namespace {
 
-/// Where an arc of the boundary of a feature begins or ends.
+/// An end of an arc of the boundary of a feature.
 struct ArcEnd {
   std::uint32_t feature;
   VertexId vertex;
@@ -542,7 +543,7 @@ struct ArcEnd {
   auto operator<=>(const ArcEnd&) const = default;
 };
 
-/// Sorts the boundary of each feature into closed rings.
+/// Arranges the boundary of each feature into closed rings.
 class FeatureRings {
  public:
   FeatureRings(const TrapezoidalGraph& graph, const FaceFeatures& faces, std::size_t features)
@@ -565,7 +566,7 @@ class FeatureRings {
   std::vector<Rings> take() { return std::move(rings_); }
 
  private:
-  /// An arc from its first corner, or a loop.
+  /// Adds an arc from its first corner, or a loop.
   void add(CornerId first, bool is_loop) {
     CornerId last = first;
     seen_[first.value] = true;
@@ -590,8 +591,8 @@ class FeatureRings {
     for_each_apart(right, left, add_to);
   }
 
-  /// Walks from arc to arc until there is none to continue by. At each vertex a feature has an even
-  /// number of ends of arcs, so the walk ends where the ring began.
+  /// Walks from arc to arc until none is left to continue with. At each vertex a feature has an
+  /// even number of ends of arcs, so the walk ends where the ring began.
   void walk(ArcEnd at) {
     Rings& rings = rings_[at.feature];
     for (;;) {
@@ -616,7 +617,7 @@ class FeatureRings {
     is_used_[static_cast<std::size_t>(found - ends_.begin())] = true;
   }
 
-  /// The points of an arc between its ends, with the end at which it begins.
+  /// The points of an arc between its ends, including the end at which it begins.
   void append(CornerId from, CornerId to, Rings& rings) const {
     const bool is_forward = !g_.corner(from).next.is_none();
     for (CornerId c = from; c != to; c = is_forward ? g_.corner(c).next : g_.corner(c).prev) {

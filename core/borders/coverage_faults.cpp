@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// What lies around a region.
+/// The surroundings of a region.
 struct Place {
   std::vector<Segment> segments;
   double border = 0;  // cells
@@ -51,7 +51,7 @@ class FaultSearch {
     return map_.sets()[regions_.face[region]];
   }
 
-  /// Notes what the edge tells of a region at its side, if that may be a fault.
+  /// Records the edge for the region at its side, if that may be a fault.
   void add_edge(EdgeId e, RegionId region, Side beyond) {
     if (region == regions_.unbounded || set_of(region).size() == 1) return;
     Place& place = places_[region.value];
@@ -72,7 +72,7 @@ class FaultSearch {
     fault.width = regions_.area[region] / (place.border / 2) / metre;
     fault.features = features;
     boundary_.assign(place.segments);
-    trapezoidation_.build(boundary_, alone_);  // what is a part of a noded map is noded
+    trapezoidation_.build(boundary_, alone_);  // a part of a noded map is noded
     loops_.trace(boundary_, alone_);
     fault.polygons = polygons_of(alone_);
     return fault;

@@ -1,5 +1,5 @@
-// Where the features of a coverage do not fit together: places between them that none covers, and
-// places that several cover. For reports; drawing does not need them.
+// Faults of a coverage: gaps between features that none covers, and overlaps. For reports; drawing
+// does not need them.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ inline constexpr NameTable<FaultKind, 2> kFaultNames({
     {"overlap", FaultKind::overlap},
 });
 
-/// A connected place.
+/// A connected gap or overlap.
 struct CoverageFault {
   FaultKind kind = FaultKind::gap;
   double area = 0;   // square metres on the ground, at the latitude of the place
-  double width = 0;  // metres on the ground: the area over half of the boundary, as of a strip
-  /// Of an overlap those that cover the place, of a gap those around it, two at least; by their
-  /// positions, in ascending order.
+  double width = 0;  // metres on the ground: the area over half of the boundary, as for a strip
+  /// For an overlap, the features that cover the place; for a gap, the features around it (two at
+  /// least). By position, in ascending order.
   std::vector<std::uint32_t> features;
   Polygons polygons;
 };
@@ -36,8 +36,8 @@ struct CoverageFaults {
   std::string failure;  // why they could not be found, empty otherwise
 };
 
-/// All of them. Each feature is by even-odd of its own rings, which are clean (see clean_rings.h).
-/// A hole of one feature that no other one touches is no gap.
+/// Finds all faults. Each feature is defined by even-odd of its own rings, which are clean (see
+/// clean_rings.h). A hole of one feature that no other feature touches is no gap.
 CoverageFaults find_faults(std::span<const Rings* const> features);
 
 }  // namespace trapeze

@@ -45,12 +45,12 @@ std::vector<Place> places_of(std::span<const Rings* const> features) {
   return places;
 }
 
-/// Calls visit(a, b) for every two places whose boxes meet, until it has been looking for as long
-/// as `most_steps`; returns whether all have been found.
+/// Calls visit(a, b) for every two places whose boxes intersect, for at most `most_steps` steps.
+/// Returns whether all have been found.
 template <typename Visit>
 bool for_each_meeting(const std::vector<Place>& places, std::size_t most_steps,
                       const Visit& visit) {
-  // A sweep from west to east over the boxes; those not passed yet are kept.
+  // A sweep from west to east over the boxes, keeping those not passed yet.
   std::vector<Place> open;
   std::size_t steps = 0;
   for (const Place& place : places) {
@@ -65,10 +65,10 @@ bool for_each_meeting(const std::vector<Place>& places, std::size_t most_steps,
   return true;
 }
 
-/// By feature: the box around all it has in common with the boxes of others, so that no segment
-/// beyond can be an edge of two; empty if there is nothing.
+/// By feature: the box around all intersections with the boxes of others; no segment beyond it can
+/// be an edge of two features. Empty if there are none.
 std::vector<Box> common_boxes(std::span<const Rings* const> features) {
-  constexpr std::size_t kMostStepsOfEach = 1024;  // less than sorting the segments takes
+  constexpr std::size_t kMostStepsOfEach = 1024;  // cheaper than sorting the segments
   std::vector<Box> common(features.size());
   const std::vector<Place> places = places_of(features);
   const bool are_all_found = for_each_meeting(
@@ -103,11 +103,11 @@ void tie_by_boxes(std::span<const Rings* const> features, DisjointSets& ties) {
                    [&ties](const Place& a, const Place& b) { ties.tie(a.feature, b.feature); });
 }
 
-/// Those of which nothing is known, and those that may be tied to one of them; all if that is not
-/// known to be less. In ascending order.
+/// The features without known group and those that may be tied to one of them, in ascending order;
+/// all features if that is not known to be fewer.
 std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> features,
                                            std::span<const std::uint32_t> known) {
-  constexpr std::size_t kMostStepsOfEach = 64;  // less than grouping takes
+  constexpr std::size_t kMostStepsOfEach = 64;  // cheaper than grouping
   std::vector<std::uint32_t> all(features.size());
   std::iota(all.begin(), all.end(), 0u);
   const auto unknown = static_cast<std::size_t>(std::ranges::count(known, kUnknownGroup));
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> to_be_looked_at(std::span<const Rings* const> feature
   }
   std::vector<std::uint32_t> found;
   std::size_t steps = 0;
-  std::size_t first = 0;  // before it, all end west of the place
+  std::size_t first = 0;  // all before it end west of the place
   for (const Place& place : places) {
     while (first < wanted.size() && wanted[first].box.min_x + widest < place.box.min_x) ++first;
     bool is_near = known[place.feature] == kUnknownGroup;
@@ -151,15 +151,15 @@ void tie_known(std::span<const std::uint32_t> known, DisjointSets& ties) {
   }
 }
 
-// The greatest overlap of two neighbours, as a share of the area of the smaller one.
+// The greatest overlap of two neighbours, as a fraction of the area of the smaller one.
 constexpr double kMostOverlap = 0.01;
 
 double most_overlap(CoverageMode coverage) {
   return coverage == CoverageMode::on ? std::numeric_limits<double>::infinity() : kMostOverlap;
 }
 
-// Half a metre at the equator, most of a pixel at zoom 18: slivers along borders that were drawn
-// twice are narrower.
+// Half a metre at the equator, most of a pixel at zoom 18: slivers along borders that were
+// digitized twice are narrower.
 constexpr double kNarrowestOverlap = 32;
 
 }  // namespace
@@ -191,7 +191,7 @@ std::vector<std::vector<std::uint32_t>> group_for_blocks(std::span<const Rings* 
   for (std::uint32_t i = 0; i < features.size(); ++i) {
     for (std::size_t r = 0; r < features[i]->size(); ++r) {
       const Box box = widened_for_blocks(box_of((*features[i])[r]));
-      // A hole mostly follows its shell.
+      // A hole usually follows its shell.
       if (r > 0 && holds(boxes.back(), box)) continue;
       boxes.push_back(box);
       owners.push_back(i);

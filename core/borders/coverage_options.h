@@ -1,4 +1,4 @@
-// How polygons that share borders, or lie near each other, are treated.
+// How polygons that share borders or lie near each other are treated.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@ namespace trapeze {
 
 /// How polygons that share borders are treated.
 enum class CoverageMode : std::uint8_t {
-  off,        // nothing: each is simplified as if it were alone
-  automatic,  // those that have an edge in common, and do not overlap by more than a little
-  on,         // all that lie near each other, however much they overlap unless they are a crowd
+  off,        // independently: each polygon is simplified as if it were alone
+  automatic,  // polygons that share an edge and overlap only a little are treated as a coverage
+  on,         // all polygons near each other are, however much they overlap, unless they are a
+              // crowd
 };
 
 /// The default.
@@ -25,15 +26,16 @@ inline constexpr NameTable<CoverageMode, 3> kCoverageNames({
     {"off", CoverageMode::off},
 });
 
-/// What becomes a block.
+/// Which polygons are merged into blocks.
 struct Merging {
-  /// The distance that is bridged, as a multiple of the tolerance; 0: none is.
+  /// The distance that is bridged, as a multiple of the tolerance; 0: nothing is bridged.
   double ratio = 0;
-  /// Only features of one class become one block: the class of each, or empty if all are of one.
+  /// Only features of one class become one block. The class of each feature, or empty if all are of
+  /// one class.
   std::vector<std::uint32_t> classes = {};
 };
 
-/// Numbers for classes that are given by what they are known by.
+/// Consecutive numbers for classes given by 64-bit keys.
 std::vector<std::uint32_t> numbered(std::span<const std::uint64_t> classes);
 
 }  // namespace trapeze

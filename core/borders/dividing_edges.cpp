@@ -7,7 +7,7 @@
 namespace trapeze {
 namespace {
 
-/// Drops the edges with one face on both sides; returns whether there are any.
+/// Drops the edges with the same face on both sides; returns whether any edges remain.
 bool keep_borders(Boundary& boundary, Sides& sides) {
   std::vector<bool> is_kept(sides.size());
   std::size_t kept = 0;

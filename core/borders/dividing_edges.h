@@ -1,4 +1,4 @@
-// Edges of a subdivision that have different faces on their sides.
+// Edges of a subdivision that have different faces on their two sides.
 #pragma once
 
 #include <utility>
@@ -13,9 +13,9 @@ namespace trapeze {
 /// The faces to the left and right of each edge.
 using Sides = std::vector<std::pair<FaceId, FaceId>>;
 
-/// Makes `graph`, which is that of the boundary, that of the edges with different faces on their
-/// sides; only these are left of the boundary and the sides. False if there are none. On up to
-/// `threads` threads.
+/// `graph` is the graph of the boundary. Reduces the boundary and the sides to the edges with
+/// different faces on their sides, and makes `graph` the graph of these. Returns false if there are
+/// none. Runs on up to `threads` threads.
 bool keep_what_divides(Sides& sides, Boundary& boundary, Trapezoidation& trapezoidation,
                        TrapezoidalGraph& graph, unsigned threads);
 

@@ -1,4 +1,4 @@
-// Polygons of a feature on their way to what a style shows of them: with round corners, or grown.
+// Polygons of a feature, to be given the rounded corners or growth with which a style draws them.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 namespace trapeze {
 
 struct DrawnPolygons {
-  /// Those of the same number are of one graph: they have vertices and edges in common. Vertices of
-  /// several graphs are several, also where they are in the same place.
+  /// Polygons with the same number are of one graph: they share vertices and edges. Vertices of
+  /// different graphs are distinct even at the same place.
   std::uint32_t graph = 0;
-  bool lies_over_others = false;  // or under them: it stays as it is
+  bool lies_over_others = false;  // or lies under them: it stays unchanged
   Polygons polygons;
 };
 

@@ -1,4 +1,4 @@
-// Which features cover the faces of a coverage.
+// The features that cover each face of a coverage.
 #pragma once
 
 #include <algorithm>
@@ -12,36 +12,37 @@
 
 namespace trapeze {
 
-/// The features by face: most faces are of one, and others are places that several cover, or
-/// that none does and that are told apart all the same (see merging.h).
-/// Immutable but for add().
+/// The features by face. Most faces belong to one feature. Others are places that several features
+/// cover, or that none covers but that are distinguished all the same (see merging.h). Immutable
+/// except for add().
 class FaceFeatures {
  public:
   FaceFeatures() = default;
-  /// Face i + 1 is of `features[i]`.
+  /// Face i + 1 belongs to `features[i]`.
   FaceFeatures(std::vector<std::uint32_t> features) : singles_(std::move(features)) {}
-  /// Face i + 1 is of feature i.
+  /// Face i + 1 belongs to feature i.
   static FaceFeatures in_order(std::size_t features) {
     std::vector<std::uint32_t> all(features);
     for (std::size_t i = 0; i < features; ++i) all[i] = static_cast<std::uint32_t>(i);
     return all;
   }
 
-  /// The next face is of several features; its number. They are in ascending order: the later ones
-  /// lie over the earlier ones.
+  /// Adds a face that belongs to several features and returns its number. The features are in
+  /// ascending order: later ones are drawn over earlier ones.
   FaceId add(std::vector<std::uint32_t> features) {
     shared_.push_back(std::move(features));
     return static_cast<FaceId>(face_count());
   }
 
-  /// The last faces are so many that no feature covers; no others are added afterwards.
+  /// Adds so many faces that no feature covers, as the last ones: no others may be added
+  /// afterwards.
   void add_void(std::size_t faces) { void_ += faces; }
 
   std::size_t face_count() const { return singles_.size() + shared_.size() + void_; }
-  /// Of the faces that are of one feature each, and the first ones.
+  /// The number of faces that belong to one feature each; they are the first ones.
   std::size_t single_count() const { return singles_.size(); }
   std::span<const std::vector<std::uint32_t>> shared() const { return shared_; }
-  /// Of a face, which may be kOutside.
+  /// The features of a face, which may be kOutside.
   std::span<const std::uint32_t> of(FaceId face) const {
     if (face == kOutside) return {};
     if (face <= singles_.size()) return {&singles_[face - 1], 1};
@@ -49,7 +50,7 @@ class FaceFeatures {
     return i < shared_.size() ? std::span<const std::uint32_t>(shared_[i])
                               : std::span<const std::uint32_t>();
   }
-  /// The same with other numbers for features: those of `names`, by feature.
+  /// The same with features renumbered: names[i] instead of feature i.
   FaceFeatures named(std::span<const std::uint32_t> names) const {
     FaceFeatures named = *this;
     for (std::uint32_t& feature : named.singles_) feature = names[feature];

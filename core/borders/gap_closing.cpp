@@ -17,7 +17,7 @@
 namespace trapeze {
 namespace {
 
-using Place = std::uint32_t;  // a point that is a vertex, by its number in sweep order
+using Place = std::uint32_t;  // number, in sweep order, of a point that is a vertex
 
 double squared_length(double x, double y) {
   return x * x + y * y;
@@ -27,8 +27,8 @@ double squared_distance(Point a, Point b) {
   return squared_length(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
 }
 
-/// The foot of the perpendicular from a point to a segment, as a share of the segment, and its
-/// length.
+/// The foot of the perpendicular from a point to a segment: its position as a fraction of the
+/// segment, and the length of the perpendicular.
 struct Foot {
   double along = 0;
   double squared_distance = 0;
@@ -52,13 +52,13 @@ Box around(Point p, double reach) {
           on_grid(std::ceil(p.x + reach)), on_grid(std::ceil(p.y + reach))};
 }
 
-/// Segments sorted by place, with a tree over them, each with its index as given.
+/// Segments sorted by place, with a tree over them, each with its original index.
 class PlacedSegments {
  public:
   explicit PlacedSegments(const std::vector<Segment>& segments)
       : order_(order_by_place(segments)), ordered_(in_order(segments)), tree_(ordered_) {}
 
-  /// Calls visit(number) for every segment whose box meets `box`.
+  /// Calls visit(number) for every segment whose box intersects `box`.
   template <class Visit>
   void query(const Box& box, const Visit& visit) const {
     tree_.query(box, [&](std::size_t leaf) {
@@ -118,7 +118,7 @@ class Places {
            !std::ranges::includes(owners_[b], owners_[a]);
   }
 
-  /// The vertices that they have in common with others stay where they are.
+  /// Fixes the vertices of these features in place, including those shared with others.
   void fix(std::span<const Rings* const> features) {
     for (const Rings* rings : features) {
       for (const Point p : rings->points) {
@@ -134,7 +134,7 @@ class Places {
     const bool a_must_stay = is_fixed_[a] || has_guests_[a];
     const bool b_must_stay = is_fixed_[b] || has_guests_[b];
     if (is_moved(a) || is_moved(b) || (a_must_stay && b_must_stay)) return false;
-    // The one with more features stays, or else the first one.
+    // The one with more features stays; for equal numbers, the first one.
     const bool b_stays = b_must_stay || (!a_must_stay && owners_[b].size() > owners_[a].size());
     const Place guest = b_stays ? a : b;
     const Place host = b_stays ? b : a;
@@ -158,8 +158,9 @@ class Places {
   std::vector<bool> is_fixed_;
 };
 
-/// Counts what is looked at and what is found, which takes memory as well, and says when that is a
-/// few seconds' work: where the distance is large beside that of vertices, each is near to all.
+/// Counts examined and found items, which also take memory, and reports when that amounts to a few
+/// seconds' work: if the distance is large compared with that between vertices, each is near to
+/// all.
 class WorkLimit {
  public:
   explicit WorkLimit(std::size_t places) : left_(std::max(kLeast, kEach * places)) {}
@@ -269,7 +270,7 @@ std::vector<Stop> find_stops(const std::vector<Border>& borders, const Places& p
   return stops;
 }
 
-/// The borders are in the order of the features' points.
+/// Precondition: the borders are in the order of the features' points.
 void rebuild(std::span<Rings* const> features, const std::vector<Border>& borders,
              const std::vector<Stop>& stops, const Places& places) {
   auto stop = stops.begin();
@@ -291,14 +292,14 @@ void rebuild(std::span<Rings* const> features, const std::vector<Border>& border
   }
 }
 
-/// What is brought together, and what it takes.
+/// The result of bringing features together, and its cost.
 struct Attempt {
   std::size_t moved = 0;
   std::size_t led = 0;
   bool is_too_much = false;
 };
 
-/// The others take no part, but keep what they have in common with those that do.
+/// The others do not take part, but keep everything that they share with features that do.
 Attempt bring_together(std::span<Rings* const> features, std::span<const Rings* const> others,
                        double metres) {
   Attempt attempt;
@@ -322,11 +323,11 @@ double length_of(const Rings& rings) {
   return length;
 }
 
-/// How a feature was drawn, and what it may become.
+/// A feature as it was drawn, and the limits of its change.
 struct Drawn {
   Rings rings;
   double length = 0;  // of its boundary, in cells
-  double change = 0;  // that of its area which is tolerated, in cells squared
+  double change = 0;  // tolerated change of its area, in cells squared
 };
 
 std::vector<Drawn> drawn_features(std::span<Rings* const> features, double metres) {
@@ -342,8 +343,8 @@ std::vector<Drawn> drawn_features(std::span<Rings* const> features, double metre
   return drawn;
 }
 
-/// The features that take part and that closing has made larger, smaller, or overlap, by more than
-/// is tolerated; of two that overlap the smaller one, if it takes part. In ascending order.
+/// The features taking part that gap closing has enlarged, shrunk or made to overlap by more than
+/// is tolerated; of two that overlap, the smaller one if it takes part. In ascending order.
 std::vector<std::uint32_t> spoilt_features(const std::vector<Drawn>& drawn,
                                            const std::vector<bool>& takes_part,
                                            const Overlay& before, const Overlay& after) {
@@ -372,7 +373,7 @@ Overlay overlay_of(std::span<Rings* const> features) {
   return overlay(std::vector<const Rings*>(features.begin(), features.end()));
 }
 
-/// Closes gaps in rounds: whoever is spoilt takes no part in the next one.
+/// Closes gaps in rounds: spoilt features do not take part in the next one.
 class GapRounds {
  public:
   GapRounds(std::span<Rings* const> features, double metres)
@@ -416,7 +417,7 @@ class GapRounds {
     }
   }
 
-  /// The features that do, or those that do not.
+  /// The features that take part, or those that do not.
   template <class Pointer>
   std::vector<Pointer> taking_part(bool they_do) const {
     std::vector<Pointer> features;

@@ -1,10 +1,10 @@
 // Closes narrow gaps and overlaps between polygons whose borders were digitized separately, so that
 // they run beside each other instead of coinciding.
 //
-// First, vertices are moved to the nearest vertex of another polygon. Then, edges are routed
-// through the vertices of other polygons beside them. The result is noded as any coverage is; gaps
-// between borders that could not be brought together remain, and are filled if they are narrow
-// enough (see CoverageBuilder).
+// First, vertices are moved to the nearest vertex of another polygon. Then edges are routed through
+// the vertices of other polygons beside them. The result is noded like any coverage. Gaps between
+// borders that could not be joined remain, and are filled if they are narrow enough (see
+// CoverageBuilder).
 #pragma once
 
 #include <cstddef>
@@ -20,27 +20,32 @@ namespace trapeze {
 /// The greatest width of a gap that may be closed, in metres.
 constexpr double kWidestGap = 1000;
 
-/// What close_gaps() has done. Features are given by their positions, in ascending order.
+/// The result of close_gaps(). Features are given by position, in ascending order.
 struct GapClosing {
   std::size_t moved = 0;              // vertices moved to a vertex of another feature
   std::size_t led = 0;                // vertices through which edges of other features were routed
-  std::vector<Rings> drawn;           // by feature: its rings as they were, empty if unchanged
-  std::vector<std::uint32_t> narrow;  // took no part: their area is less than their boundary's
-                                      // length times the distance
-  std::vector<std::uint32_t> kept;  // took no part: they would have overlapped, or changed by more
-  std::string failure;              // why nothing was closed, empty otherwise
+  std::vector<Rings> drawn;           // by feature: its original rings; empty if unchanged
+  std::vector<std::uint32_t> narrow;  // excluded: their area is less than their boundary's length
+                                      // times the distance
+  std::vector<std::uint32_t> kept;    // excluded: they would have overlapped, or changed by more
+  std::string failure;                // why nothing was closed, empty otherwise
 };
 
 /// Makes borders of different features coincide where they are at most `metres` apart on the
-/// ground; 0 < metres <= kWidestGap. A vertex moves by no more than that, and not to a place where
-/// one of its features already has a vertex, so that the shape of a feature is not simplified; the
-/// edges beside it may bend by as much again. No feature changes its area by more than the length
-/// of its boundary times the distance, and no two come to overlap by more than before, but for a
-/// strip of one cell: features that would, and those so narrow that nothing of their shape is
-/// certain to be left, stay as they are, with all that others have in common with them, and attract
-/// no others. Closes nothing if too much lies within the distance to be looked at in a few seconds,
-/// or if it comes to no end. Rings are clean before and after (see clean_rings.h). The result
-/// depends on the features and their order only.
+/// ground; 0 < metres <= kWidestGap.
+///
+/// * A vertex moves by no more than that, and not to a place where one of its features already has
+///   a vertex, so the shape of a feature is not simplified. The edges beside it may bend by as much
+///   again.
+/// * No feature changes its area by more than the length of its boundary times the distance, and no
+///   two features come to overlap by more than before, except for a strip of one cell. Features
+///   that would, and those so narrow that their shape might be lost, stay unchanged, together with
+///   everything that others share with them, and attract no others.
+/// * Closes nothing if too much lies within the distance to be examined in a few seconds, or if the
+///   process does not converge.
+///
+/// Rings are clean before and after (see clean_rings.h). The result depends only on the features
+/// and their order.
 GapClosing close_gaps(std::span<Rings* const> features, double metres);
 
 }  // namespace trapeze

@@ -25,11 +25,12 @@
 namespace trapeze {
 namespace {
 
-// What is looked at at once, in pixels, and in times of how far around it has to be known.
+// Size of the blocks processed as a whole: at least so many pixels, and so many times the distance
+// around a place that must be known.
 constexpr double kLeastBlock = 512;
 constexpr double kReachesOfBlock = 4;
 
-// What is left over beside triangles that end on cells, as it is narrower in the mean, in cells.
+// Remainders beside triangles that end on cells have a smaller mean width than this, in cells.
 constexpr double kLeftOver = 2;
 
 using Triangle = Exaggeration::Triangle;
@@ -52,7 +53,7 @@ class Growth {
     for (std::uint32_t f = 0; f < features.size(); ++f) add(features[f]->polygons.rings, f);
   }
 
-  /// In no order that depends on the number of threads.
+  /// The order of the result does not depend on the number of threads.
   std::vector<Triangle> find() {
     sort_into_blocks();
     std::vector<std::vector<Triangle>> found(blocks_.size());
@@ -65,13 +66,13 @@ class Growth {
  private:
   struct SideOf {
     std::uint32_t feature = 0;
-    bool is_right = false;  // the feature, of the edge
+    bool is_right = false;  // whether the feature is on the right of the edge
   };
   /// By row and column.
   using Block = std::uint64_t;
 
-  // Shells run counterclockwise, and holes clockwise: the inside is on the right of an edge that is
-  // passed downwards.
+  // Shells run counterclockwise and holes clockwise: the inside is on the right of an edge that is
+  // followed downwards.
   void add(const Rings& rings, std::uint32_t feature) {
     for (std::size_t r = 0; r < rings.size(); ++r) {
       const auto ring = rings[r];
@@ -95,14 +96,14 @@ class Growth {
     return static_cast<Block>(number_at(p.y)) << 32 | static_cast<Block>(number_at(p.x));
   }
 
-  /// Each edge into the blocks of which something may be within reach of it.
+  /// Assigns each edge to the blocks that have something within reach of it.
   void sort_into_blocks() {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
       const Point upper = vertices_[edges_[e].upper];
       const Point lower = vertices_[edges_[e].lower];
       const std::int64_t last = number_at(lower.y + reach_);
       for (std::int64_t row = number_at(upper.y - reach_); row <= last; ++row) {
-        // What of the edge is within reach of the row.
+        // The part of the edge within reach of the row.
         const double top = kGridMin + static_cast<double>(row * side_) - reach_;
         const double bottom = top + static_cast<double>(side_) + 2 * reach_;
         double from = upper.x;
@@ -124,7 +125,7 @@ class Growth {
     }
   }
 
-  /// The triangles whose uppermost corners lie in the block: each is found in one.
+  /// The triangles whose uppermost corners lie in the block: each is found in exactly one block.
   std::vector<Triangle> find_in(std::size_t number) const {
     const Block block = in_blocks_[blocks_[number]].first;
     Exaggeration exaggeration;
@@ -177,14 +178,14 @@ class Growth {
   std::vector<std::size_t> blocks_;                         // where each begins
 };
 
-/// What a feature has grown by.
+/// The growth of a feature.
 struct Grown {
   std::size_t feature = 0;
   bool is_beside_others = false;
   Rings rings;  // inside by even-odd
 };
 
-/// By feature; those beside others after all others.
+/// By feature; growth beside others after all other growth.
 std::vector<Grown> unite(const std::vector<Triangle>& triangles, unsigned threads,
                          std::string& failure) {
   std::map<std::pair<bool, std::size_t>, std::vector<const Triangle*>> sorted;
@@ -215,14 +216,14 @@ std::vector<Grown> unite(const std::vector<Triangle>& triangles, unsigned thread
   return grown;
 }
 
-/// Features with what they have grown by, as one coverage.
+/// Features with their growth, as one coverage.
 class GrownCoverage {
  public:
   GrownCoverage(std::span<DrawnPolygons* const> features, std::span<const Grown> grown,
                 unsigned threads)
       : features_(features), grown_(grown), threads_(threads) {}
 
-  /// The rings of each feature by even-odd; none if it fails.
+  /// The rings of each feature by even-odd; none on failure.
   std::optional<std::vector<Rings>> build(std::string& failure) {
     std::vector<const Rings*> all;
     for (const DrawnPolygons* feature : features_) all.push_back(&feature->polygons.rings);
@@ -242,9 +243,10 @@ class GrownCoverage {
   }
 
  private:
-  /// What covers a place that a set of features and growths covers: what grows there beside others;
-  /// else the features, which may be several where they were simplified each by itself; else what
-  /// grows there in the void. Of two that grow, as they end on cells, the first.
+  /// The face of a place covered by a set of features and growths: the growth there beside others;
+  /// otherwise the features, of which there may be several if each was simplified by itself;
+  /// otherwise the growth there into the void. Of two growths, which overlap because they end on
+  /// cells, the first.
   FaceId face_of(const std::vector<std::uint32_t>& set) {
     if (set.empty()) return kOutside;
     const auto features = static_cast<std::uint32_t>(features_.size());
@@ -298,7 +300,7 @@ class GrownCoverage {
       const double length = length_of(graph_, graph_.edge(EdgeId(e)));
       for (const Side s : {kLeft, kRight}) {
         const RegionId region = regions.beside[EdgeId(e)][s];
-        if (region == regions.unbounded) continue;  // which has any number of neighbours
+        if (region == regions.unbounded) continue;  // it has any number of neighbours
         Around& one = around[region.value];
         one.border += length;
         one.is_beside_growth = one.is_beside_growth || is_new_[e];
@@ -329,7 +331,7 @@ class GrownCoverage {
   FaceFeatures faces_;
   std::map<std::vector<std::uint32_t>, FaceId> of_several_;
   Sides sides_;               // by edge
-  std::vector<bool> is_new_;  // whether it is one of what grows, by edge
+  std::vector<bool> is_new_;  // by edge: whether it is an edge of a growth
 };
 
 }  // namespace
@@ -337,7 +339,7 @@ class GrownCoverage {
 GrownPolygons grow(std::span<DrawnPolygons* const> features, const GrowthSize& size,
                    unsigned threads) {
   GrownPolygons result;
-  std::vector<DrawnPolygons*> beside;  // each other
+  std::vector<DrawnPolygons*> beside;  // features beside each other, without overlaps
   for (DrawnPolygons* feature : features) {
     if (!feature->lies_over_others) beside.push_back(feature);
   }

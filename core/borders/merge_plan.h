@@ -1,4 +1,4 @@
-// What of a coverage becomes a block, and at which tolerance (see merging.h).
+// Which faces of a coverage become blocks, and at which tolerance (see merging.h).
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace trapeze {
 
-/// Nothing is bridged that is wider, in cells: four pixels at zoom 11, 306 m at the equator. Towns
-/// are areas by then, and each bridge takes memory.
+/// No wider gap is bridged. In cells: four pixels at zoom 11, 306 m at the equator. At coarser
+/// zooms built-up areas are drawn as areas, and each bridge takes memory.
 constexpr double kWidestBridge = 16384;
 
-/// Two boxes of polygons that may become one block meet if they are widened so.
+/// The box widened so that the boxes of two polygons that may become one block intersect.
 Box widened_for_blocks(const Box& box);
 
 constexpr std::uint32_t kMixedClass = 0xffffffff;
@@ -24,10 +24,11 @@ constexpr std::uint32_t kMixedClass = 0xffffffff;
 /// The faces of a coverage that become one, and when.
 struct MergePlan {
   double ratio = 0;
-  FaceId first_void = 0;  // faces from this one on are pieces of the void, by feature those before
+  FaceId first_void = 0;  // faces from this one on are pieces of the void; those before belong to
+                          // features
   /// The tolerance at which each piece is filled, in cells.
   std::vector<double> due;
-  /// By face, less 1; of the pieces as well. kMixedClass is that of no other.
+  /// By face - 1, pieces included. kMixedClass equals no other class.
   std::vector<std::uint32_t> classes;
 
   bool is_void(FaceId face) const { return face == kOutside || face >= first_void; }
@@ -36,7 +37,7 @@ struct MergePlan {
   bool are_of_one_class(FaceId a, FaceId b) const;
 };
 
-/// By face, 0 being outside; of faces that features of several classes cover, kMixedClass.
+/// By face, 0 being the outside. kMixedClass for faces covered by features of several classes.
 std::vector<std::uint32_t> classes_of_faces(const FaceFeatures& faces, const Merging& merging);
 
 }  // namespace trapeze

@@ -17,7 +17,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr FaceId kNoPiece = kOutside;
 
 /// The face on the side of a wall that is not void. A piece of an edge may lead up where the edge
-/// leads down, as its ends are rounded.
+/// leads down, because its ends are rounded.
 FaceId face_behind(const VoidMesh& mesh, const TrapezoidalGraph& graph, VoidMesh::HalfEdge wall) {
   const Edge& edge = graph.edge(mesh.edge_of(wall));
   return edge.face[kLeft] == kOutside ? edge.face[kRight] : edge.face[kLeft];
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> classes_at_vertices(const VoidMesh& mesh, const Trape
   return classes;
 }
 
-/// What a triangle bridges by itself.
+/// The distance that a triangle bridges by itself.
 double own_distance(const VoidMesh& mesh, std::uint32_t triangle) {
   double narrowest = kNever;
   std::array<double, 3> sides{};
@@ -52,14 +52,14 @@ double own_distance(const VoidMesh& mesh, std::uint32_t triangle) {
   return sides[1];
 }
 
-/// The shortest sides that tie all polygons of a class together that are near enough, as a
-/// minimum spanning tree.
+/// The shortest sides that connect all polygons of a class that are near enough, as a minimum
+/// spanning tree.
 std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
                                                  const TrapezoidalGraph& graph,
                                                  std::span<const std::uint32_t> class_of_face) {
   const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
   const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
-  // Of vertices, and of the faces of the polygons.
+  // Sets of vertices and of the faces of polygons.
   DisjointSets ties(vertices + class_of_face.size());
   for (const VoidMesh::HalfEdge wall : mesh.walls()) {
     for (const VoidMesh::HalfEdge h : {wall, VoidMesh::next(wall)}) {
@@ -87,8 +87,8 @@ std::vector<VoidMesh::HalfEdge> shortest_bridges(const VoidMesh& mesh,
   return bridges;
 }
 
-/// Whether what lies beyond a side is filled at a distance with what lies on this side of it,
-/// whatever there is farther away than so many triangles.
+/// Whether the area beyond a side is filled at a distance together with the area on this side,
+/// regardless of anything more than `others` triangles away.
 bool is_filled_beyond(const VoidMesh& mesh, VoidMesh::HalfEdge side, double distance, int others) {
   const VoidMesh::HalfEdge first = mesh.twin(side);
   const std::uint32_t triangle = VoidMesh::triangle_of(first);
@@ -110,8 +110,8 @@ bool is_filled_near(const VoidMesh& mesh, std::uint32_t triangle, double distanc
   return true;
 }
 
-/// Whether what is filled when the bridge is hardly longer than the distance reaches walls at both
-/// of its ends.
+/// Whether the area filled at a distance hardly greater than the length of the bridge reaches walls
+/// at both of its ends.
 bool is_built(const VoidMesh& mesh, VoidMesh::HalfEdge h) {
   const double distance = VoidMesh::kSlack * mesh.length(h) + 1;  // ends are rounded
   const auto is_filled = [&](std::uint32_t triangle) {
@@ -157,7 +157,7 @@ class Pieces {
 
   FaceId face_of(std::uint32_t triangle) const { return faces_[triangle]; }
   const std::vector<double>& due() const { return due_; }
-  /// Of each: one of its triangles.
+  /// One triangle of each piece.
   const std::vector<std::uint32_t>& firsts() const { return firsts_; }
 
  private:
@@ -169,8 +169,8 @@ class Pieces {
 void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, DividedVoid& divided) {
   if (is_above(a, b)) {
     divided.segments.emplace_back(a, b);
-    divided.sides.emplace_back(right_of_ab, left_of_ab);  // what is right of one that goes down
-  } else {                                                // is on the left of the map
+    divided.sides.emplace_back(right_of_ab, left_of_ab);  // the right side of a segment that goes
+  } else {                                                // down is on the left of the map
     divided.segments.emplace_back(b, a);
     divided.sides.emplace_back(left_of_ab, right_of_ab);
   }
@@ -178,16 +178,17 @@ void add_segment(Point a, Point b, FaceId right_of_ab, FaceId left_of_ab, Divide
 
 }  // namespace
 
-// The largest set is what is left when everything else is taken away, from the greatest distance
-// down: a triangle goes at its own distance, or where a neighbour has gone and the side between
-// them is longer, at the smaller of the two. What is too wide goes first, in any order.
+// The largest set is what remains after everything else has been removed, from the greatest
+// distance down. A triangle is removed at its own distance. If a neighbour has been removed and the
+// side between them is longer, it is removed at the smaller of the two distances. Triangles that
+// are too wide are removed first, in any order.
 std::vector<double> distances_to_fill(const VoidMesh& mesh, const TrapezoidalGraph& graph,
                                       std::span<const std::uint32_t> class_of_face) {
   const std::vector<std::uint32_t> classes = classes_at_vertices(mesh, graph, class_of_face);
   const auto count = static_cast<std::uint32_t>(mesh.triangle_count());
   std::vector<double> distances(count);
   std::vector<bool> is_known(count, false);
-  // What is not raised stays in order; what is waits apart, as it is little.
+  // Distances that are not raised stay in order; the few raised ones wait in a separate queue.
   std::vector<std::pair<double, std::uint32_t>> order;
   std::priority_queue<std::pair<double, std::uint32_t>> raised;
   std::vector<std::uint32_t> beyond_all;

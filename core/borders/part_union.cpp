@@ -14,10 +14,10 @@
 namespace trapeze {
 namespace {
 
-/// Successive segments of a ring, which are near each other.
+/// Successive segments of a ring, near each other.
 struct Chain {
   Box box;
-  std::size_t begin;  // segments
+  std::size_t begin;  // index of a segment
   std::size_t end;
 };
 
@@ -51,7 +51,7 @@ struct PartSegments {
   }
 };
 
-/// Counts steps, so that looking for an overlap never takes longer than uniting does.
+/// Counts steps, so that the search for an overlap never takes longer than uniting.
 class Steps {
  public:
   explicit Steps(std::size_t segments) : left_(1024 + 64 * segments) {}
@@ -63,7 +63,7 @@ class Steps {
   std::size_t left_;
 };
 
-/// They have a point in common, even if it is an end of both.
+/// Whether they have a point in common, even if it is an end of both.
 bool do_meet(const Segment& s, const Segment& t) {
   if (!box_of(s).intersects(box_of(t))) return false;
   const auto lie_on_one_side = [](const Segment& line, const Segment& ends) {
@@ -74,9 +74,9 @@ bool do_meet(const Segment& s, const Segment& t) {
   return !lie_on_one_side(s, t) && !lie_on_one_side(t, s);
 }
 
-/// Whether boundaries of different parts meet; true as well if it is not known in time.
+/// Whether boundaries of different parts meet; also true if that is not known in time.
 bool do_parts_meet(const PartSegments& parts, Steps& steps) {
-  // The tree is one of boxes: each chain is a diagonal of its own.
+  // The tree indexes boxes of segments: each chain is represented by the diagonal of its box.
   std::vector<Segment> diagonals;
   diagonals.reserve(parts.chains.size());
   for (const Chain& chain : parts.chains) {
@@ -107,7 +107,7 @@ bool do_parts_meet(const PartSegments& parts, Steps& steps) {
   return do_any;
 }
 
-/// Whether parts whose boundaries do not meet lie within others: one point of each tells.
+/// Whether parts whose boundaries do not meet lie within others: one point of each decides.
 bool do_parts_contain_others(const PartSegments& parts, Steps& steps) {
   struct Probe {
     Point point;
@@ -141,7 +141,7 @@ bool do_parts_contain_others(const PartSegments& parts, Steps& steps) {
 
 bool do_boxes_meet(const Rings& rings, std::span<const std::uint32_t> part_ends) {
   constexpr std::size_t kFewParts = 16;
-  if (part_ends.size() > kFewParts) return true;  // not worth the pairs
+  if (part_ends.size() > kFewParts) return true;  // not worth examining the pairs
   std::vector<Box> boxes;
   std::size_t ring = 0;
   for (const std::uint32_t end : part_ends) {
@@ -164,7 +164,7 @@ bool may_overlap(const Rings& rings, std::span<const std::uint32_t> part_ends) {
   return do_parts_meet(parts, steps) || do_parts_contain_others(parts, steps);
 }
 
-/// The same points wherever the ring began and in whichever direction it ran.
+/// Appends the same points wherever the ring began and in whichever direction it ran.
 void append_normalized(std::span<const Point> ring, Rings& out) {
   std::vector<Point> points(ring.begin(), ring.end());
   std::rotate(points.begin(), std::min_element(points.begin(), points.end(), is_above),
@@ -179,7 +179,7 @@ bool precedes(const Rings& a, const Rings& b) {
                                       b.points.end(), is_above);
 }
 
-/// Those with an area, clean.
+/// The parts that have an area, cleaned.
 std::vector<Rings> split(const Rings& rings, std::span<const std::uint32_t> part_ends) {
   std::vector<Rings> parts;
   std::size_t ring = 0;
@@ -214,7 +214,7 @@ PartUnion unite_parts(Rings& rings, std::span<const std::uint32_t> part_ends) {
   result.failure = std::move(found.failure);
   if (!result.did_overlap) return result;
 
-  // As faces of a coverage they are disjoint, so that even-odd is their union.
+  // As faces of a coverage they are disjoint, so even-odd yields their union.
   TrapezoidalGraph graph;
   const CoverageOutcome outcome =
       CoverageBuilder().build(pointers, {std::numeric_limits<double>::infinity(), 0}, graph);

@@ -1,8 +1,8 @@
-// The union of the parts of a feature, where they lie over each other.
+// The union of the parts of a feature where they overlap.
 //
-// Inside is even-odd over all rings of a feature, so that neither their order nor their direction
-// has to be right. A part that is there twice would cancel itself, and what two parts cover would
-// be a hole. So parts that overlap are united before.
+// Inside is even-odd over all rings of a feature, so neither their order nor their direction has to
+// be right. But a part that occurs twice would cancel itself, and an overlap of two parts would be
+// a hole. So overlapping parts are united first.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ struct PartUnion {
 };
 
 /// Part i consists of the rings part_ends[i - 1] .. part_ends[i] - 1, even-odd. If parts overlap,
-/// `rings` become the rings of their union, which are clean (see clean_rings.h); else they remain
-/// as they are, as they do if that fails. Takes a small share of the time that it takes to build a
-/// graph of the rings, unless parts meet.
+/// `rings` become the rings of their union, which are clean (see clean_rings.h). Otherwise, or if
+/// that fails, they stay unchanged. Unless parts meet, this takes a small fraction of the time
+/// needed to build a graph of the rings.
 PartUnion unite_parts(Rings& rings, std::span<const std::uint32_t> part_ends);
 
 }  // namespace trapeze

@@ -49,17 +49,17 @@ class InsideParts {
 
 struct Loop {
   CornerId top;        // its topmost vertex
-  bool goes_left;      // from its top to the next corner, it takes the left one of the two edges
+  bool goes_left;      // from its top, it follows the left one of the two edges to the next corner
   bool is_shell;       // the inside is within the loop
-  std::uint32_t part;  // of the inside, that its edges bound
+  std::uint32_t part;  // the part of the inside that its edges bound
 };
 
 EdgeId edge_before(const TrapezoidalGraph& g, CornerId c) {
   return g.corner(g.corner(c).prev).edge;
 }
 
-/// Both edges lead downwards from the top; the nodes between them, beside either, are inside the
-/// loop.
+/// Both edges lead downwards from the top; the nodes between them, beside either edge, are inside
+/// the loop.
 Loop describe_loop(const TrapezoidalGraph& g, const InsideParts& parts, CornerId top) {
   const Point p = g.point(g.corner(top).vertex);
   const EdgeId out = g.corner(top).edge;
@@ -97,9 +97,9 @@ void append_ring(const TrapezoidalGraph& g, const Loop& loop, Rings& rings) {
   rings.close_ring();
 }
 
-/// By polygon: the shell first, then the holes from top to bottom; polygons by the top of their
-/// shells. At one vertex the edges decide: two loops that hang there differ in the lower end of the
-/// first one taken.
+/// Sorts by polygon: the shell first, then the holes from top to bottom; polygons by the top of
+/// their shells. Two loops that hang from the same vertex are ordered by their edges: they differ
+/// in the lower end of the first edge.
 void sort_loops(const TrapezoidalGraph& g, std::uint32_t parts, std::vector<Loop>& loops) {
   const auto place = [&](const Loop& loop) {
     const EdgeId out = g.corner(loop.top).edge;

@@ -1,10 +1,10 @@
 // Converts a trapezoidal graph to polygons of the usual form: a shell with its holes.
 //
-// The links between inside nodes connect exactly what can be reached without crossing or touching
-// the boundary, so every connected part of the inside is one polygon. The loops of the boundary are
-// those of a graph built anew from what is left of the rings (see boundary_loops.h): each is
-// simple, and all its edges bound the same part from inside. Exactly one loop of a part has the
-// part within it.
+// The links between inside nodes connect exactly the nodes that are reachable without crossing or
+// touching the boundary, so every connected part of the inside is one polygon. The loops of the
+// boundary are those of a graph built from the remaining rings (see boundary_loops.h): each is
+// simple, and all its edges bound the same part from inside. Exactly one loop of a part encloses
+// it.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,16 @@
 
 namespace trapeze {
 
-/// Polygons valid in the sense of OGC simple features, one after another. Their insides are
-/// disjoint; they touch each other at vertices only, and so do the rings of one polygon.
+/// Polygons that are valid as OGC simple features, one after another. Their interiors are disjoint.
+/// They touch each other only at vertices, and so do the rings of one polygon.
 struct Polygons {
   /// The shell of each polygon, counterclockwise on a map with north up, then its holes, clockwise.
   /// Every ring begins at its topmost vertex.
   Rings rings;
   std::vector<std::uint32_t> ends;  // polygon i is rings ends[i - 1] .. ends[i] - 1
 
-  /// Whether edges of the graph crossed, as they may without the topological consistency test; they
-  /// were noded, and inside is even-odd.
+  /// Whether edges of the graph crossed, which is possible without the topological consistency
+  /// test. They were then noded, and inside is even-odd.
   bool is_noded = false;
   /// Why the edges could not be noded, in which case there are no polygons; empty otherwise.
   std::string failure;
@@ -40,13 +40,13 @@ struct Polygons {
 
 /// The polygons that the inside nodes of `graph` make up, adapted or not; none if there are no
 /// inside nodes. Polygons are in sweep order of their topmost vertices, and so are the holes of
-/// each. They depend only on the area that `graph` covers, not on its history.
+/// each. They depend only on the area covered by `graph`, not on its history.
 Polygons polygons_of(const TrapezoidalGraph& graph);
-/// The same of the area of rings, by even-odd. Cleans them in place (see clean_rings.h).
+/// The same for the area of rings, by even-odd. Cleans them in place (see clean_rings.h).
 Polygons polygons_of(Rings& rings);
 
-/// The same for each face of a coverage, by face - 1. Neighbours have every edge of their common
-/// border in common.
+/// The same for each face of a coverage, by face - 1. Neighbours have identical edges along their
+/// shared border.
 std::vector<Polygons> polygons_of_faces(const TrapezoidalGraph& graph);
 /// The same for each feature of a coverage, by position; features may overlap.
 std::vector<Polygons> polygons_of_features(const TrapezoidalGraph& graph,

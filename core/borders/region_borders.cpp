@@ -15,7 +15,7 @@
 namespace trapeze {
 namespace {
 
-// Of a square, area over diagonal is its width over the square root of two.
+// For a square, area over diagonal is its width over the square root of two.
 constexpr double kWeightOfMeanWidth = 0.70710678118654752;
 
 struct Piece {
@@ -23,8 +23,8 @@ struct Piece {
   double area = 0;
 };
 
-/// The trapezoid of a node, as the longer of the lines between the middles of opposite sides; none
-/// if it has no height.
+/// The trapezoid of a node as an axis: the longer of the lines between the middles of opposite
+/// sides. None if it has no height.
 std::optional<Piece> piece_of(const TrapezoidalGraph& graph, const Node& node) {
   const Point top = graph.point(node.end[kUp]);
   const Point bottom = graph.point(node.end[kDown]);
@@ -89,7 +89,8 @@ void RegionBorders::assign(const TrapezoidalGraph& graph, const MergePlan* plan)
   collect_seeds();
 }
 
-/// Each arc once, by the first of its edges that is met. Those of a region lie together.
+/// Records each arc once, by the first of its edges encountered. Arcs of a region are stored
+/// together.
 void RegionBorders::collect_seeds() {
   std::vector<EdgeId> firsts;
   lists_.assign(moments_.size(), List());
@@ -199,7 +200,7 @@ double RegionBorders::weight(RegionId region) {
   const double diagonal = std::hypot(static_cast<double>(box_.max_x) - box_.min_x,
                                      static_cast<double>(box_.max_y) - box_.min_y);
   const double weight = kWeightOfMeanWidth * moments_[region].area / diagonal;
-  // A square goes when it is twice as wide as the tolerance.
+  // A square is removed when its width is twice the tolerance.
   const bool has_mates = plan_ != nullptr && !mates_of(region, face).empty();
   return has_mates ? std::min(weight, weight / (4 * plan_->ratio)) : weight;
 }
@@ -259,7 +260,7 @@ Side RegionBorders::side_of(EdgeId edge, RegionId region) {
 }
 
 /// The face with the longest border; the void only if there is no other, so that a coverage does
-/// not fray out along its coasts. What is void already becomes a part of a piece if it can.
+/// not fray along its coasts. A region that is already void becomes a part of a piece if possible.
 FaceId RegionBorders::choose_taker(FaceId face) const {
   BorderLengths covered;
   BorderLengths pieces;
@@ -279,8 +280,8 @@ FaceId RegionBorders::choose_taker(FaceId face) const {
   return is_open ? kOutside : pieces.longest();
 }
 
-/// Of a piece of the void that bridges nothing by itself: a piece beside it, that is to be filled
-/// with it, and later; the first of these. kOutside if there is none.
+/// For a piece of the void that bridges nothing by itself: an adjacent piece that is filled at the
+/// same time or later; the earliest of these. kOutside if there is none.
 FaceId RegionBorders::find_later_piece(FaceId face) const {
   FaceId later = kOutside;
   for (const Arc& arc : arcs_) {
@@ -302,7 +303,7 @@ double RegionBorders::length_of_arc(const Arc& arc) const {
   return length;
 }
 
-/// Of the current region, in order of the arcs.
+/// The mates of the current region, in order of the arcs.
 std::vector<RegionBorders::Mate> RegionBorders::mates_of(RegionId region, FaceId face) {
   std::vector<Mate> mates;
   for (const Arc& arc : arcs_) {
@@ -317,8 +318,8 @@ std::vector<RegionBorders::Mate> RegionBorders::mates_of(RegionId region, FaceId
   return mates;
 }
 
-/// Whether a piece of the void, which is the current region, still has something on two sides. What
-/// is on one side only is a notch, unless it is a spike that has led to something else.
+/// Whether a piece of the void, which is the current region, still lies between two regions. With
+/// only one neighbour it is a notch, unless it is a spike that once led to another region.
 bool RegionBorders::bridges(std::size_t mates) const {
   if (mates != 1) return mates > 1;
   double covered = 0;
@@ -367,7 +368,7 @@ RegionBorders::United RegionBorders::remove(RegionId region, EditLog& log) {
   return united;
 }
 
-/// Makes one of two regions beside each other, with the face of the larger one.
+/// Unites two adjacent regions, giving both the face of the larger one.
 void RegionBorders::join(RegionId region, FaceId face, const Mate& mate, EditLog& log,
                          United& united) {
   const RegionId other = find(mate.region);
@@ -378,7 +379,7 @@ void RegionBorders::join(RegionId region, FaceId face, const Mate& mate, EditLog
   dissolve(gone, other_goes ? face : mate.face, log, united);
 }
 
-/// Makes the current region a part of those beside it that have the face of the taker.
+/// Makes the current region a part of the adjacent regions that have the face of the taker.
 void RegionBorders::dissolve(RegionId region, FaceId taker, EditLog& log, United& united) {
   std::vector<VertexId>& junctions = junctions_;
   junctions.clear();
@@ -428,7 +429,7 @@ void RegionBorders::note_taken(RegionId region, FaceId face, FaceId taker) {
   }
 }
 
-/// Of a region that winds, each trapezoid has its share.
+/// For a winding region: each trapezoid gets its share of the area.
 void RegionBorders::note_pieces(RegionId region, FaceId face, FaceId taker) {
   double sum = 0;
   for (const EdgeId e : edges_) {
@@ -449,7 +450,8 @@ std::span<const CornerId> RegionBorders::ends_at(VertexId v) const {
   return std::span(ends_).subspan(first_end_[v], first_end_[VertexId(v.value + 1)] - first_end_[v]);
 }
 
-/// What repair_junction() reads of all of them, each step for all before the next one.
+/// Prefetches everything repair_junction() reads for all junctions, each step for all before the
+/// next one.
 void RegionBorders::fetch_ends(std::span<const VertexId> junctions) const {
   for (const VertexId v : junctions) trapeze::fetch(first_end_, v);
   for (const VertexId v : junctions) __builtin_prefetch(ends_at(v).data());
@@ -481,7 +483,7 @@ void RegionBorders::fetch(FetchStep step, RegionId region) const {
     if (list.first != kNobody) __builtin_prefetch(&seeds_[list.first]);
     return;
   }
-  // Of a large region, what is enough to begin with.
+  // For a large region, enough to start with.
   constexpr int kMostSeeds = 8;
   std::uint32_t i = list.first;
   for (int count = 0; i != kNobody && count < kMostSeeds; i = seeds_[i].next, ++count) {
@@ -517,13 +519,13 @@ void RegionBorders::repair_junction(VertexId v, EditLog& log) {
   for (const auto& [a, b] : pair_spokes(spokes_)) join_ends(end_at(v, a), end_at(v, b), log);
 }
 
-/// The end, at `v`, of the arc that leads from there by `edge`.
+/// The end, at `v`, of the arc that leaves there along `edge`.
 CornerId RegionBorders::end_at(VertexId v, EdgeId edge) const {
   const CornerId c = borders_[edge].corner;
   return graph_->corner(c).vertex == v && graph_->corner(c).is_end() ? c : graph_->corner(c).next;
 }
 
-/// Makes one corner of the ends of two arcs, or of both ends of one.
+/// Makes one corner from the ends of two arcs, or from both ends of one.
 void RegionBorders::join_ends(CornerId a, CornerId b, EditLog& log) {
   const auto is_last = [this](CornerId c) { return graph_->corner(c).next.is_none(); };
   if (is_last(a) == is_last(b)) {

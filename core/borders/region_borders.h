@@ -1,24 +1,26 @@
 // Dissolves the small regions of a coverage: a region too small to see becomes a part of a
 // neighbour.
 //
-// Removing vertices alone would leave every region at least a triangle and every junction in its
-// place. So a region whose mean width is below a limit set by the tolerance becomes a part of that
+// Removing only vertices would leave every region at least a triangle and every junction in its
+// place. So a region whose mean width is below a limit set by the tolerance becomes a part of the
 // face, other than the outside, with which it has the longest border. That border is removed edge
 // by edge, which cannot make boundaries cross; the rest of the region's border becomes the
-// neighbour's. Junctions where only two arcs are left become corners of one arc.
+// neighbour's. Junctions left with only two arcs become corners of one arc.
 //
-// With a plan of blocks (see merging.h), pieces of the void are regions as well. One that is due
-// becomes a part of the polygons that it lies between, and these become one region:
+// With a plan of blocks (see merging.h), pieces of the void are regions as well. A piece that is
+// due becomes a part of the polygons on its sides, and these become one region:
 //
 //     +-----+.....+-----+           +-----------------+
 //     |  A  : void:  B  |           |        A        |    the larger of the two gives its face
 //     +-----+.....+-----+           +-----------------+
 //
-// If it bridges nothing by itself, it waits for the next piece beside it; if there is none, as what
-// it bridged has become too small to see, it is void like all around. Polygons that touch become
-// one region when the narrower one is narrower than the distance that is bridged.
+// A piece that bridges nothing by itself waits for the next piece beside it. If there is none,
+// because the polygons it bridged have become too small to see, it is void like its surroundings.
+// Polygons that touch become one region when the narrower one is narrower than the distance that is
+// bridged.
 //
-// Must be told of every removal from the graph, and follows them forward only. Thread-safety: none.
+// Must be informed of every removal from the graph; follows removals forwards only. Thread-safety:
+// none.
 #pragma once
 
 #include <cstdint>
@@ -36,16 +38,17 @@
 
 namespace trapeze {
 
-/// An area that went from one face to another, or a part of it: a rectangle of that area, with this
-/// axis, stands for the place where it was.
+/// An area that was transferred, wholly or in part, from one face to another. A rectangle of that
+/// area with this axis represents its place.
 struct Taken {
   Axis axis;
-  double area = 0;          // cells squared, of the region as it was at first
-  FaceId face = kOutside;   // what it was
-  FaceId taker = kOutside;  // what covers it now
+  double area = 0;          // cells squared, of the original region
+  FaceId face = kOutside;   // the former face
+  FaceId taker = kOutside;  // the face that covers it now
 };
 
-/// One of the edges of a loop, on which side of it the inside is, and the faces as they were.
+/// One of the edges of a loop, the side of it on which the inside is, and the faces before the
+/// removal.
 struct LostLoop {
   EdgeId edge;
   Side side = kLeft;
@@ -62,35 +65,34 @@ class RegionBorders {
   std::size_t count() const { return parent_.size(); }
 
   /// The tolerance at which the region is to be removed, in cells: such that a square is removed
-  /// when it is half a pixel wide and the tolerance a quarter of a pixel. Infinite if it is not
+  /// when it is half a pixel wide and the tolerance is a quarter of a pixel. Infinite if it is not
   /// removed as a region: it no longer exists, is the unbounded one, or has no junction, so that
   /// its loops are removed vertex by vertex.
   double weight(RegionId region);
 
-  /// The regions that are one from then on, under the number of the first of them.
+  /// The regions that became one, which has the number of the first of them.
   using United = std::vector<RegionId>;
-  /// Makes a region of finite weight a part of a neighbour, as one new edit. None, and no edit, if
-  /// it has no neighbour of which it could become a part.
+  /// Merges a region of finite weight into a neighbour, as one new edit. Returns none, and makes no
+  /// edit, if it has no neighbour that could take it.
   United remove(RegionId region, EditLog& log);
   /// Whether there is a plan by which regions become blocks.
   bool has_plan() const { return plan_ != nullptr; }
 
-  /// To be called after a corner has been removed other than with its loop: of its two edges,
-  /// `gone` no longer exists, and `kept` leaves `corner`.
+  /// Call after a corner has been removed other than with its loop. Of its two edges, `gone` no
+  /// longer exists, and `kept` leaves `corner`.
   void note_joined(EdgeId gone, EdgeId kept, CornerId corner);
-  /// To be called when a triangular loop is removed: the region inside becomes a part of the one
-  /// outside.
+  /// Call when a triangular loop is removed: the region inside becomes a part of the one outside.
   void note_lost_loop(const LostLoop& loop);
 
-  /// Prefetches, step by step, what weight() and remove() will read of a region (see
-  /// fetch_ahead.h). They change nothing.
+  /// Prefetches, step by step, the memory that weight() and remove() will read for a region (see
+  /// fetch_ahead.h). Changes nothing.
   enum class FetchStep { region, seeds, edges, corners };
   void fetch(FetchStep step, RegionId region) const;
 
-  // What the last removal did.
-  /// Areas that went from one face to another.
+  // Effects of the last removal.
+  /// Areas transferred from one face to another.
   std::span<const Taken> taken() const { return taken_; }
-  /// Of the block that came about, in cells squared; none if it was none.
+  /// Area of the resulting block, in cells squared; none if no block resulted.
   std::optional<double> block_area() const { return block_area_; }
   /// Vertices that lost an edge.
   std::span<const VertexId> changed() const { return changed_; }
@@ -109,11 +111,11 @@ class RegionBorders {
     std::uint32_t first = kNobody;
     std::uint32_t last = kNobody;
   };
-  // Of an edge: together, as whoever needs one of them needs the others.
+  // The data of an edge, stored together because they are always needed together.
   struct Border {
     std::array<RegionId, 2> beside;
     EdgeId replaced_by;
-    CornerId corner;  // that the edge leaves
+    CornerId corner;  // the corner that the edge leaves
     std::uint32_t seen = 0;
   };
 
@@ -164,13 +166,13 @@ class RegionBorders {
   Table<EdgeId, Border> borders_;
   Table<RegionId, RegionId> parent_;
   Table<RegionId, FaceId> faces_;
-  Table<RegionId, AreaMoments> moments_;  // as they were at first
+  Table<RegionId, AreaMoments> moments_;  // of the original regions
   Table<RegionId, List> lists_;
   Table<RegionId, std::uint8_t> may_have_junction_;
   std::vector<Seed> seeds_;
   RegionId unbounded_;
   std::vector<CornerId> ends_;                // of arcs, in order of their vertices
-  Table<VertexId, std::uint32_t> first_end_;  // by vertex, in ends_
+  Table<VertexId, std::uint32_t> first_end_;  // by vertex; index into ends_
 
   // Of the current region.
   std::uint32_t stamp_ = 0;

@@ -5,7 +5,7 @@
 namespace trapeze {
 namespace {
 
-/// The region of every node: links lead to all that can be reached without crossing an edge.
+/// The region of every node: links lead to everything reachable without crossing an edge.
 class NodeRegions {
  public:
   NodeRegions(const TrapezoidalGraph& graph, Regions& regions) {
@@ -25,7 +25,7 @@ class NodeRegions {
       const NodeId n(i);
       const Node& node = graph.node(n);
       if (!node.is_alive()) continue;
-      // The first node of a region comes before all others of it.
+      // The first node of a region precedes all other nodes of it.
       const NodeId first = find(n);
       region_of_[n] = first == n ? regions.face.push_back(graph.face(node)) : region_of_[first];
       if (graph.is_frame(node.edge[kLeft])) regions.unbounded = region_of_[n];

@@ -1,5 +1,5 @@
-// The regions of a graph: the connected pieces of its faces. A feature of several islands has
-// several regions; so has the outside, namely each hole and the unbounded region around everything.
+// The regions of a graph: the connected components of its faces. A feature of several islands has
+// several regions. So does the outside: each hole, and the unbounded region around everything.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace trapeze {
 
 using RegionId = Id<struct RegionTag>;
 
-/// The regions of a graph as it is.
+/// The regions of a graph in its present state.
 struct Regions {
   explicit Regions(const TrapezoidalGraph& graph);
 
-  Table<EdgeId, std::array<RegionId, 2>> beside;  // left and right of each edge but the frame's
+  Table<EdgeId, std::array<RegionId, 2>> beside;  // left and right of each edge, except the frame's
   Table<RegionId, double> area;  // cells squared; meaningless for the unbounded region
   Table<RegionId, FaceId> face;
   RegionId unbounded;  // at the frame

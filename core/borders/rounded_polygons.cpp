@@ -16,7 +16,7 @@
 namespace trapeze {
 namespace {
 
-/// Whether a point lies within a cell of a segment, or nearly so.
+/// Whether a point lies within about a cell of a segment.
 bool is_near(const Segment& segment, Point p) {
   const double x = static_cast<double>(segment.second.x) - segment.first.x;
   const double y = static_cast<double>(segment.second.y) - segment.first.y;
@@ -63,8 +63,8 @@ class Rounding {
   }
 
  private:
-  /// Features [begin, end) are of one graph. Its vertices and edges have some of the numbers that
-  /// the points of their rings have.
+  /// Features [begin, end) are of one graph. Each of its vertices and edges has the number of one
+  /// of the points of their rings.
   struct Graph {
     std::uint32_t number = 0;
     std::size_t begin = 0;
@@ -79,7 +79,7 @@ class Rounding {
     for_each_in_parallel(graphs_.size(), threads_, [&](std::size_t i) { visit(graphs_[i]); });
   }
 
-  /// Calls visit(point, next) for every edge of the rings of a feature, by the numbers of points.
+  /// Calls visit(point, next) with the numbers of points for every edge of the rings of a feature.
   template <typename Visit>
   void for_each_edge(std::size_t feature, const Visit& visit) const {
     const Rings& rings = rings_of(feature);
@@ -93,8 +93,8 @@ class Rounding {
     }
   }
 
-  /// Of items of a key and a point each: sorts them, and gives points of equal keys the same
-  /// number, from `first` on.
+  /// For items of a key and a point: sorts them and gives points of equal keys the same number,
+  /// from `first` on.
   template <typename Item>
   static void number_equals(std::vector<Item>& items, std::size_t first,
                             std::vector<std::uint32_t>& numbers) {
@@ -143,8 +143,8 @@ class Rounding {
     return edges_[edge_of_[point]].upper == vertex_of_[point];
   }
 
-  // Shells run counterclockwise, and holes clockwise: the inside is on the left, as seen on the
-  // way, which is on the right of an edge that is passed downwards.
+  // Shells run counterclockwise and holes clockwise: the inside is on the left along the path as
+  // seen on the map, which is on the right of an edge that is followed downwards.
   void find_corners() {
     corners_.begin();
     corners_.begin_piece(mesh());
@@ -170,7 +170,7 @@ class Rounding {
     return all;
   }
 
-  /// Of these graphs; returns those in which anything was found.
+  /// For these graphs; returns those in which anything was found.
   std::vector<std::uint32_t> leave_sharp_what_crosses(std::span<const std::uint32_t> graphs) {
     std::vector<std::vector<std::uint32_t>> found(graphs.size());
     for_each_in_parallel(graphs.size(), threads_,
@@ -209,7 +209,7 @@ class Rounding {
     }
   }
 
-  /// The rounded vertices of edges of which a piece meets another one other than at an end.
+  /// The rounded vertices of edges with a piece that meets another one other than at an end.
   std::vector<std::uint32_t> corners_that_cross(const Graph& graph) const {
     const std::vector<std::uint32_t> edges = edges_of(graph);
     const auto has_corner = [this](std::uint32_t edge) {
@@ -239,7 +239,8 @@ class Rounding {
           if (meets && is_rounded(vertex)) found.push_back(vertex);
         }
       }
-      // Else it is not what comes to run through there that is rounded, but what ends there.
+      // Otherwise the edge that passes through the point is not rounded, but the one that ends
+      // there is.
       if (!found.empty()) break;
     }
     std::ranges::sort(found);
@@ -247,8 +248,8 @@ class Rounding {
     return found;
   }
 
-  /// Of points in sweep order, which were rounded to cells: whether one lies on the segment, other
-  /// than at an end if these do not count.
+  /// Whether one of the points, which are in sweep order and rounded to cells, lies on the segment,
+  /// not counting its ends unless do_ends_count.
   static bool is_near_any(const Segment& segment, const std::vector<Point>& points,
                           bool do_ends_count) {
     const Box box = box_of(segment);
@@ -273,7 +274,7 @@ class Rounding {
     for_each_edge(feature, [&](std::size_t point, std::size_t next) {
       corners_.trace(0, mesh(), edge_of_[point], way);
       if (!goes_down(point)) std::ranges::reverse(way);
-      // The last one is the first one of the next edge.
+      // The last point is the first one of the next edge.
       for (std::size_t i = 0; i + 1 < way.size(); ++i) rings.points.push_back(way[i].place);
       if (next <= point) rings.close_ring();
     });
@@ -288,7 +289,7 @@ class Rounding {
   std::vector<Point> vertices_;
   std::vector<MeshEdge> edges_;
   std::vector<std::uint32_t> vertex_of_;  // by point of the rings, one after another
-  std::vector<std::uint32_t> edge_of_;    // that leads from it to the next one
+  std::vector<std::uint32_t> edge_of_;    // of the edge that leads from it to the next point
   CornerRounding corners_;
 };
 

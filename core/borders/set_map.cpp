@@ -11,7 +11,8 @@
 namespace trapeze {
 namespace {
 
-/// A segment that a feature has twice is inside it on both sides, or outside on both.
+/// A segment that occurs twice in a feature is no border of it: both its sides are inside, or both
+/// are outside.
 Borders unite(const LargeArray<OwnedSegment>& pieces, FeatureSets& sets) {
   Borders borders;
   borders.segments.reserve(pieces.size());
@@ -42,7 +43,7 @@ Borders unite(const LargeArray<OwnedSegment>& pieces, FeatureSets& sets) {
   return borders;
 }
 
-/// Pieces of borders in order of place, each with the set of its features as its owner.
+/// Pieces of borders in order of place, each with its set of features as its owner.
 LargeArray<OwnedSegment> in_order(const std::vector<Piece>& pieces, const Borders& borders) {
   LargeArray<OwnedSegment> ordered;
   ordered.reserve(pieces.size());
@@ -97,7 +98,7 @@ void SetMap::fail_to_node() {
 
 bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
                    HotCells cells) {
-  // As of a single polygon, see GraphBuilder; where nothing crosses, there is nothing to node.
+  // As for a single polygon, see GraphBuilder. If nothing crosses, nothing has to be noded.
   constexpr int kQuickPasses = 3;
   constexpr int kMaxPasses = 6;
   const FaceBeyond toggle = [this](EdgeId e, FaceId left) {
@@ -138,12 +139,12 @@ bool SetMap::sweep(Boundary& boundary, Trapezoidation& trapezoidation, Trapezoid
   return false;
 }
 
-/// `boundary` has the borders as its edges. False if they meet too often.
+/// The edges of `boundary` are the borders. False if they meet too often.
 bool SetMap::node_borders(const Boundary& boundary, HotCells cells) {
   const std::optional<Noding> noding = node(borders_.segments, boundary, cells, threads_);
   if (!noding) return false;
   const LargeArray<OwnedSegment> pieces = in_order(noding->pieces, borders_);
-  // Those that stay and the pieces of others, in order of place; what coincides is toggled.
+  // Segments that stay and the pieces of others, in order of place; coinciding ones are toggled.
   Borders noded;
   noded.segments.reserve(borders_.segments.size() + pieces.size());
   noded.owners.reserve(borders_.segments.size() + pieces.size());

@@ -1,7 +1,7 @@
 // The subdivision of the plane by the sets of features that cover it.
 //
-// All rings are noded together. The sweep knows for each face which features cover it: crossing an
-// edge toggles those that own it.
+// All rings are noded together. The sweep knows which features cover each face: crossing an edge
+// toggles the features that own it.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +21,15 @@
 
 namespace trapeze {
 
-/// Numbers for small sets of features, each in ascending order; 0 is the empty one. Once they have
-/// more than kMostMembers in all, every new set is the empty one.
+/// Numbers for small sets of features, each in ascending order; 0 is the empty set. Once the sets
+/// have more than kMostMembers members in total, every new set is the empty one.
 class FeatureSets {
  public:
   explicit FeatureSets(std::size_t features) : of_one_(features, kUnknown) { number({}); }
 
   std::uint32_t number(const std::vector<std::uint32_t>& features);
   std::uint32_t number_of_one(std::uint32_t feature);
-  /// Whether there are more than that: what was numbered since means nothing.
+  /// Whether that limit has been exceeded: sets numbered since then are meaningless.
   bool is_full() const { return members_ > kMostMembers; }
   std::size_t size() const { return sets_.size(); }
   const std::vector<std::uint32_t>& operator[](std::uint32_t number) const { return sets_[number]; }
@@ -55,18 +55,18 @@ struct Borders {
   std::vector<std::uint32_t> owners;
 };
 
-/// The features are by their positions. One thread at a time.
+/// Features are given by position. One thread at a time.
 class SetMap {
  public:
   static constexpr const char* kTooManyOverEachOther = "too many of them overlap";
 
-  /// Of features each by even-odd of its own rings, which are clean (see clean_rings.h).
+  /// Each feature is defined by even-odd of its own rings, which are clean (see clean_rings.h).
   /// Works on up to `threads` threads; the subdivision does not depend on their number.
   explicit SetMap(std::span<const Rings* const> features, unsigned threads = 1);
 
   /// Makes `graph` the subdivision: its edges are those of borders(), and a face is the number of a
-  /// set. False if nothing is left, or if it failed. With hot vertices, also vertices that lie
-  /// beside edges, but within a cell of them, become a part of them.
+  /// set. False if nothing is left, or on failure. With hot vertices, vertices that lie beside
+  /// edges but within a cell of them also become a part of them.
   bool sweep(Boundary& boundary, Trapezoidation& trapezoidation, TrapezoidalGraph& graph,
              HotCells cells = HotCells::crossings);
 
@@ -74,7 +74,7 @@ class SetMap {
   const Borders& borders() const { return borders_; }
   /// Whether vertices were missing on one side of a border, or borders crossed.
   bool is_noded() const { return is_noded_; }
-  /// Why the last sweep failed; empty if it did not.
+  /// Why the last sweep failed; empty if it did not fail.
   const std::string& failure() const { return failure_; }
 
  private:

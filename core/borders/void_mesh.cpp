@@ -8,8 +8,8 @@
 namespace trapeze {
 namespace {
 
-/// Whether d lies inside the circle around abc, whose orientation is positive. Exact: twice the
-/// area of a triangle is at most 2^62 and a squared distance at most 2^63, so that the sum of three
+/// Whether d lies inside the circle through a, b and c, whose orientation is positive. Exact: twice
+/// the area of a triangle is at most 2^62 and a squared distance at most 2^63, so the sum of three
 /// products is less than 2^127.
 bool is_in_circle(Point a, Point b, Point c, Point d) {
   const auto squared = [d](Point p) {
@@ -63,15 +63,15 @@ double VoidMesh::distance_across(HalfEdge h) const {
   return std::abs(static_cast<double>(orientation(a, b, c))) / std::sqrt(squared);
 }
 
-//   Beside an edge from U to L, the lines between the top and the bottom vertices of the nodes
-//   along it lead from one to the next:
+// Beside an edge from U to L, the lines between the top and bottom vertices of the nodes along it
+// form a chain:
 //
 //        U                        U -.
-//        |\   1                   |   `- B1     Of each node, the part on this side of the line
-//        | `--- B1                |     /       belongs to the polygon beside the edge, and that
-//        |   2                    |    /        beyond to the one beside its other edge. If the
-//        |----- B2                |  B2         line is that other edge, there is nothing beyond.
-//        |   3                    | /
+//        |\   1                   |   `- B1     The part of each node on this side of the line
+//        | `--- B1                |     /       belongs to the polygon beside the edge, and the
+//        |   2                    |    /        part beyond to the one beside its other edge. If
+//        |----- B2                |  B2         the line is that other edge, there is no part
+//        |   3                    | /           beyond.
 //        L                        L
 //
 // So every part of the void is in exactly one such polygon (Fournier and Montuno).
@@ -101,7 +101,7 @@ VoidMesh::Seam VoidMesh::seam_through(NodeId n, Side beyond) const {
 void VoidMesh::triangulate_beside(EdgeId e, Side s) {
   struct Waiting {
     VertexId vertex;
-    Seam seam;  // to the one before it
+    Seam seam;  // to the previous vertex
   };
   const Edge& edge = graph_.edge(e);
   if (edge.extreme[s][kUp] == edge.extreme[s][kDown]) return;
@@ -126,7 +126,7 @@ void VoidMesh::triangulate_beside(EdgeId e, Side s) {
   set_twin(chain.back().seam.number, wall_of(e));
 }
 
-/// The triangles beyond the hull, left and right, from top to bottom.
+/// Creates the triangles beyond the hull, left and right, from top to bottom.
 std::array<std::vector<VoidMesh::HalfEdge>, 2> VoidMesh::surround() {
   std::array<std::vector<HalfEdge>, 2> around;
   for (const Side frame : {kLeft, kRight}) {
@@ -191,7 +191,8 @@ void VoidMesh::make_delaunay() {
   for (HalfEdge h = 0; h < twins_.size(); ++h) {
     if (!is_wall(h) && h < twins_[h]) suspects_.push_back(h);
   }
-  // Of real data, two to ten a vertex are exchanged; of the worst, as many as pairs of vertices.
+  // With real data, two to ten edges per vertex are flipped; in the worst case, as many as there
+  // are pairs of vertices.
   const std::uint64_t most = (std::uint64_t{1} << 22) + 256 * std::uint64_t{points_.size()};
   while (!suspects_.empty() && !has_failed_) {
     const HalfEdge h = suspects_.back();
@@ -202,8 +203,7 @@ void VoidMesh::make_delaunay() {
   }
 }
 
-/// Of two triangles beyond the hull, the line between them is exchanged where the hull is not
-/// convex.
+/// Between two triangles beyond the hull, the edge is flipped where the hull is not convex.
 bool VoidMesh::is_to_be_exchanged(HalfEdge h) const {
   if (is_wall(h)) return false;
   const VertexId a = corners_[h];
@@ -249,7 +249,7 @@ void VoidMesh::exchange(HalfEdge h) {
 }
 
 void VoidMesh::divide_walls(double reach) {
-  // A foot may bring another vertex near; by then most is done.
+  // A foot may bring another vertex near; a few passes do most of the work.
   constexpr int kMostPasses = 4;
   for (int pass = 0; pass < kMostPasses && !has_failed_; ++pass) {
     bool has_divided = false;
@@ -265,7 +265,7 @@ void VoidMesh::divide_walls(double reach) {
 bool VoidMesh::divide_at_foot(std::uint32_t wall, double reach) {
   const HalfEdge h = walls_[wall].half;
   if (is_beyond(triangle_of(h))) return false;
-  // Only vertices that were there at first, so that it ends.
+  // Only original vertices count, so that the process ends.
   if (corners_[before(h)].value >= graph_.vertices().size()) return false;
   const Point a = corner(h);
   const Point b = corner(next(h));
@@ -282,9 +282,9 @@ bool VoidMesh::divide_at_foot(std::uint32_t wall, double reach) {
   return divide_wall(h, a.x + share * x, a.y + share * y).has_value();
 }
 
-//      p -- q        On either side, x is about as far from q as p is, and y from x: longer by half
-//     /|    |.       of the slack and by all of it. So there is a strip from wall to wall.
-//    / x -- y .
+//      p -- q        On either side, x is placed about as far from q as p is, and y from x:
+//     /|    |.       farther by half of the slack and by all of it. So there is a strip from wall
+//    / x -- y .      to wall.
 bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
   struct Bridge {
     HalfEdge side;
@@ -319,7 +319,7 @@ bool VoidMesh::divide_walls_beside(const std::vector<HalfEdge>& sides) {
 }
 
 /// The side from one vertex to the other, which was one of these two or their twins before walls
-/// were divided; none if it is at neither place any more.
+/// were split; none if it is at neither place any more.
 std::optional<VoidMesh::HalfEdge> VoidMesh::find_side(HalfEdge side, HalfEdge beyond, VertexId from,
                                                       VertexId to) const {
   if (!is_wall(side) && corners_[side] == from && corners_[next(side)] == to) return side;
@@ -329,7 +329,8 @@ std::optional<VoidMesh::HalfEdge> VoidMesh::find_side(HalfEdge side, HalfEdge be
   return std::nullopt;
 }
 
-/// Divides a wall that leads from or to p, where it is `reach` away from q; returns where.
+/// Splits a wall that leads from or to p at the point that is `reach` away from q, and returns that
+/// point.
 std::optional<Point> VoidMesh::divide_near(std::optional<HalfEdge> wall, Point p, Point q,
                                            double reach) {
   if (!wall) return std::nullopt;
@@ -348,7 +349,7 @@ std::optional<Point> VoidMesh::divide_near(std::optional<HalfEdge> wall, Point p
 
 //          c                 c
 //         / \               /|\      f lies on ab or, rounded, above it: the polygon below gets the
-//        /   \      ->     / | \     triangle afb, in which there is no vertex
+//        /   \      ->     / | \     triangle afb, which contains no vertex
 //       a-----b           a--f--b
 std::optional<Point> VoidMesh::divide_wall(HalfEdge h, double x, double y) {
   const Point a = corner(h);

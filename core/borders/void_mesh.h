@@ -1,13 +1,13 @@
-// A mesh of triangles of the void between the polygons of a coverage: what lies outside, up to the
-// convex hull of all.
+// A triangle mesh of the void between the polygons of a coverage: the outside, up to the convex
+// hull of all polygons.
 //
-// The trapezoids of the void are parted by the lines between their top and bottom vertices into
-// polygons with one straight side, these into triangles, and edges are exchanged (Lawson) until the
-// triangulation is the constrained Delaunay one: no circle around a triangle holds a vertex that is
-// seen from it. So it depends on the shape of the void only, and not on the direction of the sweep,
-// but for four vertices on one circle. All predicates are exact.
+// The lines between the top and bottom vertices of the trapezoids of the void divide it into
+// polygons with one straight side. These are divided into triangles, and edges are flipped (Lawson)
+// until the triangulation is the constrained Delaunay one: no circumcircle contains a vertex that
+// is visible from its triangle. So, except where four vertices lie on one circle, the mesh depends
+// only on the shape of the void and not on the direction of the sweep. All predicates are exact.
 //
-// Beyond the hull lie triangles with one vertex in common that stands for infinity.
+// Beyond the hull lie triangles with one shared vertex that represents infinity.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -30,30 +30,31 @@ class VoidMesh {
   /// the triangle lies to its right as seen on the map.
   using HalfEdge = std::uint32_t;
 
-  /// Of the graph of a coverage as it was built, which must outlive the mesh.
+  /// Meshes the void of the graph of a coverage as built; the graph must outlive the mesh.
   explicit VoidMesh(const TrapezoidalGraph& graph);
 
-  /// Whether there were too many exchanges of edges: there is no mesh then.
+  /// Whether too many edges had to be flipped: there is no mesh then.
   bool has_failed() const { return has_failed_; }
 
-  /// Divides edges of polygons where a vertex is near: where the triangle at an edge has an obtuse
-  /// angle beyond it, and that corner is at most `reach` cells away, at the foot of the
-  /// perpendicular. So of a vertex and an edge that are near each other there is a side that is
-  /// hardly longer than they are apart. The foot is rounded to a grid point within the triangle, so
-  /// that the polygon grows by less than a cell and nothing comes to cross.
+  /// Splits edges of polygons near a vertex: where the triangle at an edge has an obtuse angle
+  /// opposite it, and that corner is at most `reach` cells away, the edge is split at the foot of
+  /// the perpendicular. So a vertex and an edge near each other are joined by a side hardly longer
+  /// than their distance. The foot is rounded to a grid point within the triangle, so the polygon
+  /// grows by less than a cell and no crossing arises.
   void divide_walls(double reach);
 
-  /// How much longer than a side the others of the triangles are that divide_walls_beside() makes.
+  /// By which factor the sides made by divide_walls_beside() may be longer than the given ones.
   static constexpr double kSlack = 1.05;
-  /// Divides the walls that lead away from both ends of sides between two polygons, so near to them
-  /// that a side of at most kSlack times the length leads from the one to the other. Returns
-  /// whether it has divided any; the sides may be others afterwards, and some may be left as they
-  /// are.
+  /// Splits the walls that lead away from both ends of sides between two polygons, so near to these
+  /// that a side of at most kSlack times the length connects the two walls. Returns whether any
+  /// wall was split. The sides may have changed afterwards, and some may have been left as they
+  /// were.
   bool divide_walls_beside(const std::vector<HalfEdge>& sides);
 
-  /// The next wall around the vertex from which the half-edge leads: in the order in which it is in
-  /// triangles before itself, a wall that leads to that vertex; in the other one, a wall that leads
-  /// from there. None if a triangle for which may_pass(triangle) is false comes before.
+  /// The next wall around the vertex from which the half-edge leads. wall_before() turns around the
+  /// vertex by steps of before() and finds a wall that leads to that vertex; wall_after() turns the
+  /// other way and finds a wall that leads from it. None if a triangle for which may_pass(triangle)
+  /// is false comes first.
   template <typename MayPass>
   std::optional<HalfEdge> wall_before(HalfEdge h, const MayPass& may_pass) const {
     for (HalfEdge at = h; may_pass(triangle_of(at)); at = twins_[before(at)]) {
@@ -73,24 +74,24 @@ class VoidMesh {
   /// Whether the triangle lies beyond the hull.
   bool is_beyond(std::uint32_t triangle) const;
   Point corner(HalfEdge h) const { return points_[corners_[h].value]; }
-  /// The same for vertices of the graph, and numbers from vertices().size() on for feet.
+  /// Vertices of the graph keep their ids; feet are numbered from vertices().size() on.
   VertexId vertex(HalfEdge h) const { return corners_[h]; }
   std::size_t vertex_count() const { return points_.size(); }
   static HalfEdge next(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static HalfEdge before(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
   static std::uint32_t triangle_of(HalfEdge h) { return h / 3; }
 
-  /// Whether it is (a piece of) an edge of a polygon.
+  /// Whether the side is (a piece of) an edge of a polygon.
   bool is_wall(HalfEdge h) const { return (twins_[h] & kWallBit) != 0; }
-  /// Of a wall: the edge of the graph.
+  /// The edge of the graph of a wall.
   EdgeId edge_of(HalfEdge h) const { return walls_[twins_[h] & ~kWallBit].edge; }
-  /// Of all others: the same side of the triangle beyond.
+  /// For sides that are no walls: the same side of the triangle beyond.
   HalfEdge twin(HalfEdge h) const { return twins_[h]; }
   /// The sides of all triangles that are walls: every edge of the graph beside the void, in pieces
-  /// if it was divided.
+  /// if it was split.
   std::vector<HalfEdge> walls() const;
 
-  /// From the third corner of the triangle to the side, in cells.
+  /// The distance from the third corner of the triangle to the side, in cells.
   double distance_across(HalfEdge h) const;
   double length(HalfEdge h) const;
 
@@ -134,7 +135,7 @@ class VoidMesh {
   std::vector<VertexId> corners_;
   std::vector<std::uint32_t> twins_;  // a half-edge, or kWallBit and the number of a wall
   std::vector<Wall> walls_;
-  Table<NodeId, HalfEdge> seams_;  // of a node: the side that was made first
+  Table<NodeId, HalfEdge> seams_;  // by node: the side that was made first
   std::vector<HalfEdge> suspects_;
   std::uint64_t exchanges_ = 0;
   bool has_failed_ = false;

@@ -145,7 +145,7 @@ class Checker {
         seen[c.value] = true;
         ++length;
         check_corner(c, uses);
-        // An arc may come back to where it began.
+        // An arc may return to its first vertex.
         const bool is_last = g_.corner(c).next.is_none();
         if (!is_last) visits.emplace_back(runs, g_.corner(c).vertex);
       }
@@ -189,7 +189,8 @@ class Checker {
     if (!next.next.is_none()) check_faces_go_on(corner, next);
   }
 
-  /// An arc has the same two faces all along; it turns the sides round with its direction.
+  /// An arc has the same two faces all along; the sides are swapped where its direction changes
+  /// between up and down.
   void check_faces_go_on(const Corner& corner, const Corner& next) {
     const auto face_on_the_left = [this](const Corner& from) {
       const Edge& e = g_.edge(from.edge);

@@ -35,8 +35,8 @@ EditLog::Start EditLog::end_of(std::size_t edit) const {
                                   : Start{nodes_.size(), edges_.size(), corners_.size()};
 }
 
-// A record may be kept twice in one edit; swapping in reverse order ends at its first value, and
-// swapping forwards again at its last.
+// A record may be kept twice in one edit. Swapping in reverse order restores its first value, and
+// swapping forwards again its last.
 void EditLog::take_back() {
   assert(applied_ == edits_.size());
   revert();

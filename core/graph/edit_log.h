@@ -1,8 +1,8 @@
-// Edit records: the only way to change a trapezoidal graph, and the way to change it back.
+// Edit records: the only way to change a trapezoidal graph, and the way to undo a change.
 //
-// An edit is one removal. An operator asks the log for each node, edge and corner that it is going
-// to change, and the log keeps the previous value. An edit is reverted by swapping the kept values
-// with those in the graph, last to first, and applied again by swapping them once more, first to
+// An edit is one removal. An operator requests each node, edge and corner that it is going to
+// change from the log, and the log keeps the previous value. Reverting an edit swaps the kept
+// values with those in the graph, last to first; applying it again swaps them once more, first to
 // last. This one mechanism makes undo exact for every operator (paper, section 3.2).
 //
 // Thread-safety: none.
@@ -19,7 +19,7 @@
 namespace trapeze {
 
 /// A part of a graph: the edges and nodes that begin and end at vertices from `first` to `last`, in
-/// sweep order, but for those that are held, or touch what is.
+/// sweep order, except those that are held or touch something held.
 struct EditReach {
   VertexId first;
   VertexId last;
@@ -41,20 +41,21 @@ class EditLog {
     Record record;
   };
 
-  /// All changes to `graph`, which must outlive the log, are made through the log from now on.
+  /// From now on, all changes to `graph`, which must outlive the log, are made through the log.
   explicit EditLog(TrapezoidalGraph& graph) : graph_(&graph) {}
 
-  /// Thrown by an edit that would change what is out of reach.
+  /// Thrown by an edit that would change a record out of reach.
   struct OutOfReach {};
-  /// From now on, edits change nothing that is out of `reach`, which must outlive the log. Those of
-  /// other logs of the graph may be made at the same time, on other threads, where the reaches have
-  /// no vertex in common.
+  /// From now on, edits change no record out of `reach`, which must outlive the log. Other threads
+  /// may edit the same graph through other logs at the same time if the reaches have no vertex in
+  /// common.
   void confine_to(const EditReach& reach) { reach_ = &reach; }
 
-  /// Starts a new edit; every edit before it must be applied.
+  /// Starts a new edit. Precondition: every earlier edit is applied.
   void begin();
 
-  /// The record to change; its present value is kept. Valid until the graph is rebuilt.
+  /// Returns the record to be changed and keeps its present value. Valid until the graph is
+  /// rebuilt.
   Node& edit(NodeId n) {
     if (reach_ != nullptr && !reach_->covers(graph_->node(n))) throw OutOfReach();
     return keep(n, graph_->nodes_, nodes_);
@@ -65,29 +66,29 @@ class EditLog {
   }
   Corner& edit(CornerId c) { return keep(c, graph_->corners_, corners_); }
 
-  /// Number of edits recorded, and of those applied at present (from the first on).
+  /// Number of edits recorded, and number of edits applied at present (counted from the first).
   std::size_t size() const { return edits_.size(); }
   std::size_t applied() const { return applied_; }
 
-  /// Takes the last recorded edit back, which is applied, and forgets it.
+  /// Reverts the last recorded edit and discards it. Precondition: it is applied.
   void take_back();
 
-  /// Reverts the last applied edit; there is one.
+  /// Reverts the last applied edit. Precondition: there is one.
   void revert();
-  /// Applies the first edit that is not applied; there is one.
+  /// Applies the first edit that is not applied. Precondition: there is one.
   void apply();
 
   /// The nodes and edges that the last recorded edit changed; some may occur more than once.
   std::span<const Kept<NodeId, Node>> touched_nodes() const;
   std::span<const Kept<EdgeId, Edge>> touched_edges() const;
 
-  /// Drops all edits; the present graph can no longer be reverted. Memory is kept for reuse.
+  /// Discards all edits; the present graph can no longer be reverted. Memory is kept for reuse.
   void forget();
 
   std::size_t memory() const;
 
  private:
-  struct Start {  // of an edit within each kind of record
+  struct Start {  // start of an edit in each kind of record
     std::size_t nodes;
     std::size_t edges;
     std::size_t corners;

@@ -1,9 +1,9 @@
 // Prefetches the memory that removals will read.
 //
-// Vertices are removed in the order of their weights, so successive ones lie anywhere on the map:
-// in a large graph, nothing about the next one is in the cache, and each step from corner to edge
-// to node to neighbour would wait for memory. Each of these functions prefetches one such step. It
-// is to be called so long after the previous one that its memory has arrived by then. They change
+// Vertices are removed in order of weight, so successive ones lie anywhere on the map. In a large
+// graph, the cache holds nothing about the next one, and each step from corner to edge to node to
+// neighbour would wait for memory. Each of these functions prefetches one such step. Call it late
+// enough after the previous one that the memory of that step has arrived. The functions change
 // nothing, and may be called for corners that have been removed or never will be.
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace trapeze {
 
-// How far ahead, in corners, each step is prefetched: its memory arrives after some hundred
-// nanoseconds, and is then still in the first-level cache.
+// How many corners ahead each step is prefetched. The memory arrives after some hundred nanoseconds
+// and is then still in the first-level cache.
 constexpr std::size_t kCornerAhead = 24;
 constexpr std::size_t kEdgesAhead = 16;
 constexpr std::size_t kNodesAhead = 8;
@@ -25,11 +25,12 @@ template <class IdType, class Record>
 void fetch(const Table<IdType, Record>& table, IdType id) {
   if (id.is_none()) return;
   __builtin_prefetch(&table[id]);
-  // Otherwise GCC considers a function that only prefetches to have no effect, and drops its calls.
+  // Without this, GCC considers a function that only prefetches to have no effect and drops its
+  // calls.
   __asm__ volatile("");
 }
 
-/// After fetch(graph.corners(), c).
+/// Call after fetch(graph.corners(), c).
 inline void fetch_edges(const TrapezoidalGraph& graph, CornerId c) {
   const Corner& corner = graph.corner(c);
   if (!corner.is_alive()) return;
@@ -39,7 +40,7 @@ inline void fetch_edges(const TrapezoidalGraph& graph, CornerId c) {
   fetch(graph.vertices(), corner.vertex);
 }
 
-/// After fetch_edges().
+/// Call after fetch_edges().
 inline void fetch_nodes(const TrapezoidalGraph& graph, CornerId c) {
   const Corner& corner = graph.corner(c);
   if (!corner.is_alive()) return;
@@ -52,7 +53,7 @@ inline void fetch_nodes(const TrapezoidalGraph& graph, CornerId c) {
   }
 }
 
-/// After fetch_nodes(): the neighbours of the nodes at the vertex.
+/// Call after fetch_nodes(). Prefetches the neighbours of the nodes at the vertex.
 inline void fetch_neighbours(const TrapezoidalGraph& graph, CornerId c) {
   const Corner& corner = graph.corner(c);
   if (!corner.is_alive()) return;

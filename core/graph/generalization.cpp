@@ -36,8 +36,8 @@ void Generalization::remove_regular(CornerId corner) {
   unlink(corner, joined);
 }
 
-/// Makes one edge of two successive ones, with the nodes along them, and returns the one that is
-/// left. The edge with fewer nodes along it is removed.
+/// Joins two successive edges, with the nodes along them, and returns the edge that remains. The
+/// edge with fewer nodes along it is removed.
 EdgeId Generalization::join_edges(EdgeId upper, EdgeId lower) {
   const bool keep_lower = upper_list_is_shorter(upper, lower);
   const EdgeId keep = keep_lower ? lower : upper;
@@ -71,7 +71,7 @@ EdgeId Generalization::join_edges(EdgeId upper, EdgeId lower) {
 }
 
 bool Generalization::upper_list_is_shorter(EdgeId upper, EdgeId lower) const {
-  // Side by side, so that the cost is that of the shorter one.
+  // Both lists in parallel, so that the cost is that of the shorter one.
   NodeId up[2];
   NodeId down[2];
   for (const Side s : {kLeft, kRight}) {
@@ -113,9 +113,9 @@ void Generalization::merge_stacked(NodeId keep, NodeId gone, Direction d) {
   kill(gone);
 }
 
-// Horizontal generalization. The tip (wedge) is eliminated; the nodes on its two outer sides merge
-// pairwise from top to bottom, down to A, the nearer neighbour; the far edge now starts at A, and
-// what was a division or join at V is one at A.
+// Horizontal generalization. The tip (wedge) is eliminated. The nodes on its two outer sides merge
+// pairwise from top to bottom, down to A, the nearer neighbour. The far edge now starts at A, and a
+// division or join at V becomes one at A.
 //
 //   |      u      |              |             |
 //   |------V------|              |             |
@@ -152,7 +152,7 @@ void Generalization::remove_extremum(CornerId corner) {
   unlink(corner, x.far_edge);
 }
 
-// A triangle disappears: first its middle vertex, then the two edges that are left.
+// A triangle disappears: first its middle vertex, then the two remaining edges.
 //
 //        T                T
 //       / \              / \                  |  one node a  |
@@ -211,9 +211,9 @@ void Generalization::remove_edge(EdgeId edge) {
   if (top_disappears) merge_stacked(above, zipped.first, kDown);
 }
 
-// Two lists of nodes, along the outer sides of two edges that disappear between them, become one.
-// Whichever node ends first is widened to the far side of the other list, and the other goes on
-// below it, until `stop` is reached.
+// Two lists of nodes along the outer sides of two edges become one when the edges disappear between
+// them. The node that ends first is widened to the far side of the other list, and the other node
+// continues below it, until `stop` is reached.
 //
 //   |near|  |far |            |  near   |
 //   |----|  |    |     =>     |---------|
@@ -254,7 +254,7 @@ Generalization::Zipped Generalization::zip(NodeId near, NodeId far, Side near_si
   }
 }
 
-/// Puts `n` before `next` into the list of nodes along the edge that `next` has on `side`.
+/// Inserts `n` before `next` in the list of nodes along the edge that `next` has on `side`.
 void Generalization::insert_before(NodeId n, NodeId next, Side side, Direction d) {
   const Direction back = opposite(d);
   const EdgeId e = g_.node(next).edge[side];
@@ -271,8 +271,8 @@ void Generalization::insert_before(NodeId n, NodeId next, Side side, Direction d
   }
 }
 
-/// Merges `gone` into `keep`, which has the same top and bottom: `keep` gets the edge and the links
-/// that `gone` has on `side`.
+/// Merges `gone` into `keep`, which has the same top and bottom. `keep` gets the edge and the links
+/// of `gone` on `side`.
 void Generalization::drop_beside(NodeId keep, NodeId gone, Side side, Direction d) {
   const Node lost = g_.node(gone);
   Node& widened = log_.edit(keep);
@@ -288,7 +288,7 @@ void Generalization::drop_beside(NodeId keep, NodeId gone, Side side, Direction 
   kill(gone);
 }
 
-/// Takes the corner out of its loop; the edge between its neighbours is `joined`.
+/// Removes the corner from its loop; the edge between its neighbours is `joined`.
 void Generalization::unlink(CornerId corner, EdgeId joined) {
   const Corner removed = g_.corner(corner);
   log_.edit(removed.prev).next = removed.next;

@@ -1,5 +1,5 @@
-// The generalization operators (paper, section 3.2): removing one vertex changes the trapezoids
-// next to it, and nothing else.
+// The generalization operators (paper, section 3.2). Removing one vertex changes only the
+// trapezoids next to it.
 //
 // All of the paper's operators on inside trapezoids occur here; the outside is meshed as well:
 //   merging       two trapezoids, one above the other, become one where the horizontal line between
@@ -9,7 +9,7 @@
 //                 that ended beside its tip now ends at it;
 //   adjustment    a trapezoid keeps its top and bottom and gets another edge or another vertex.
 //
-// All changes go through the edit log. Whether a vertex may be removed is decided before (see
+// All changes go through the edit log. Whether a vertex may be removed is decided first (see
 // topological_consistency.h).
 #pragma once
 
@@ -21,16 +21,16 @@ namespace trapeze {
 
 class Generalization {
  public:
-  /// Both must outlive this object; `log` is the log of `graph`.
+  /// Both must outlive this object. `log` is the log of `graph`.
   Generalization(const TrapezoidalGraph& graph, EditLog& log) : g_(graph), log_(log) {}
 
-  /// Removes `corner` as one edit. `removal` is the answer of decide_removal() for the present
-  /// graph, and is not `blocked`.
+  /// Removes `corner` as one edit. `removal` is the result of decide_removal() for the present
+  /// graph and is not `blocked`.
   void remove(CornerId corner, Removal removal);
 
-  /// Removes an edge, as a part of the current edit: the two lists of nodes along it become one. No
-  /// other edge changes, so no boundary can come to cross another one. Precondition: the faces on
-  /// both sides of the edge are the same. Corners are left to the caller.
+  /// Removes an edge as a part of the current edit: the two lists of nodes along it become one. No
+  /// other edge changes, so no crossing can arise. Corners are left to the caller. Precondition:
+  /// the faces on both sides of the edge are the same.
   void remove_edge(EdgeId edge);
 
  private:

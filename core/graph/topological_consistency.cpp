@@ -34,7 +34,7 @@ Decision decide_regular(const TrapezoidalGraph& g, CornerId c, Topology topology
     return g.node(over).link[s][kDown] == below.extreme[s][kUp];
   };
   if (turn == 0) {
-    // Other loops that meet at v would come to touch the inside of the new edge.
+    // Otherwise, other loops that meet at v would touch the interior of the new edge.
     if (!is_lone_on(kLeft) || !is_lone_on(kRight)) return blocked_by(v, 2);
     return {Removal::regular, {}, 2};
   }
@@ -56,12 +56,12 @@ Decision decide_regular(const TrapezoidalGraph& g, CornerId c, Topology topology
   return {Removal::regular, {}, walked};
 }
 
-// V's neighbours lie both beyond it in direction `away`, here downwards:
+// Both neighbours of V lie beyond it in direction `away`, here downwards:
 //
 //          v
-//         / \           The trapezoid between the edges must reach down to `near` itself; below it,
-//     near   \    far   those along the far edge, on the side of the near one, are looked at.
-//        .    \   edge
+//         / \           The trapezoid between the edges must reach down to `near` itself. Below it,
+//     near   \    far   the trapezoids along the far edge, on the side of the near one, are
+//        .    \   edge  examined.
 //            . far
 Decision decide_extremum(const TrapezoidalGraph& g, CornerId c, Topology topology) {
   const Extremum x = extremum_at(g, c);
@@ -96,7 +96,7 @@ Decision decide_extremum(const TrapezoidalGraph& g, CornerId c, Topology topolog
   return {Removal::extremum, {}, walked};
 }
 
-// The inside of the triangle must consist of the two trapezoids over and under its middle vertex.
+// The inside of the triangle must consist of the two trapezoids above and below its middle vertex.
 Decision decide_loop(const TrapezoidalGraph& g, CornerId c) {
   const TriangleLoop loop = triangle_loop_at(g, c);
   const VertexId middle = g.corner(loop.middle).vertex;

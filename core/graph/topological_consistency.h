@@ -1,12 +1,12 @@
-// The topological consistency test (paper, section 3.3): whether a vertex may be removed. Exact and
-// local.
+// The topological consistency test (paper, section 3.3): decides whether a vertex may be removed.
+// Exact and local.
 //
 // Removing a vertex V between A and B replaces the boundary A V B by A B. No edge is crossed, and
-// no part of the boundary changes sides, exactly if the closed triangle A V B holds no other
-// vertex. If it holds one, then a trapezoid along AV or VB on the triangle's side has such a vertex
-// at its top or bottom: the horizontal line from the vertex nearest to AV or VB reaches it
-// without meeting another edge. So only those trapezoids are examined (the paper's minimal
-// surrounding trapezoid set).
+// no part of the boundary changes sides, if and only if the closed triangle A V B contains no other
+// vertex. If it contains one, a trapezoid along AV or VB on the triangle's side has such a vertex
+// at its top or bottom: the horizontal line from the vertex nearest to AV or VB reaches it without
+// meeting another edge. So only those trapezoids are examined (the paper's minimal surrounding
+// trapezoid set).
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ enum class Removal : std::uint8_t {
   regular,   // A and B on different sides of V in sweep order: vertical generalization
   extremum,  // A and B on the same side of V: horizontal generalization
   loop,      // the loop is a triangle and is removed as a whole
-  region,    // no corner: a region between junctions becomes a part of a neighbour
+  region,    // no corner: a region between junctions becomes part of a neighbour
 };
 
 struct Decision {
   Removal removal = Removal::blocked;
-  /// If blocked: a vertex whose removal, from any loop, may unblock it.
+  /// If blocked: the vertex whose removal, from any loop, may unblock the corner.
   VertexId blocker;
   std::uint32_t walked = 0;  // trapezoids examined
 };
 
-/// Decides about the removal of `corner`, which is alive.
+/// Decides whether and how `corner` may be removed. Precondition: it is alive.
 Decision decide_removal(const TrapezoidalGraph& graph, CornerId corner, Topology topology);
 
 /// The edges from an extremum V to its nearer and its farther neighbour in sweep order, and these

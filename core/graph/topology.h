@@ -1,4 +1,4 @@
-// What a removal has to keep of the topology (paper, section 3.3).
+// What a removal must preserve of the topology (paper, section 3.3).
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 namespace trapeze {
 
 enum class Topology : std::uint8_t {
-  strict,  // the boundary never crosses or touches itself where it did not before
+  strict,  // the boundary never crosses itself, nor touches itself where it did not before
   fast,    // only the preconditions of the operators are tested, as in the paper's runs without the
-           // test: the boundary may come to cross itself
+           // test: the boundary may cross itself
 };
 
 inline constexpr NameTable<Topology, 2> kTopologyNames({

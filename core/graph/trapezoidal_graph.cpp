@@ -6,11 +6,11 @@
 namespace trapeze {
 namespace {
 
-/// The parts of the plane, inside and outside: nodes that can be reached from each other by links.
+/// The parts of the plane, inside and outside: nodes that are reachable from each other by links.
 struct Parts {
   struct Part {
-    NodeId start;           // the one with the topmost top
-    NodeId end;             // the one with the bottommost bottom
+    NodeId start;           // the node with the topmost top
+    NodeId end;             // the node with the bottommost bottom
     bool at_frame = false;  // the outside around everything
   };
   std::vector<Part> parts;
@@ -50,8 +50,8 @@ Parts parts_of(const TrapezoidalGraph& g) {
   return found;
 }
 
-/// The inside node above (d: up) or below the tip of a hole; where the hole touches the boundary
-/// there, the one beside it.
+/// The inside node above (d: up) or below the tip of a hole; if the hole touches the boundary
+/// there, the node beside it.
 NodeId beyond_tip(const TrapezoidalGraph& g, NodeId tip, Direction d) {
   const NodeId beside = g.edge(g.node(tip).edge[kLeft]).extreme[kLeft][d];
   const NodeId beyond = g.node(beside).link[kLeft][d];
@@ -113,7 +113,7 @@ std::vector<Link> TrapezoidalGraph::pseudo_links() const {
   std::vector<Link> found;
   for (const Parts::Part& part : all.parts) {
     if (!is_inside(part.start)) continue;
-    // What is left of the topmost vertex of an inside part is what surrounds it.
+    // The area left of the topmost vertex of an inside part surrounds that part.
     const NodeId beside = edges_[nodes_[part.start].edge[kLeft]].extreme[kLeft][kUp];
     const Parts::Part& around = all.parts[all.part_of[beside.value]];
     if (around.at_frame) continue;
@@ -132,7 +132,7 @@ Connectedness TrapezoidalGraph::connectedness(NodeId n) const {
                       : Connectedness::isolated;
 }
 
-// Vertices are in sweep order, so of several tops of the same y the leftmost has the smallest id.
+// Vertices are in sweep order, so the leftmost of several tops with the same y has the smallest id.
 NodeId TrapezoidalGraph::starting_node() const {
   NodeId best;
   for (const NodeId n : inside_nodes()) {

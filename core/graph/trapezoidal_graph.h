@@ -2,8 +2,8 @@
 // relations between a trapezoid and the ones above and below it are links.
 //
 // The graph meshes the whole plane, inside and outside, within a frame of two edges and two
-// vertices at infinity. Corners of trapezoids are implied by edges and never stored, so no vertex
-// is introduced. Vertices are numbered in sweep order (y, then x): "above" is a comparison of ids.
+// vertices at infinity. Corners of trapezoids are implied by edges and never stored, so no vertices
+// are introduced. Vertices are numbered in sweep order (y, then x): "above" is a comparison of ids.
 //
 //            top vertex (at a corner or between)
 //        ----*----------
@@ -40,8 +40,8 @@ constexpr Direction opposite(Direction d) {
   return static_cast<Direction>(1 - d);
 }
 
-/// A trapezoid. `end` are its top and bottom vertex, `edge` its left and right edge, and
-/// `link[side][direction]` the next node along that edge, none at the end of the edge.
+/// A trapezoid. `end` holds its top and bottom vertex, `edge` its left and right edge, and
+/// `link[side][direction]` the next node along that edge (none at the end of the edge).
 struct Node {
   VertexId end[2];
   EdgeId edge[2];
@@ -51,9 +51,9 @@ struct Node {
   friend bool operator==(const Node&, const Node&) = default;
 };
 
-/// A straight piece of boundary, or of the frame. `end` are its upper and lower vertex,
-/// `extreme[side][direction]` the topmost and bottommost node on its left and right, `face` what
-/// lies on its left and right.
+/// A straight piece of the boundary or of the frame. `end` holds its upper and lower vertex,
+/// `extreme[side][direction]` the topmost and bottommost node on its left and right, `face` the
+/// face on its left and right.
 struct Edge {
   VertexId end[2];
   NodeId extreme[2][2];
@@ -66,9 +66,9 @@ struct Edge {
 /// One visit of a simple loop of the boundary to a vertex, and the edge by which the loop leaves
 /// it.
 ///
-/// In a coverage, the boundary consists of arcs too, which lead from one junction to another or
-/// back to the same one. The first corner of an arc has no previous one; the last has no next one
-/// and no edge.
+/// In a coverage, the boundary also consists of arcs, which lead from one junction to another or
+/// back to the same one. The first corner of an arc has no previous corner; the last one has no
+/// next corner and no edge.
 struct Corner {
   VertexId vertex;
   EdgeId edge;
@@ -101,8 +101,8 @@ enum class Connectedness : std::uint8_t {
 
 class TrapezoidalGraph {
  public:
-  /// Vertex 0 and vertex_count() + 1 belong to the frame, at y = minus and plus infinity; their
-  /// points have no meaning. Vertices of the boundary are 1 .. vertex_count().
+  /// Vertices of the boundary are numbered 1 .. vertex_count(). Vertex 0 and vertex_count() + 1
+  /// belong to the frame, at y = minus and plus infinity; their points have no meaning.
   std::size_t vertex_count() const { return vertices_.size() < 2 ? 0 : vertices_.size() - 2; }
   Point point(VertexId v) const { return vertices_[v]; }
   bool is_frame(VertexId v) const { return v.value == 0 || v.value + 1 == vertices_.size(); }
@@ -115,7 +115,7 @@ class TrapezoidalGraph {
   const Edge& edge(EdgeId e) const { return edges_[e]; }
   const Node& node(NodeId n) const { return nodes_[n]; }
   const Corner& corner(CornerId c) const { return corners_[c]; }
-  /// Faces are numbered 1 .. face_count(), and kOutside.
+  /// Faces are numbered 1 .. face_count(); the outside is kOutside.
   FaceId face_count() const { return face_count_; }
   /// Whether this is the graph of several polygons that share borders.
   bool is_coverage() const { return face_count_ > 1; }
@@ -123,18 +123,18 @@ class TrapezoidalGraph {
 
   FaceId face(const Node& n) const { return edges_[n.edge[kLeft]].face[kRight]; }
   bool is_inside(NodeId n) const { return face(nodes_[n]) != kOutside; }
-  /// Alive nodes inside, in order of their ids.
+  /// Alive nodes inside, in order of id.
   std::vector<NodeId> inside_nodes() const;
 
-  /// The nodes next to `n` in that direction, from left to right; their number is 0, 1 or 2.
+  /// The 0, 1 or 2 nodes next to `n` in that direction, from left to right.
   struct Neighbours {
     std::array<NodeId, 2> node;
     int count = 0;
   };
   Neighbours neighbours(NodeId n, Direction d) const;
 
-  /// The links of the paper between inside nodes, in order of upper and lower node: connections,
-  /// divisions and joins, and for islands the pseudo-divisions and pseudo-joins.
+  /// The paper's links between inside nodes, in order of upper and lower node: connections,
+  /// divisions and joins, plus pseudo-divisions and pseudo-joins for islands.
   std::vector<Link> links() const;
   /// The links that tie an island to its surroundings. The island's starting node hangs by a
   /// pseudo-division on the node above the hole it lies in; its ending node is tied by a
@@ -142,20 +142,20 @@ class TrapezoidalGraph {
   std::vector<Link> pseudo_links() const;
   Connectedness connectedness(NodeId n) const;
 
-  /// The paper's starting node: the topmost inside node, the leftmost of several of the same top y;
-  /// and its ending node: the bottommost, the rightmost of several of the same bottom y. None if
-  /// there are no inside nodes.
+  /// The paper's starting node is the topmost inside node, or the leftmost of several with the same
+  /// top y. The ending node is the bottommost, or the rightmost of several with the same bottom y.
+  /// None if there are no inside nodes.
   NodeId starting_node() const;
   NodeId ending_node() const;
 
-  /// Maximal runs of inside nodes, each linked to the next by a connection link: together they hold
+  /// Maximal runs of inside nodes, each linked to the next by a connection. Together they contain
   /// every inside node exactly once.
   std::vector<std::vector<NodeId>> chains() const;
 
   /// Twice the exact area of all inside nodes, in cells squared, summed edge by edge over the nodes
   /// along them. Equal to the area of the rings if and only if the nodes tile every edge.
   Int128 doubled_area() const;
-  /// The same by face.
+  /// The same, by face.
   std::vector<Int128> doubled_areas() const;
 
   /// Bytes of memory held.
@@ -166,8 +166,8 @@ class TrapezoidalGraph {
  private:
   friend class Trapezoidation;  // builds it
   friend class EditLog;         // changes it, by edit records only
-  friend class BoundaryLoops;   // pairs the corners
-  friend class BorderArcs;      // pairs those of several polygons, and names their faces
+  friend class BoundaryLoops;   // pairs corners along loops
+  friend class BorderArcs;      // pairs corners of several polygons and assigns their faces
 
   Table<VertexId, Point> vertices_;
   Table<EdgeId, Edge> edges_;
@@ -177,22 +177,22 @@ class TrapezoidalGraph {
   FaceId face_count_ = 1;
 };
 
-/// A point of a quad strip: a point of an edge at the y of a vertex, in cells; x is rounded to a
+/// A point of a quad strip, in cells: a point of an edge at the y of a vertex. x is rounded to a
 /// double.
 struct StripPoint {
   double x = 0;
   double y = 0;
 };
 
-/// What an edge adds to twice the area of the face on its left and subtracts from that of the face
-/// on its right, in cells squared. The sum over all edges of a face is exact.
+/// Twice the area that an edge adds to the face on its left and subtracts from the face on its
+/// right, in cells squared. The sum over all edges of a face is exact.
 Int128 doubled_strip(const TrapezoidalGraph& graph, const Edge& edge);
 
 /// The loops of the boundary of the present graph, read from its corners.
 Rings rings_of(const TrapezoidalGraph& graph);
 
-/// A trapezoidal chain as a quad strip: left and right point of the top of the first node, then
-/// left and right point of the bottom of every node.
+/// A trapezoidal chain as a quad strip: the left and right point of the top of the first node, then
+/// the left and right point of the bottom of every node.
 std::vector<StripPoint> quad_strip(const TrapezoidalGraph& graph, const std::vector<NodeId>& chain);
 
 }  // namespace trapeze

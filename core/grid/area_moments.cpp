@@ -13,8 +13,8 @@ Point rounded(double x, double y) {
   return {cell(x), cell(y)};
 }
 
-/// How much of the way from (x, y), which lies in the box, to (x + dx, y + dy) does so, too: 0
-/// to 1.
+/// The fraction, 0 to 1, of the way from (x, y), which lies in the box, to (x + dx, y + dy) that
+/// lies in the box.
 double share_within(const Box& box, double x, double y, double dx, double dy) {
   if (box.is_empty()) return 1;
   const auto share = [](double at, double way, double min, double max) {
@@ -45,7 +45,7 @@ Axis AreaMoments::axis() const {
   const double half_difference = (xx - yy) / 2;
   const double greatest = std::max(0.0, (xx + yy) / 2 + std::hypot(half_difference, xy));
   const double angle = std::atan2(xy, half_difference) / 2;
-  // Of a rectangle, it is the area times the squared length over 12.
+  // For a rectangle, this moment is the area times the squared length over 12.
   const double half_length = area > 0 ? std::sqrt(3 * greatest / area) : 0;
   const double dx = half_length * std::cos(angle);
   const double dy = half_length * std::sin(angle);
@@ -70,7 +70,7 @@ void BoundaryMoments::add(Point from, Point to) {
   const double ay = static_cast<double>(from.y) - origin_.y;
   const double bx = static_cast<double>(to.x) - origin_.x;
   const double by = static_cast<double>(to.y) - origin_.y;
-  // Of the triangle between the edge and the origin.
+  // For the triangle between the edge and the origin.
   const double doubled = ax * by - bx * ay;
   area_ += doubled;
   x_ += doubled * (ax + bx);

@@ -1,4 +1,4 @@
-// Where an area lies: its centroid and second moments, and the rectangle that has the same.
+// Where an area lies: its centroid and second moments, and the rectangle with the same moments.
 #pragma once
 
 #include "core/grid/grid.h"
@@ -10,7 +10,7 @@ struct Axis {
   Point to;
 };
 
-/// Of a piece of the plane.
+/// Moments of a piece of the plane.
 struct AreaMoments {
   double area = 0;  // cells squared
   double x = 0;     // of the centroid, in cells
@@ -19,32 +19,32 @@ struct AreaMoments {
   double xx = 0;
   double xy = 0;
   double yy = 0;
-  Box box = {};  // around it; empty if it is not known
+  Box box = {};  // around it; empty if unknown
 
-  /// Adds a piece beside this one.
+  /// Adds a disjoint piece to this one.
   void unite(const AreaMoments& other);
 
-  /// The middle line, lengthwise, of a rectangle: its length is that of a rectangle of the same
-  /// area and greatest second moment, in the same place and direction; so its width, the area over
-  /// its length, is that of a straight strip. Of needles, such a rectangle sticks out at the thick
-  /// end: the line does not leave the box. Ends are rounded to cells and lie on the grid.
+  /// The lengthwise centre line of a rectangle. The rectangle has the same area, greatest second
+  /// moment, place and direction; so its width, the area divided by its length, is that of a
+  /// straight strip. For needles, such a rectangle sticks out at the thick end; the line does not
+  /// leave the box. Ends are rounded to cells and lie on the grid.
   Axis axis() const;
 
-  /// Whether the area fills its place: the rectangle that has both second moments is no more than
-  /// half as large again as the area. True of convex shapes, and of straight strips; false of
-  /// hooks and rings.
+  /// Whether the area fills its place: the rectangle with the same two second moments is at most
+  /// one and a half times as large as the area. True for convex shapes and straight strips, false
+  /// for hooks and rings.
   bool is_compact() const;
 };
 
-/// Sums the moments of an area from its boundary, in any order of its edges. Exact to about 2^-50
-/// of the extent of the boundary, wherever it lies.
+/// Sums the moments of an area from its boundary; edges may be added in any order. Exact to about
+/// 2^-50 of the extent of the boundary, wherever it lies.
 class BoundaryMoments {
  public:
   BoundaryMoments() = default;
   /// `origin` is a point on or near the boundary.
   explicit BoundaryMoments(Point origin) : origin_(origin) {}
 
-  /// The area lies on the same side of all edges that are added.
+  /// The area must lie on the same side of all edges that are added.
   void add(Point from, Point to);
 
   AreaMoments sum() const;

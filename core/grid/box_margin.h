@@ -1,4 +1,4 @@
-// Boxes with room around them.
+// Boxes with a margin.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace trapeze {
 
-/// The box and so many cells around it, as far as there is a grid.
+/// The box extended by so many cells on each side, clipped to the grid.
 inline Box with_margin(const Box& box, double margin) {
   const auto cell = [](double v) {
     return static_cast<std::int32_t>(std::clamp<double>(v, kGridMin, kGridMax));

@@ -1,7 +1,7 @@
-// Whether work that was begun is still wanted.
+// Whether the result of work in progress is still wanted.
 //
-// Thread-safety: all functions may be called from any thread; a change is seen soon, and orders
-// nothing else.
+// Thread-safety: all functions may be called from any thread. Changes become visible soon but
+// impose no ordering on other memory accesses.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// Thrown by work that ends early because nobody wants it any more.
+/// Thrown by work that ends early because its result is no longer wanted.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("the work was not wanted any longer") {}
@@ -20,7 +20,7 @@ class Cancellation {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Wanted until then; for ever if nothing is said.
+  /// Over at the deadline; never, by default.
   explicit Cancellation(Clock::time_point deadline = Clock::time_point::max())
       : deadline_(deadline.time_since_epoch().count()) {}
   Cancellation(const Cancellation&) = delete;
@@ -34,7 +34,7 @@ class Cancellation {
     return Clock::time_point(Clock::duration(deadline_.load(std::memory_order_relaxed)));
   }
 
-  /// Takes some 30 ns: to be asked every few microseconds of work, and not more often.
+  /// Takes some 30 ns: call it every few microseconds of work, not more often.
   bool is_over() const noexcept {
     return is_cancelled_.load(std::memory_order_relaxed) || Clock::now() >= deadline();
   }
@@ -48,7 +48,7 @@ class Cancellation {
   std::atomic<Clock::rep> deadline_;
 };
 
-/// Checks at every so many calls. A view of a cancellation, or of none if that is null.
+/// Checks once every so many calls. A view of a cancellation, or of none if it is null.
 class CancellationCheck {
  public:
   CancellationCheck(const Cancellation* cancellation, unsigned calls)

@@ -1,4 +1,4 @@
-// A digest by which equal inputs are known again without keeping them.
+// A digest by which equal inputs are recognized without storing them.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace trapeze {
 
-/// 128 bits. Different inputs have different digests: among a billion of them, two are alike with a
-/// probability of 10^-21. That holds of whatever comes about by itself; it is no protection
-/// against who looks for two that are alike.
+/// 128 bits. Different inputs practically always have different digests: among a billion, two
+/// collide with a probability of 10^-21. That holds for naturally occurring inputs; it is no
+/// protection against someone who searches for collisions.
 struct Digest {
   std::uint64_t low = 0;
   std::uint64_t high = 0;
@@ -19,7 +19,7 @@ struct Digest {
   friend constexpr auto operator<=>(const Digest&, const Digest&) = default;
 };
 
-/// Takes in words of 64 bits one after another. Equal on every machine.
+/// Digests a sequence of 64-bit words. The result is equal on every machine.
 class Digester {
  public:
   void add(std::uint64_t word) {
@@ -31,7 +31,7 @@ class Digester {
     }
   }
 
-  /// Of all words so far; how many there were counts too.
+  /// Digest of all words so far; their number counts too.
   Digest digest() const {
     Digester end = *this;
     if (words_ % 2 != 0) end.add_pair(first_, 0);
@@ -47,7 +47,7 @@ class Digester {
   }
 
  private:
-  // The steps of MurmurHash3 for 128 bits, by Austin Appleby, who put it in the public domain.
+  // The steps of MurmurHash3 for 128 bits, by Austin Appleby, who placed it in the public domain.
   static constexpr std::uint64_t kFirst = 0x87c37b91114253d5;
   static constexpr std::uint64_t kSecond = 0x4cf5ad432745937f;
 
@@ -69,7 +69,7 @@ class Digester {
   std::uint64_t a_ = 0;
   std::uint64_t b_ = 0;
   std::uint64_t words_ = 0;
-  std::uint64_t first_ = 0;  // of a pair whose second is to come
+  std::uint64_t first_ = 0;  // of a pair whose second word is still to come
 };
 
 }  // namespace trapeze

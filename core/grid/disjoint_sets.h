@@ -9,10 +9,10 @@
 
 namespace trapeze {
 
-/// The smallest number of a set represents it. Four bytes a number; one thread at a time.
+/// The smallest number of a set represents it. Four bytes per number. One thread at a time.
 class DisjointSets {
  public:
-  /// Of the numbers below `count`, each is a set of its own at first.
+  /// Initially, each number below `count` is a set of its own.
   explicit DisjointSets(std::size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }

@@ -10,12 +10,12 @@
 
 namespace trapeze {
 
-/// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads, one of which
-/// is the caller's, and returns when all calls have ended. If any of them throws, rethrows one of
-/// the exceptions.
+/// Calls work(0), ..., work(count - 1), each once, on at most `max_threads` threads including the
+/// caller's, and returns when all calls have ended. If any call throws, rethrows one of the
+/// exceptions.
 template <typename Work>
 void for_each_in_parallel(std::size_t count, std::size_t max_threads, const Work& work) {
-  if (std::min(count, max_threads) <= 1) {  // asking for the cores takes a system call
+  if (std::min(count, max_threads) <= 1) {  // querying the cores takes a system call
     for (std::size_t i = 0; i < count; ++i) work(i);
     return;
   }

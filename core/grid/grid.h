@@ -1,9 +1,9 @@
-// The integer grid on which all geometry of the core lives.
+// The integer grid on which all geometry of the core lies.
 //
-// Web Mercator (EPSG:3857) is snapped to 2^31 x 2^31 square cells: x grows eastwards, y grows
-// southwards (so "above" means "smaller y"), the origin (0, 0) is longitude 0,
-// latitude 0, and both coordinates lie in [kGridMin, kGridMax]. A cell is 1.87 cm wide at the
-// equator; 2 cells are one pixel of a 256-pixel tile at zoom 22.
+// Web Mercator (EPSG:3857) is snapped to 2^31 x 2^31 square cells. x grows eastwards, y grows
+// southwards (so "above" means "smaller y"), the origin (0, 0) is longitude 0, latitude 0, and both
+// coordinates lie in [kGridMin, kGridMax]. A cell is 1.87 cm wide at the equator; 2 cells are one
+// pixel of a 256-pixel tile at zoom 22.
 //
 // All predicates are exact: twice the area of a triangle of grid points is at most 2^62, which fits
 // into 64 bits. No predicate has a tolerance.
@@ -29,9 +29,8 @@ struct Point {
   friend constexpr bool operator==(Point, Point) = default;
 };
 
-/// The sweep order: by y, then by x. It acts as a shear that leaves no two distinct points at
-/// the same height, so that every trapezoid has exactly one vertex on its top and one on its
-/// bottom.
+/// The sweep order: by y, then by x. It acts as a shear that leaves no two distinct points at the
+/// same height, so every trapezoid has exactly one vertex on its top and one on its bottom.
 constexpr bool is_above(Point a, Point b) {
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
@@ -40,8 +39,8 @@ constexpr bool is_above(Point a, Point b) {
 /// the directed line ab as seen on the map (y grows downwards), negative to the left, 0 if the
 /// three are collinear. Exact for all points of the grid.
 constexpr std::int64_t orientation(Point a, Point b, Point c) {
-  // The products may reach 2^62 each and their difference never leaves [-2^62, 2^62]; unsigned
-  // arithmetic makes the step between them well defined.
+  // The products may reach 2^62 each, and their difference stays within [-2^62, 2^62]. Unsigned
+  // arithmetic keeps the intermediate step well defined.
   const auto product = [](std::int64_t p, std::int64_t q) {
     return static_cast<std::uint64_t>(p * q);
   };

@@ -1,4 +1,4 @@
-// The Hilbert curve over the grid: sorting by it puts points that are near each other on the map
+// The Hilbert curve over the grid: sorting by it places points that are near each other on the map
 // near each other in memory.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Distinct types for the numbers of vertices, edges, nodes and corners, so that they cannot be
-// mixed up, and tables indexed by them.
+// confused, and tables indexed by them.
 #pragma once
 
 #include <cstdint>
@@ -52,8 +52,8 @@ using EdgeId = Id<struct EdgeTag>;
 using NodeId = Id<struct NodeTag>;
 using CornerId = Id<struct CornerTag>;
 
-/// Number of a face: 0 is outside, 1 inside; where polygons that share borders live in one graph,
-/// each has a number of its own.
+/// Number of a face: 0 is outside, 1 inside. If polygons that share borders are in one graph, each
+/// has its own number.
 using FaceId = std::uint32_t;
 constexpr FaceId kOutside = 0;
 

@@ -18,7 +18,8 @@ void* allocate_array(std::size_t bytes) {
   if (bytes < kLarge) return ::operator new(bytes);
   void* const memory = ::operator new (bytes, std::align_val_t{kHugePage});
 #ifdef __linux__
-  // Of the last page only what is used: the rest is somebody else's. It helps or changes nothing.
+  // Only whole pages: the rest of the last one may belong to others. The call may have no effect,
+  // which is no error.
   madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
   return memory;

@@ -1,5 +1,6 @@
-// Memory for arrays of many megabytes that are used all over: in huge pages, so that they are there
-// after a few hundred page faults and not a hundred thousand, and addresses are found at once.
+// Memory for arrays of many megabytes that are accessed all over: in huge pages, so that it is
+// available after a few hundred page faults instead of a hundred thousand, and address translation
+// is fast.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace trapeze {
 
-/// As operator new, but in huge pages where the system has them if it is large.
+/// Like operator new, but large arrays are in huge pages where the system has them.
 void* allocate_array(std::size_t bytes);
 void free_array(void* memory, std::size_t bytes) noexcept;
 

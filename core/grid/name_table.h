@@ -1,4 +1,4 @@
-// The names of the enumerators of an enumeration, written once.
+// The names of the enumerators of an enumeration, defined in one place.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace trapeze {
 
-/// Values and their names, each once. Any thread.
+/// Values and their names, each once. May be used from any thread.
 template <typename Value, std::size_t count>
 class NameTable {
  public:
@@ -37,7 +37,7 @@ class NameTable {
     return std::nullopt;
   }
 
-  /// The value is one of the table.
+  /// Precondition: the value is in the table.
   constexpr std::string_view name_of(Value value) const {
     std::size_t i = 0;
     while (i + 1 < count && values_[i] != value) ++i;

@@ -10,19 +10,19 @@ namespace trapeze {
 namespace {
 
 constexpr double kCellsPerRadian = static_cast<double>(kGridMax) / std::numbers::pi;
-// Keeps the poles finite, far outside of the square.
+// Keeps the poles finite, far outside the square.
 constexpr double kNearPole = std::numbers::pi / 2 - 1e-9;
 
-// Between the places of a table the map is a polynomial of degree 3 that has its values and its
-// slopes. That is off by h^4 / 384 times the greatest fourth derivative, which is less than 5: h
-// being 2^19 cells, or 0.0015 radians, by less than 0.0001 cells.
+// Between the entries of a table, the projection is approximated by a cubic polynomial with the
+// same values and slopes. The error is at most h^4 / 384 times the greatest fourth derivative,
+// which is less than 5. With h = 2^19 cells, or 0.0015 radians, that is less than 0.0001 cells.
 constexpr int kStepBits = 19;
 constexpr std::int64_t kStep = std::int64_t{1} << kStepBits;
 constexpr std::size_t kSteps = static_cast<std::size_t>(kGridSize / kStep);
 
 struct PlaceOfTable {
   double row = 0;
-  double slope = 0;  // rows to a step
+  double slope = 0;  // rows per step
 };
 
 const std::vector<PlaceOfTable>& table() {

@@ -1,4 +1,4 @@
-// Sorts long arrays by keys of 64 bits, in time proportional to their length.
+// Sorts long arrays by 64-bit keys, in time proportional to their length.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-/// A key, and the index of what it belongs to.
+/// A key, and the index of the item to which it belongs.
 struct KeyedIndex {
   std::uint64_t key = 0;
   std::uint32_t index = 0;
@@ -22,9 +22,9 @@ struct KeyedIndex {
   friend auto operator<=>(const KeyedIndex&, const KeyedIndex&) = default;
 };
 
-/// Sorts a part of an array by key, see sort_by_key(); `scratch` is as long.
+/// Sorts a part of an array by key, see sort_by_key(). `scratch` has the same length.
 inline void sort_part_by_key(std::span<KeyedIndex> items, std::span<KeyedIndex> scratch) {
-  constexpr std::size_t kFew = 4096;  // so many fit into the cache
+  constexpr std::size_t kFew = 4096;  // that fit into the cache
   if (items.size() < kFew) return std::sort(items.begin(), items.end());
   constexpr unsigned kDigitBits = 11;
   constexpr unsigned kDigits = (64 + kDigitBits - 1) / kDigitBits;
@@ -49,11 +49,11 @@ inline void sort_part_by_key(std::span<KeyedIndex> items, std::span<KeyedIndex> 
   if (from.data() != items.data()) std::copy(from.begin(), from.end(), items.begin());
 }
 
-/// Sorts by key and then by index what is in order of indices. `scratch` gets the same size. On up
-/// to `threads` threads.
+/// Sorts items that are in order of indices by key, then by index. `scratch` is resized to the same
+/// length. Runs on up to `threads` threads.
 inline void sort_by_key(LargeArray<KeyedIndex>& items, LargeArray<KeyedIndex>& scratch,
                         unsigned threads = 1) {
-  constexpr std::size_t kFewest = 1 << 15;  // that are worth a thread
+  constexpr std::size_t kFewest = 1 << 15;  // the minimum per thread
   const std::size_t count = items.size();
   scratch.resize(count);
   const std::size_t parts = std::clamp<std::size_t>(count / kFewest, 1, std::max(threads, 1u));
@@ -64,7 +64,7 @@ inline void sort_by_key(LargeArray<KeyedIndex>& items, LargeArray<KeyedIndex>& s
                      std::span(scratch).subspan(begin_of(i), size));
   });
   if (parts == 1) return;
-  // Each thread merges what lies between two keys, which are taken from the first part.
+  // Each thread merges the items between two keys, which are taken from the first part.
   std::vector<std::vector<std::size_t>> bounds(parts + 1, std::vector<std::size_t>(parts));
   for (std::size_t p = 0; p < parts; ++p) bounds[0][p] = begin_of(p);
   for (std::size_t i = 1; i < parts; ++i) {

@@ -13,7 +13,7 @@
 
 namespace trapeze {
 
-/// Rings one after another in one array, without repeating the first point at the end of a ring.
+/// Rings one after another in one array. The first point is not repeated at the end of a ring.
 struct Rings {
   std::vector<Point> points;
   std::vector<std::uint32_t> ends;  // ring i is points[ends[i - 1]] .. points[ends[i] - 1]
@@ -28,13 +28,13 @@ struct Rings {
     points.clear();
     ends.clear();
   }
-  /// Throws as close_ring() does.
+  /// Throws like close_ring().
   void add(std::span<const Point> ring) {
     points.insert(points.end(), ring.begin(), ring.end());
     close_ring();
   }
-  /// Ends the ring whose points have been appended to `points` since the last one. Throws
-  /// std::length_error if the points are more than 32 bits count.
+  /// Ends the ring that consists of the points appended to `points` since the last one. Throws
+  /// std::length_error if there are more points than 32 bits can count.
   void close_ring() {
     require_countable(points.size(), "vertices of rings");
     ends.push_back(static_cast<std::uint32_t>(points.size()));

@@ -1,7 +1,7 @@
-// A hash of items that come in any order, some of them several times, some to be taken away again.
+// A hash of items that come in any order, possibly several times, and can be removed again.
 //
-// It is the sum of a hash of 128 bits of each item: for recognising contents, not against
-// attackers.
+// It is the sum of a 128-bit hash of each item: for recognizing contents, not for protection
+// against attackers.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace trapeze {
 
-/// The digest is equal for equal sums of items, and Digest() for none; it is the same on every
+/// The digest is equal for equal multisets of items, and Digest() for none. It is the same on every
 /// machine.
 class SetHash {
  public:

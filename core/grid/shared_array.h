@@ -1,4 +1,4 @@
-// An array that grows at its end while others look at what there was before.
+// An array that grows at its end while others read its earlier content.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,18 @@
 
 namespace trapeze {
 
-/// One thread at a time appends; any number may read what had been appended before they were told.
+/// One thread at a time appends. Any number of threads may read what was appended before they were
+/// given the view.
 template <typename T>
 class SharedArray {
  public:
   SharedArray() : SharedArray(std::span<const T>()) {}
-  /// With a copy of the items, and room for more.
+  /// With a copy of the items and room for more.
   explicit SharedArray(std::span<const T> items) { move_to_a_larger_one(items, 0); }
 
   std::size_t size() const { return items_->size(); }
 
-  /// Items that others look at stay where they are; those who do must hold their owner().
+  /// Items that others view stay where they are; the views must hold the owner().
   void append(std::span<const T> more) {
     if (items_->size() + more.size() > items_->capacity()) {
       move_to_a_larger_one(*items_, more.size());
@@ -29,12 +30,12 @@ class SharedArray {
   }
   void append(std::size_t count, const T& item) { append(std::vector<T>(count, item)); }
 
-  /// Of what there is now.
+  /// A view of the present content.
   StoredArray<T> view() const { return StoredArray<T>::looking_at(*items_); }
   std::shared_ptr<const void> owner() const { return items_; }
 
  private:
-  // Room that is not used yet takes no memory but addresses.
+  // Unused capacity takes only address space, no memory.
   void move_to_a_larger_one(std::span<const T> items, std::size_t more) {
     constexpr std::size_t kLeastRoom = 1024;
     auto larger = std::make_shared<std::vector<T>>();

@@ -1,5 +1,5 @@
-// An array that owns its items or is a view of items that something else holds, such as a mapped
-// file. Reading it is the same in both cases.
+// An array that owns its items or is a view of items owned by others, such as a mapped file.
+// Reading is the same in both cases.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ template <typename T>
 class StoredArray {
  public:
   StoredArray() = default;
-  /// Gives back the room that the items do not need.
+  /// Releases capacity that the items do not need.
   StoredArray(std::vector<T> items) : own_(std::move(items)) { shrink_to_fit(); }
   /// `items` must outlive the array.
   static StoredArray looking_at(std::span<const T> items) {
@@ -40,7 +40,7 @@ class StoredArray {
   auto begin() const { return items_.begin(); }
   auto end() const { return items_.end(); }
 
-  /// Here and below, an array that is a view copies its items first.
+  /// From here on: an array that is a view copies its items first.
   void append(std::span<const T> more) {
     own_items();
     own_.insert(own_.end(), more.begin(), more.end());
@@ -62,15 +62,15 @@ class StoredArray {
     own_items();
     own_[i] = item;
   }
-  /// With items of its own.
+  /// A copy that owns its items.
   StoredArray copy() const { return std::vector<T>(items_.begin(), items_.end()); }
-  /// For changing the last item; there is one.
+  /// For changing the last item. Precondition: there is one.
   T& back() {
     own_items();
     return own_.back();
   }
 
-  /// Gives back the room that the items do not need, as nothing more is appended.
+  /// Releases capacity that the items do not need, because nothing more is appended.
   void shrink_to_fit() {
     if (own_.empty()) return;
     own_.shrink_to_fit();

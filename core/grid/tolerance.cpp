@@ -30,7 +30,7 @@ double epsilon_of_level(Level level) {
 }
 
 Level nearest_level(double epsilon) {
-  // Not even a quarter of a step below the first level.
+  // More than half a step below the first level.
   if (!(epsilon > 0) || steps(epsilon) < -0.5) return 0;
   return static_cast<Level>(
       std::clamp(static_cast<int>(std::lround(steps(epsilon))) + 1, 1, int{kLastLevel}));

@@ -1,11 +1,11 @@
 // The levels: the tolerances for which the history of a graph is kept. There are few of them, which
-// bounds memory, and at each of them the mesh is exact.
+// bounds memory, and the mesh is exact at each of them.
 //
 // A tolerance (the paper's epsilon) is a distance in grid cells. Level 0 is the polygon at full
-// detail; level k >= 1 is the tolerance 2^((k - 1) / 2 + kFirstExponent), two levels an octave (a
-// factor of two). So any tolerance is at most a factor of 2^1/4 from that of a level, and the
-// tolerances of whole zooms are levels themselves. A mesh "at a level" is the mesh adapted to
-// exactly that tolerance.
+// detail; level k >= 1 is the tolerance 2^((k - 1) / 2 + kFirstExponent), so there are two levels
+// per octave (a factor of two). Any tolerance is therefore within a factor of 2^1/4 of that of a
+// level, and the tolerances of whole zooms are levels themselves. A mesh "at a level" is the mesh
+// adapted to exactly that tolerance.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ using Level = std::uint8_t;
 constexpr int kFirstExponent = -1;  // level 1 is half a cell: a quarter of a pixel at zoom 22
 constexpr int kLevelsPerOctave = 2;
 constexpr Level kLastLevel = 62;   // 2^29.5 cells: only the coarsest shapes are left
-constexpr Level kNeverDies = 255;  // the end of a lifespan that reaches beyond the last level
+constexpr Level kNeverDies = 255;  // the end of a lifespan that extends beyond the last level
 
 /// The tolerance of a level, in cells; 0 for level 0.
 double epsilon_of_level(Level level);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kCellsPerMetre = static_cast<double>(kGridMax) / kMercatorHalfSide;
 constexpr double kCellsPerRadian = static_cast<double>(kGridMax) / std::numbers::pi;
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Keeps the poles finite, far outside of the square.
+// Keeps the poles finite, far outside the square.
 constexpr double kSineNearPole = 1 - 1e-15;
 
 }  // namespace
@@ -32,8 +32,8 @@ LonLat lonlat_from_grid(double x, double y) {
 }
 
 GridPosition grid_from_lonlat(LonLat position) {
-  // The inverse hyperbolic tangent of the sine is what is usually written asinh(tan(latitude)), in
-  // a third of the time and equal to within 1e-5 cells in the square.
+  // The inverse hyperbolic tangent of the sine is what is usually written asinh(tan(latitude)); it
+  // takes a third of the time and is equal to within 1e-5 cells in the square.
   const double sine = std::clamp(std::sin(position.lat * kDegree), -kSineNearPole, kSineNearPole);
   return {position.lon * kDegree * kCellsPerRadian,
           -0.5 * std::log((1 + sine) / (1 - sine)) * kCellsPerRadian};

@@ -14,7 +14,7 @@ constexpr double kMercatorHalfSide = 20037508.342789244;
 constexpr double kMaxLatitude = 85.0511287798066;
 
 /// Metres (x east, y north) to cells (x east, y south), not yet rounded. The Web Mercator square
-/// becomes [kGridMin, kGridMax] squared; points outside of it stay outside.
+/// becomes [kGridMin, kGridMax] squared; points outside it stay outside.
 struct GridPosition {
   double x = 0;
   double y = 0;
@@ -22,8 +22,8 @@ struct GridPosition {
 GridPosition grid_from_metres(double x, double y);
 GridPosition metres_from_grid(double x, double y);
 
-/// The length in cells of a length on the ground, at the latitude of `y` (cells): the scale of the
-/// map grows towards the poles.
+/// The length in cells of a length on the ground, at the latitude of `y` (cells): the map scale
+/// grows towards the poles.
 double cells_from_ground(double metres, double y);
 
 struct LonLat {
@@ -33,10 +33,10 @@ struct LonLat {
 LonLat lonlat_from_grid(double x, double y);
 GridPosition grid_from_lonlat(LonLat position);
 
-/// Whether an edge lies where polygons were cut off, so that nothing ends there: along the
-/// antimeridian, and the other edges of the square. Files were cut there before, and their cuts
-/// rounded and simplified: no shore is known beyond 85.045 degrees, but Antarctica often ends at
-/// 85.05.
+/// Whether an edge lies where polygons were cut off, so that it is no real boundary: along the
+/// antimeridian and the other edges of the square. Source files were often cut there before, and
+/// their cuts rounded and simplified: no shore is known beyond 85.045 degrees, but Antarctica often
+/// ends at 85.05.
 bool is_on_frame(Point a, Point b);
 
 constexpr int kMaxZoom = 24;
@@ -52,7 +52,7 @@ struct TileId {
   }
   /// Side of the tile in cells.
   constexpr std::int64_t side() const { return kGridSize >> z; }
-  /// The corner in the north-west, in cells.
+  /// The north-west corner, in cells.
   constexpr std::int64_t origin_x() const {
     return kGridMin + static_cast<std::int64_t>(x) * side();
   }

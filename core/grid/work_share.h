@@ -1,4 +1,4 @@
-// How far a piece of work is, told by the thread that does it and asked by others.
+// Progress of a piece of work, reported by the thread that does it and read by others.
 #pragma once
 
 #include <algorithm>
@@ -6,10 +6,10 @@
 
 namespace trapeze {
 
-/// Thread-safety: any thread may ask while one tells.
+/// Thread-safety: any thread may read while one reports.
 class WorkShare {
  public:
-  /// What is told from here on, from 0 to 1, is the part of the work between these shares.
+  /// From here on, reports from 0 to 1 cover the part of the work between these shares.
   void enter(double from, double to) {
     from_ = from;
     to_ = to;
@@ -20,7 +20,7 @@ class WorkShare {
     share_.store(static_cast<float>(whole), std::memory_order_relaxed);
   }
 
-  /// Of the whole work.
+  /// Share of the whole work.
   double get() const { return share_.load(std::memory_order_relaxed); }
 
  private:

@@ -16,9 +16,9 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kRowsAtOnce = 256;
-// A part that is too fine to be searched to the end has the best point of so many.
+// A part too fine to be searched completely gets the best point of so many.
 constexpr int kMostProbes = 2'000;
-// And one of which nothing is seen in so many is taken for covered by others.
+// A part of which nothing visible is found in so many probes counts as covered.
 constexpr int kMostProbesOfNothing = 500;
 
 double area_of_ring(std::span<const Point> ring) {
@@ -33,7 +33,7 @@ double area_of_ring(std::span<const Point> ring) {
   return std::abs(twice) / 2;
 }
 
-/// Sides of a ring to be found by height.
+/// Sides of a ring, indexed by height.
 class RingIndex {
  public:
   explicit RingIndex(std::span<const Point> ring) : ring_(ring), box_(box_of(ring)) {
@@ -83,24 +83,24 @@ class RingIndex {
 
   std::span<const Point> ring_;
   Box box_;
-  std::vector<std::vector<std::uint32_t>> rows_;  // empty: there are few sides
+  std::vector<std::vector<std::uint32_t>> rows_;  // empty if there are few sides
 };
 
-/// Rings do not cross, but touch: the middle of a side tells what a vertex that both have does not.
+/// Rings do not cross but may touch: the middle of a side decides, where a shared vertex would not.
 bool lies_in(std::span<const Point> inner, const RingIndex& outer) {
   const Point a = inner[0];
   const Point b = inner[1 % inner.size()];
   return outer.holds((static_cast<double>(a.x) + b.x) / 2, (static_cast<double>(a.y) + b.y) / 2);
 }
 
-/// An outer ring and the holes in it, by numbers.
+/// An outer ring and the holes in it, by number.
 struct Part {
   std::size_t outer = 0;
   std::vector<std::size_t> holes;
   double area = 0;
 };
 
-/// Of rings that are nested by even-odd.
+/// The parts of rings that are nested by even-odd.
 std::vector<Part> parts_of(const Rings& rings) {
   struct Ring {
     std::size_t number = 0;
@@ -108,7 +108,7 @@ std::vector<Part> parts_of(const Rings& rings) {
     double area = 0;
     bool is_hole = false;
     std::size_t part = 0;
-    std::optional<RingIndex> index = {};  // once it is needed
+    std::optional<RingIndex> index = {};  // built when first needed
   };
   std::vector<Ring> from_west;
   for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -119,10 +119,10 @@ std::vector<Part> parts_of(const Rings& rings) {
     return std::tuple(a.box.min_x, -a.area, a.number) < std::tuple(b.box.min_x, -b.area, b.number);
   });
   std::vector<Part> parts;
-  std::vector<std::size_t> open;  // those that reach as far east as the ring at hand begins
+  std::vector<std::size_t> open;  // rings that extend east beyond the beginning of the current one
   for (std::size_t i = 0; i < from_west.size(); ++i) {
     Ring& ring = from_west[i];
-    const Ring* around = nullptr;  // the smallest
+    const Ring* around = nullptr;  // the smallest one
     std::erase_if(open, [&](std::size_t k) {
       Ring& other = from_west[k];
       if (other.box.max_x < ring.box.min_x) return true;
@@ -149,15 +149,15 @@ std::vector<Part> parts_of(const Rings& rings) {
   return parts;
 }
 
-/// Sides of boundaries, drawn narrower. Small rings count less: a name may lie over a pond, and
-/// need not keep away from it as from the border of its country.
+/// Sides of boundaries, drawn narrower. Small rings count less: a label may cover a pond, and need
+/// not keep the same distance from it as from the border of its country.
 class Boundary {
  public:
   void clear() {
     sides_.clear();
     is_small_.clear();
   }
-  /// Begins a polygon. Inside is what is within the first, by even-odd, and within none of the
+  /// Starts a polygon. The inside is within the first polygon, by even-odd, and within none of the
   /// others.
   void begin_polygon(bool is_small) { is_small_.push_back(is_small ? 1 : 0); }
   void add(std::span<const Point> ring) {
@@ -175,7 +175,7 @@ class Boundary {
       sides_.push_back(side);
     }
   }
-  /// To be called once all have been added.
+  /// Must be called once all rings have been added.
   void sort(const Box& box) {
     constexpr std::size_t kSidesPerRow = 4;
     constexpr std::size_t kMostRows = 4096;
@@ -199,11 +199,11 @@ class Boundary {
 
   std::size_t size() const { return sides_.size(); }
 
-  /// Where on a side a place is nearest to it.
+  /// The point of a side nearest to a place.
   struct Foot {
-    double square = 0;  // of the distance
+    double square = 0;  // of the distance between them
     double along = 0;   // from 0 to 1: from the beginning of the side
-    double from_x = 0;  // the way from there to the place
+    double from_x = 0;  // the vector from there to the place
     double from_y = 0;
 
     double distance() const { return std::sqrt(square); }
@@ -217,8 +217,8 @@ class Boundary {
     const double from_y = py - along * side.dy;
     return {from_x * from_x + from_y * from_y, along, from_x, from_y};
   }
-  /// By how much the foot of a place that near to one with that foot may be beyond an end of the
-  /// side, were the side longer; nothing if the foot is an end itself.
+  /// By how much the foot of a place at a distance of `near` from one with that foot may lie beyond
+  /// an end of the side, if the side were longer; none if the foot is an end itself.
   std::optional<double> most_beyond(std::uint32_t number, const Foot& foot, double near) const {
     if (foot.along <= 0 || foot.along >= 1) return std::nullopt;
     const double to_end = std::min(foot.along, 1 - foot.along);
@@ -227,7 +227,7 @@ class Boundary {
 
   bool is_small(std::uint32_t number) const { return is_small_[sides_[number].polygon] != 0; }
 
-  /// Whether the place is inside as far as the large rings go, and as far as the small ones do.
+  /// Whether the place is inside with respect to the large rings, and to the small ones.
   struct Inside {
     bool of_large = false;
     bool of_small = false;
@@ -270,7 +270,7 @@ class Boundary {
   double top_ = 0;
   double row_height_ = 1;
   std::size_t row_count_ = 0;
-  std::vector<std::vector<std::uint32_t>> rows_;  // the sides that reach into each, by height
+  std::vector<std::vector<std::uint32_t>> rows_;  // by height: the sides that extend into each row
   std::vector<std::uint8_t> is_odd_;              // by polygon
 };
 
@@ -279,17 +279,17 @@ struct Square {
   double x = 0;
   double y = 0;
   double half = 0;
-  double to_large = 0;  // from its centre to the nearest large ring, negative where that is outside
-  double to_small = 0;  // the same of small ones
-  double most = 0;      // no point in it is deeper
-  std::size_t first_side = 0;  // of those that may be nearest to a place in it
+  double to_large = 0;  // distance of its centre from the nearest large ring, negative outside
+  double to_small = 0;  // the same for small rings
+  double most = 0;      // upper bound of the depth of its points
+  std::size_t first_side = 0;  // index of the first side that may be nearest to a place in it
   std::size_t side_count = 0;
 
   double half_diagonal() const { return half * std::sqrt(2.0); }
   double depth() const { return std::min(to_large, LabelAnchors::kSmallRings * to_small); }
 };
 
-/// Looks at squares, one after the other.
+/// Examines squares, one after another.
 class Prober {
  public:
   void begin(Boundary& boundary) {
@@ -298,11 +298,11 @@ class Prober {
     for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = static_cast<std::uint32_t>(i);
   }
 
-  /// All sides, for squares that are not a part of another one.
+  /// The number of all sides, for squares that are not part of another one.
   std::size_t side_count() const { return boundary_->size(); }
 
-  /// The square with its depth, and with those of the sides that may be nearest somewhere in it: no
-  /// side does that is farther from the centre than the nearest one by more than a diagonal.
+  /// The square with its depth and the sides that may be nearest somewhere in it: those whose
+  /// distance from the centre exceeds the smallest one by no more than a diagonal.
   Square look(double x, double y, double half, std::size_t first_side, std::size_t side_count) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     Square square{x, y, half, kFar, kFar, 0, sides_.size(), 0};
@@ -341,12 +341,13 @@ class Prober {
   }
 
  private:
-  /// How deep a point of the square may be at most, being between the nearest large side and any
-  /// other. As a point moves by v, its distances from two straight walls change by the parts of v
-  /// along their normals m and n, and the smaller one is at most the mean of both,
-  /// (d + e + (m + n) v) / 2. So where walls face each other, it is half of what lies between them,
-  /// wherever the point. Beyond the end of a side it is farther away than from the straight line,
-  /// by no more than it is beyond; and behind a side no farther than the square reaches.
+  /// An upper bound of the depth of the points of the square, between the nearest large side and
+  /// any other. As a point moves by v, its distances d and e from two straight walls change by the
+  /// components of v along their normals m and n, and the smaller distance is at most the mean of
+  /// both, (d + e + (m + n) v) / 2. So where walls face each other, it is at most half of the
+  /// distance between them, wherever the point is. Beyond the end of a side, a point is farther
+  /// away than from its straight line, by at most the length by which it is beyond; and behind a
+  /// side, no farther than the square extends.
   double most_between_walls(const Square& square) const {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     const double near = square.half_diagonal();
@@ -384,16 +385,17 @@ class Prober {
   }
 
   Boundary* boundary_ = nullptr;
-  std::vector<std::uint32_t> sides_;  // all, then those of each square
-  std::vector<Boundary::Foot> feet_;  // of the sides at hand
+  std::vector<std::uint32_t> sides_;  // all sides, then those of each square
+  std::vector<Boundary::Foot> feet_;  // of the current sides
 };
 
-/// The deepest point, by squares that are divided where it may lie; its place is not whole yet.
+/// Finds the deepest point by subdividing squares in which it may lie. Its coordinates are not
+/// rounded yet.
 Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
   const double min_x = box.min_x / LabelAnchors::kSqueeze;
   const double width = box.max_x / LabelAnchors::kSqueeze - min_x;
   const double height = static_cast<double>(box.max_y) - box.min_y;
-  // Long ones are divided into as many squares as fit.
+  // Elongated boxes are divided into as many squares as fit.
   const double side = std::max({std::min(width, height), std::max(width, height) / 32, 1.0});
   prober.begin(boundary);
   const std::size_t all = prober.side_count();
@@ -438,7 +440,7 @@ Square deepest(Boundary& boundary, const Box& box, Prober& prober) {
 /// Reused from feature to feature for its memory.
 class Finder {
  public:
-  /// Takes a feature of a layer, with those over it. False if there is nothing of it.
+  /// Takes a feature of a layer and those over it. Returns false if nothing of it exists.
   bool take(const Layer& layer, std::uint32_t row) {
     rings_.clear();
     above_.clear();
@@ -457,7 +459,7 @@ class Finder {
     for (const Rings& other : above) add_above() = other;
   }
 
-  /// Of all that the anchors of the feature depend on.
+  /// Digest of everything that the anchors of the feature depend on.
   Digest digest() const {
     std::vector<Digest> digests{digest_of(rings_)};
     for (const Above& above : above_) digests.push_back(digest_of(above.rings));
@@ -489,7 +491,7 @@ class Finder {
       }
       boundary_.sort(box);
       const Square found = deepest(boundary_, box, prober_);
-      // In whole cells.
+      // Rounded to whole cells.
       const double x = std::round(found.x * LabelAnchors::kSqueeze);
       const double y = std::round(found.y);
       const double moved = std::hypot(x / LabelAnchors::kSqueeze - found.x, y - found.y);
@@ -509,7 +511,7 @@ class Finder {
     Rings rings;
     std::vector<Box> boxes = {};  // of its rings
     Box box = {};                 // around all
-    double area = 0;              // of the largest
+    double area = 0;              // of the largest one
 
     void measure() {
       for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -528,8 +530,8 @@ class Finder {
   std::vector<Above> above_;
 };
 
-/// Calls visit(row, finder, results) for all features of which there is something, the finder
-/// having taken the feature; what the calls append to `results`, in order of rows.
+/// Calls visit(row, finder, results) for all existing features, after the finder has taken the
+/// feature. Returns what the calls append to `results`, in order of rows.
 template <typename Result, typename Visit>
 std::vector<Result> for_each_feature(const Layer& layer, unsigned threads, const Visit& visit) {
   const std::size_t rows = layer.features().size();
@@ -549,7 +551,7 @@ std::vector<Result> for_each_feature(const Layer& layer, unsigned threads, const
   return all;
 }
 
-/// What was found before, by what it was found of.
+/// Earlier results, by the digest of what they were computed from.
 class AnchorsByDigest {
  public:
   AnchorsByDigest(const KnownAnchors& known, unsigned threads) {
@@ -567,7 +569,7 @@ class AnchorsByDigest {
     std::ranges::sort(entries_, {}, &Entry::digest);
   }
 
-  /// Nothing if it has not been looked at.
+  /// None if the feature was not examined before.
   std::optional<std::span<const LabelAnchor>> find(const Finder& finder) const {
     if (entries_.empty()) return std::nullopt;
     const Digest digest = finder.digest();

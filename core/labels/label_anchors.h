@@ -1,16 +1,15 @@
-// Where names of polygons go: for every part of a feature a point well inside of it.
+// Where labels of polygons are placed: for every part of a feature, a point well inside it.
 //
-// Names are wider than high. The point is the pole of inaccessibility of the part as it is when it
-// is drawn kSqueeze times narrower: the centre of the largest ellipse, kSqueeze times as wide as
-// high, that lies in it. Where other features of the layer lie over the feature, what is seen of it
-// counts.
+// Labels are wider than high. The point is the pole of inaccessibility of the part drawn kSqueeze
+// times narrower: the centre of the largest ellipse, kSqueeze times as wide as high, that lies in
+// the part. If other features of the layer overlap the feature, only its visible area counts.
 //
-// The point is found on the polygon at full detail, and is the same at all scales, so that a name
-// stays where it is while one zooms. A boundary that is simplified within less than the depth of
-// the point does not pass it: so the point is inside the generalized polygon as long as the depth
-// is more than the tolerance.
+// The point is found on the polygon at full detail and is the same at all scales, so a label stays
+// in place while the user zooms. A boundary that is simplified by less than the depth of the point
+// does not pass over it: the point is inside the generalized polygon as long as the depth is more
+// than the tolerance.
 //
-// Thread-safety: any thread.
+// Thread-safety: may be called from any thread.
 #pragma once
 
 #include <cstddef>
@@ -28,18 +27,18 @@ namespace trapeze {
 enum class LabelParts : std::uint8_t { largest, all };
 
 struct LabelAnchor {
-  std::uint32_t row = 0;  // of the feature
+  std::uint32_t row = 0;  // row of the feature
   Point place;
   /// Half the height of the ellipse, in cells, which is half its width divided by kSqueeze. Within
-  /// kDepthShare of the greatest. No boundary is nearer than that, but for small rings, which may
-  /// be kSmallRings times as near.
+  /// kDepthShare of the maximum. No boundary is nearer than that, except small rings, which may be
+  /// kSmallRings times as near.
   float depth = 0;
-  float area = 0;  // of the part, its holes left out, in square cells
+  float area = 0;  // of the part without its holes, in square cells
 
   friend bool operator==(const LabelAnchor&, const LabelAnchor&) = default;
 };
 
-/// What was found of a layer before.
+/// The anchors already found for an earlier layer.
 struct KnownAnchors {
   const Layer* layer = nullptr;
   std::span<const LabelAnchor> of_all_parts;  // in order of rows; empty: nothing is known
@@ -47,24 +46,25 @@ struct KnownAnchors {
 
 class LabelAnchors {
  public:
-  /// Width by height of the ellipse.
+  /// Width of the ellipse divided by its height.
   static constexpr double kSqueeze = 3;
-  /// Holes that are smaller than such a share of the part, and features over it that are, may lie
-  /// within the ellipse: it keeps away from them by kSmallRings times less.
+  /// Holes, and features drawn over the part, that are smaller than this fraction of it may lie
+  /// within the ellipse: the distance kept from them is divided by kSmallRings.
   static constexpr double kSmallShare = 0.02;
   static constexpr double kSmallRings = 8;
-  /// How much deeper a point might be found, as a share of the depth.
+  /// By how much a deeper point might exceed the depth, as a fraction of it.
   static constexpr double kDepthShare = 0.04;
 
-  /// Of all features that there are, on up to `threads` threads, on which nothing depends. A part
-  /// without any inside that is seen has none, and one of which next to nothing is seen may have
-  /// none; of a feature whose largest part has none, the next.
+  /// The anchors of all existing features, found on up to `threads` threads; the result does not
+  /// depend on their number. A part without visible interior has none, and one of which almost
+  /// nothing is visible may have none; if the largest part of a feature has none, the next one
+  /// counts.
   LabelAnchors(const Layer& layer, LabelParts parts, unsigned threads = 1);
-  /// Those of all parts; of features whose outlines, and those of the features over them, are as
-  /// they were in a layer that has been looked at before, they are not sought again. Equal to
-  /// finding all.
+  /// The anchors of all parts. Features whose outlines, and those of the features over them, are
+  /// unchanged from the layer of `known` are not searched again. The result equals that of a full
+  /// search.
   LabelAnchors(const Layer& layer, const KnownAnchors& known, unsigned threads = 1);
-  /// Those of a layer of which all parts have been looked at before: equal to finding them.
+  /// From the anchors of all parts of a layer, found before. The result equals that of a search.
   LabelAnchors(std::span<const LabelAnchor> of_all_parts, LabelParts parts);
 
   /// In order of rows; those of one feature by area, the largest part first.
@@ -75,9 +75,9 @@ class LabelAnchors {
   std::vector<LabelAnchor> anchors_;
 };
 
-/// The anchors of one feature, by area, the largest part first. Rings as Layer::append_outline()
-/// gives them: nested by even-odd and without crossings. `above` are rings of the features over it,
-/// each of them apart.
+/// The anchors of one feature, by area, the largest part first. Rings are as appended by
+/// Layer::append_outline(): nested by even-odd and without crossings. `above` are rings of the
+/// features over it, one entry per feature.
 std::vector<LabelAnchor> anchors_of_feature(std::uint32_t row, const Rings& rings,
                                             std::span<const Rings> above = {},
                                             LabelParts parts = LabelParts::all);

@@ -13,7 +13,8 @@ namespace trapeze {
 namespace {
 
 constexpr double kPixelsOfWorld = 256;  // at zoom 0
-constexpr double kBucketPixels = 256;   // a side, at the step in which a name is first shown
+constexpr double kBucketPixels = 256;   // width and height of a bucket, at the step at which a
+                                        // label is first shown
 constexpr std::uint32_t kNone = 0xffffffff;
 
 const std::array<double, LabelPlacement::kSteps>& scales() {
@@ -28,10 +29,10 @@ const std::array<double, LabelPlacement::kSteps>& scales() {
   return made;
 }
 
-/// The first step at which that many pixels per cell are reached; kSteps if none does.
+/// The first step that reaches that many pixels per cell; kSteps if none does.
 int first_step_from(double pixels_per_cell) {
   const auto& all = scales();
-  // A step counts as reached where only rounding is missing.
+  // A step counts as reached if only a rounding error is missing.
   const auto reached = std::ranges::lower_bound(all, pixels_per_cell * (1 - 1e-12));
   return static_cast<int>(reached - all.begin());
 }
@@ -47,21 +48,21 @@ std::uint64_t bucket_of(std::int64_t column, std::int64_t row) {
          static_cast<std::uint64_t>(column + kMiddle);
 }
 
-/// The names that are shown at one step, to be found by where they are.
+/// The labels shown at one step, indexed by place.
 class Shown {
  public:
   Shown(std::span<const LabelCandidate> candidates, double world_width, double side_x,
         double side_y)
       : candidates_(candidates), world_width_(world_width), side_x_(side_x), side_y_(side_y) {}
 
-  /// Begins the step with those that are shown already.
+  /// Starts the step with the labels that are already shown.
   void begin(int step, std::span<const std::uint32_t> numbers, std::size_t most) {
     scale_ = scales()[static_cast<std::size_t>(step)];
     std::size_t slots = 64;
     while (slots < 2 * most) slots *= 2;
     heads_.assign(slots, kNone);
     items_.clear();
-    // Of a plane that repeats, columns repeat, too.
+    // On a plane that repeats, columns repeat too.
     columns_ = world_width_ > 0 ? std::max<std::int64_t>(
                                       1, static_cast<std::int64_t>(world_width_ * scale_ / side_x_))
                                 : 0;
@@ -76,7 +77,7 @@ class Shown {
     heads_[slot] = static_cast<std::uint32_t>(items_.size() - 1);
   }
 
-  /// Some name that overlaps the candidate; kNone if none does.
+  /// Some label that overlaps the candidate; kNone if there is none.
   std::uint32_t find_overlapping(std::uint32_t number) const {
     const LabelCandidate& c = candidates_[number];
     const std::int64_t column = column_of(c.x);
@@ -91,7 +92,7 @@ class Shown {
     return kNone;
   }
 
-  /// Pixels per cell from which on the two do not overlap.
+  /// The scale, in pixels per cell, from which on the two do not overlap.
   double parting_scale(std::uint32_t one, std::uint32_t other) const {
     const LabelCandidate& a = candidates_[one];
     const LabelCandidate& b = candidates_[other];
@@ -120,7 +121,7 @@ class Shown {
                                 (static_cast<std::uint64_t>(row) * 0xc2b2ae3d27d4eb4fU);
     return static_cast<std::size_t>((mixed ^ (mixed >> 32)) & (heads_.size() - 1));
   }
-  /// From west to east, in cells, the shorter way round.
+  /// The distance from west to east, in cells, the shorter way round.
   double across(double a, double b) const {
     double apart = std::abs(a - b);
     if (world_width_ > 0) {
@@ -140,11 +141,11 @@ class Shown {
 
   std::span<const LabelCandidate> candidates_;
   double world_width_;
-  double side_x_;  // pixels: as wide as the widest name, and as high as the highest
+  double side_x_;  // pixels: the width of the widest label and the height of the highest
   double side_y_;
   double scale_ = 1;
   double column_cells_ = 1;
-  std::int64_t columns_ = 0;  // around the world; 0: it does not repeat
+  std::int64_t columns_ = 0;  // around the world; 0: the plane does not repeat
   std::vector<std::uint32_t> heads_;
   std::vector<Item> items_;
 };
@@ -157,8 +158,8 @@ LabelPlacement::LabelPlacement(std::vector<LabelCandidate> candidates, double wo
   sort_by_place();
 }
 
-// What is kept from being shown by another is not looked at again before the scale at which the two
-// part.
+// A label blocked by another one is not tried again before the scale at which the two no longer
+// overlap.
 void LabelPlacement::place(double world_width) {
   double most_width = 1;
   double most_height = 1;
@@ -168,7 +169,7 @@ void LabelPlacement::place(double world_width) {
     most_width = std::max(most_width, 2.0 * c.half_width);
     most_height = std::max(most_height, 2.0 * c.half_height);
     double scale = c.least_scale;
-    // A name is not to meet itself beyond the edge of the world.
+    // A label must not overlap itself across the edge of the world.
     if (world_width > 0) scale = std::max(scale, 2.0 * c.half_width / world_width);
     const int step = first_step_from(scale);
     if (step < kSteps) due[static_cast<std::size_t>(step)].push_back(static_cast<std::uint32_t>(i));
@@ -220,7 +221,7 @@ void LabelPlacement::sort_by_place() {
 
 std::optional<int> LabelPlacement::step_of(double pixels_per_cell) {
   const auto& all = scales();
-  // As zooms of tiles are powers of two, only windows are off by rounding.
+  // Zooms of tiles are powers of two, so only those of windows are affected by rounding.
   const auto above = std::ranges::upper_bound(all, pixels_per_cell * (1 + 1e-12));
   if (above == all.begin()) return std::nullopt;
   return static_cast<int>(above - all.begin()) - 1;
@@ -268,7 +269,7 @@ bool LabelPlacement::is_any_from(const PlaneBox& box, double pixels_per_cell, do
   std::vector<std::uint32_t> numbers;
   find(box, pixels_per_cell, slack, numbers);
   if (!numbers.empty()) return true;
-  // Those that come later reach less far on the ground than they would at this scale.
+  // Labels of later steps extend less far on the ground than they would at this scale.
   const double reach_x = (most_half_width_ + slack) / pixels_per_cell;
   const double reach_y = (most_half_height_ + slack) / pixels_per_cell;
   const int after = step_of(pixels_per_cell).value_or(-1) + 1;
@@ -283,7 +284,7 @@ bool LabelPlacement::is_any_from(const PlaneBox& box, double pixels_per_cell, do
     for (std::int64_t row = bucket_at(box.min_y - reach_y, scale); row <= last_row; ++row) {
       const auto next =
           std::ranges::lower_bound(of_step, bucket_of(first_column, row), {}, &Placed::bucket);
-      // There may be more rows than names.
+      // There may be more rows than labels.
       if (next == of_step.end()) break;
       if (next->bucket <= bucket_of(last_column, row)) return true;
       const auto next_row = static_cast<std::int64_t>(next->bucket >> 32) - (std::int64_t{1} << 31);

@@ -4,7 +4,7 @@ namespace trapeze {
 
 Digest digest_of(const Rings& rings) {
   Digester digester;
-  digester.add(0);  // in place of the number of features
+  digester.add(0);  // instead of the number of features
   digester.add(rings.size());
   for (const std::uint32_t end : rings.ends) digester.add(end);
   for (const Point p : rings.points) {

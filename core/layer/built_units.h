@@ -1,5 +1,5 @@
-// What a layer keeps of how it was built, so that a later one can take over what has not changed
-// (see earlier_layer.h). A unit is what is built at once: a feature by itself, or a group of a
+// What a layer keeps about how it was built, so that a later layer can take over everything
+// unchanged (see earlier_layer.h). A unit is built as a whole: a feature by itself, or a group of a
 // coverage.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace trapeze {
 
-/// A tolerance in cells, or none, as it is stored.
+/// The stored form of an optional tolerance in cells.
 struct StoredTolerance {
   std::uint64_t bits = kNone;
 
@@ -29,9 +29,9 @@ struct StoredTolerance {
   static constexpr std::uint64_t kNone = 0xffffffffffffffff;
 };
 
-/// A feature that was built by itself, and what became of it; see BuildOutcome.
+/// A feature that was built by itself, with its outcome; see BuildOutcome.
 struct FeatureUnit {
-  Digest digest;  // of its rings as they were given to the builder
+  Digest digest;  // of its rings as given to the builder
   StoredTolerance most_tolerance;
   std::uint32_t row = 0;
   std::uint32_t vertices = 0;
@@ -39,12 +39,12 @@ struct FeatureUnit {
   std::uint32_t is_noded = 0;
 };
 
-/// A group of a coverage, and what became of it; see CoverageOutcome. One that failed is not kept.
+/// A group of a coverage, with its outcome; see CoverageOutcome. Groups that failed are not kept.
 struct GroupUnit {
-  Digest digest;  // of the digests of its features in their order
+  Digest digest;  // of the digests of its features, in order
   StoredTolerance most_tolerance;
-  std::uint32_t members_end = 0;   // where its features end among the members
-  std::uint32_t overlaps_end = 0;  // where its pairs end among the overlaps
+  std::uint32_t members_end = 0;   // one past its last feature among the members
+  std::uint32_t overlaps_end = 0;  // one past its last pair among the overlaps
   std::uint32_t vertices = 0;
   std::uint32_t shared_edges = 0;
   std::uint32_t junctions = 0;
@@ -56,7 +56,7 @@ struct GroupUnit {
 
 /// A feature of a group.
 struct GroupMember {
-  Digest digest;  // of its rings as they were grouped
+  Digest digest;  // of its rings as used for grouping
   std::uint32_t row = 0;
   std::uint32_t is_apart = 0;  // not in the graph of the group, but a unit by itself
 };
@@ -65,18 +65,18 @@ struct GroupMember {
 struct GroupOverlap {
   std::uint32_t lower = 0;
   std::uint32_t upper = 0;
-  std::uint64_t area = 0;        // of what they have in common: the bits of a double, cells squared
-  std::uint64_t lower_area = 0;  // likewise, of the whole lower feature
+  std::uint64_t area = 0;        // of the overlap: the bits of a double, cells squared
+  std::uint64_t lower_area = 0;  // the same, of the whole lower feature
 };
 
-/// Views of memory that something else owns.
+/// Views of memory owned by others.
 struct BuiltUnitsView {
   std::span<const FeatureUnit> features;   // in order of rows
   std::span<const GroupUnit> groups;       // in order of their first rows
   std::span<const GroupMember> members;    // of each group in order of rows
-  std::span<const GroupOverlap> overlaps;  // of each group as they were found
+  std::span<const GroupOverlap> overlaps;  // of each group, in the order found
 
-  /// Of the groups, which must lead into the members and overlaps.
+  /// The members of a group; its indices must lie within the members and overlaps.
   std::span<const GroupMember> members_of(std::size_t group) const {
     const std::size_t begin = group == 0 ? 0 : groups[group - 1].members_end;
     return members.subspan(begin, groups[group].members_end - begin);
@@ -96,11 +96,11 @@ struct BuiltUnits {
   BuiltUnitsView view() const { return {features, groups, members, overlaps}; }
 };
 
-/// Of the rings of a feature.
+/// Digest of the rings of a feature.
 Digest digest_of(const Rings& rings);
-/// Of a feature of a class with rings of that digest.
+/// Digest of a feature of a class, with rings of that digest.
 Digest digest_of(const Digest& rings, std::uint64_t own_class);
-/// Of a group of features with these digests. Never that of a single feature.
+/// Digest of a group of features with these digests. Never equals that of a single feature.
 Digest digest_of(std::span<const Digest> features);
 
 }  // namespace trapeze

@@ -8,7 +8,7 @@
 namespace trapeze {
 namespace {
 
-// In cells: corners are rounded to cells, which changes the area of a narrow one.
+// In cells. Corners are rounded to cells, which changes the area of a narrow patch.
 constexpr double kNarrowestPatch = 16;
 
 std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixel) {
@@ -18,12 +18,12 @@ std::uint64_t key_of(std::uint8_t feature_class, double x, double y, double pixe
   return std::uint64_t{feature_class} << 56 | number(y) << 28 | number(x);
 }
 
-/// The key distinguishes pixels of more cells than the side of the grid over 2^28.
+/// The key distinguishes only pixels larger than the side of the grid divided by 2^28.
 double told_apart(double pixel) {
   return std::max(pixel, static_cast<double>(kGridSize) / (1 << 28));
 }
 
-/// The box, moved so that it lies within a pixel if it is no larger.
+/// The box, shifted so that it lies within a pixel if it is no larger than one.
 Box within_pixel(const Box& box, double x, double y, double pixel) {
   const auto shift = [pixel](std::int32_t min, std::int32_t max, double at) -> std::int64_t {
     const double begin = kGridMin + std::floor((at - kGridMin) / pixel) * pixel;

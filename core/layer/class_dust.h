@@ -1,6 +1,6 @@
-// Dust for one picture: what was smaller than its pixels, as motes for each class of features,
-// merged within its pixels, so that there are at most as many as its pixels times its classes; what
-// was larger, and went only for a great tolerance, as patches, where it was.
+// Dust for one image. Loops smaller than its pixels appear as motes for each class of features,
+// merged within pixels, so there are at most as many as pixels times classes. Larger loops, which
+// were removed only because of a large tolerance, appear as patches in their place.
 #pragma once
 
 #include <array>
@@ -21,47 +21,47 @@ constexpr std::uint8_t kNotDrawn = 0xff;
 struct ClassMote {
   Box box;
   std::uint8_t feature_class = 0;
-  bool is_hole = false;  // takes area away
+  bool is_hole = false;  // subtracts area
 };
 
 /// A grain that is larger than a pixel.
 struct ClassPatch {
-  std::array<Point, 4> corners;  // of a rectangle, one after the other
+  std::array<Point, 4> corners;  // of a rectangle, in order around it
   std::uint8_t feature_class = 0;
-  bool is_hole = false;  // takes area away
+  bool is_hole = false;  // subtracts area
 };
 
 struct ClassShapes {
-  std::vector<ClassMote> motes;  // in order of class, and within it of pixel
+  std::vector<ClassMote> motes;  // in order of class, then of pixel
   std::vector<ClassPatch> patches;
 };
 
-/// Which grains are wanted, and for what pixels.
+/// The requested grains, and the size of the pixels.
 struct DustSelection {
   Box box;
   GrainIndex::Births births;
-  double pixel = 0;  // its side, in cells
+  double pixel = 0;  // side of a pixel, in cells
 };
 
-/// Holds working memory for reuse; one thread at a time.
+/// Holds working memory for reuse. One thread at a time.
 class ClassDust {
  public:
-  /// Replaces `shapes` by those of the grains that are wanted. `classes` has one for every row that
-  /// a grain may name; if it is empty, all are of class 0.
+  /// Replaces `shapes` by those of the selected grains. `classes` has one entry for every row that
+  /// a grain may refer to; if it is empty, all are of class 0.
   void gather(const GrainIndex& grains, const DustSelection& selection,
               std::span<const std::uint8_t> classes, ClassShapes& shapes);
 
-  /// The same of several layers whose features are drawn as those of one: begin(), add() for each,
-  /// finish().
+  /// The same for several layers whose features are drawn like those of one: call begin(), add()
+  /// for each layer, finish().
   void begin(ClassShapes& shapes);
   void add(const GrainIndex& grains, const DustSelection& selection,
            std::span<const std::uint8_t> classes, ClassShapes& shapes);
-  /// `pixel` is that of the selections, all of which had the same.
+  /// `pixel` is the pixel of the selections, which must be the same for all.
   void finish(double pixel, ClassShapes& shapes);
 
  private:
   struct Sum {
-    double x = 0;  // of places, weighted
+    double x = 0;  // weighted sum of positions
     double y = 0;
     double area = 0;
     double weight = 0;

@@ -16,8 +16,8 @@ std::uint64_t spread_bits(std::uint64_t v) {
   return (v | v << 1) & 0x5555555555555555ull;
 }
 
-/// Interleaved bits: two points are in one square of 2^k cells if their codes agree but for the
-/// last 2k bits.
+/// Interleaved bits: two points are in the same square of 2^k cells if their codes agree except for
+/// the last 2k bits.
 std::uint64_t morton(double x, double y) {
   const auto biased = [](double v) {
     return static_cast<std::uint64_t>(
@@ -49,7 +49,7 @@ int count_of_motes(const Grain& grain, int most) {
   return count_of_motes(grain.axis, pixel_of_level(grain.born), most);
 }
 
-/// The motes that are alive or yet to be born, in order of place, through the octaves.
+/// The motes that are alive or yet to be born, in order of place, octave by octave.
 class Settling {
  public:
   Settling(const std::vector<Grain>& grains, int most) {
@@ -72,7 +72,7 @@ class Settling {
     }
   }
 
-  /// Of the motes born by now, those in one pixel of `level` become one.
+  /// Merges the motes born by now that lie in one pixel of `level`.
   void merge_pixels(Level level) {
     const int bits = 2 * static_cast<int>(std::lround(std::log2(pixel_of_level(level))));
     kept_ = 0;
@@ -116,7 +116,7 @@ class Settling {
         keep_if_seen(m);
       }
     }
-    // There are no more than there were; inside of a pixel their order no longer matters.
+    // There are no more than before; within a pixel their order no longer matters.
     for (const Placed& placed : left_) {
       motes_[kept_] = placed.mote;
       codes_[kept_++] = placed.code;
@@ -133,7 +133,7 @@ class Settling {
   std::vector<std::uint64_t> codes_;
   std::size_t kept_ = 0;
   std::vector<Mote> settled_;
-  // Of the pixel at hand.
+  // Of the current pixel.
   std::vector<Mote> born_;
   std::vector<Placed> left_;
 };

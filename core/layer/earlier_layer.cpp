@@ -11,7 +11,8 @@
 namespace trapeze {
 namespace {
 
-/// Where the file of the layer is cut off, what is gone reads as zero: its groups have nobody.
+/// If the file of the layer is truncated, the missing part reads as zero: its groups then have no
+/// members.
 BuiltUnits copy_of(const BuiltUnitsView& from) {
   BuiltUnits to;
   const auto copy = [](const auto& items, auto& copied) {
@@ -52,7 +53,7 @@ EarlierLayer::Table::Table(std::span<const Unit> units)
   }
 }
 
-/// Where the first unit of the digest is, or would be.
+/// The slot of the first unit of the digest, or the one where it would be.
 template <typename Unit>
 std::size_t EarlierLayer::Table::slot_of(std::span<const Unit> units, const Digest& digest) const {
   const std::size_t mask = slots_.size() - 1;
@@ -100,14 +101,14 @@ void EarlierLayer::find_first_rows() {
     for (const GroupMember& member : units().members_of(g)) {
       if (member.is_apart != 0) continue;
       if (!first) first = member.row;
-      // Of a file that is cut off the rows may not ascend.
+      // In a truncated file the rows may not ascend.
       first_rows_[member.row] = std::min(*first, member.row);
     }
   }
 }
 
-/// A group is known if all its features are there: which of several with the same rings does not
-/// matter, as these are tied to the same others.
+/// A group is known if all its features exist. Which of several features with the same rings is
+/// found does not matter, because they are tied to the same others.
 std::vector<std::uint32_t> EarlierLayer::known_groups(std::span<const Digest> features,
                                                       bool are_drawn) const {
   std::vector<std::uint32_t> group_of(units_.members.size());

@@ -1,5 +1,5 @@
-// A layer that was built before, from which another one takes over what is built of the same rings:
-// units (see built_units.h) are known again by their digests.
+// A layer that was built before, from which another one takes over everything built from the same
+// rings: units (see built_units.h) are recognized by their digests.
 #pragma once
 
 #include <atomic>
@@ -16,14 +16,14 @@
 
 namespace trapeze {
 
-/// For one later layer: each unit is taken over once.
+/// Serves one later layer: each unit is taken over once.
 ///
 /// Thread-safety: any number of threads may call any function.
 class EarlierLayer {
  public:
-  /// Notes where everything is, in a few milliseconds for a hundred thousand features. The layer
-  /// may be a view of a file that somebody cuts off meanwhile: what is taken over is wrong then,
-  /// but nothing is read beyond it.
+  /// Indexes the layer, in a few milliseconds per hundred thousand features. The layer may be a
+  /// view of a file that is truncated meanwhile: the content taken over is then wrong, but nothing
+  /// is read beyond it.
   explicit EarlierLayer(std::shared_ptr<const Layer> layer);
 
   const Layer& layer() const { return *layer_; }
@@ -31,36 +31,36 @@ class EarlierLayer {
   const LayerOptions& options() const { return arrays_.options; }
   BuiltUnitsView units() const { return units_.view(); }
 
-  /// Claims a feature, or a group of so many features, of that digest that nobody has claimed yet:
-  /// its number among the units().
+  /// Claims a feature, or a group of so many features, of that digest that nobody has claimed yet.
+  /// Returns its number among the units().
   std::optional<std::uint32_t> claim_feature(const Digest& digest);
   std::optional<std::uint32_t> claim_group(const Digest& digest, std::size_t members);
 
-  /// What is known of the grouping of features with rings of these digests, for group_features().
-  /// `are_drawn` says that what is drawn of a feature by itself are the rings by which it was
-  /// grouped, so that something is known of features that were in no group.
+  /// What is known about the grouping of features with rings of these digests, for
+  /// group_features(). `are_drawn` states that the rings drawn for a feature by itself are those by
+  /// which it was grouped, so that something is known of features that were in no group.
   std::vector<std::uint32_t> known_groups(std::span<const Digest> features, bool are_drawn) const;
 
-  /// Whether there is another feature of the same digest as that unit.
+  /// Whether another feature has the same digest as that unit.
   bool has_double(std::uint32_t feature_unit) const { return features_.has_double(feature_unit); }
 
-  /// By row: the first row of the graph that the feature is a part of.
+  /// By row: the first row of the graph to which the feature belongs.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:
-  /// Finds units by digest; those of one digest are handed out one after the other.
+  /// Finds units by digest. Units with the same digest are handed out one after the other.
   class Table {
    public:
     template <typename Unit>
     explicit Table(std::span<const Unit> units);
 
-    /// The next unit of that digest that nobody has claimed.
+    /// The next unclaimed unit of that digest.
     template <typename Unit>
     std::optional<std::uint32_t> claim(std::span<const Unit> units, const Digest& digest);
     /// The first unit of that digest.
     template <typename Unit>
     std::optional<std::uint32_t> find(std::span<const Unit> units, const Digest& digest) const;
-    /// Whether there are several units of the digest of that one.
+    /// Whether several units have the digest of that one.
     bool has_double(std::uint32_t unit) const { return has_double_[unit] != 0; }
 
    private:
@@ -69,9 +69,9 @@ class EarlierLayer {
     template <typename Unit>
     std::size_t slot_of(std::span<const Unit> units, const Digest& digest) const;
 
-    // Open addressing over the first unit of each digest; the size is a power of two.
+    // Open addressing over the first unit of each digest. The size is a power of two.
     std::vector<std::uint32_t> slots_;
-    std::vector<std::uint32_t> next_;                    // by unit: the next one of its digest
+    std::vector<std::uint32_t> next_;                    // by unit: the next unit of its digest
     std::vector<std::atomic<std::uint32_t>> unclaimed_;  // by first unit: the next to be claimed
     std::vector<std::uint8_t> has_double_;               // by unit
   };
@@ -80,12 +80,12 @@ class EarlierLayer {
 
   const std::shared_ptr<const Layer> layer_;
   const LayerArrays arrays_;
-  const BuiltUnits units_;  // a copy, which nobody changes
+  const BuiltUnits units_;  // a private copy, never changed
   Table features_;
   Table groups_;
   Table members_;
   std::vector<std::uint32_t> first_rows_;
-  std::vector<bool> is_member_;  // by row: of a group
+  std::vector<bool> is_member_;  // by row: whether it belongs to a group
 };
 
 }  // namespace trapeze

@@ -30,7 +30,7 @@ void FeatureStack::begin(const OverlapTable& overlaps, const MeshView& mesh,
   last_noted_ = last_row_ = last_ = kNone;
 }
 
-/// Holds the trapezoid: as high as that is, and as wide as its sides are from end to end.
+/// A box that contains the trapezoid: of the same height, and as wide as its sides from end to end.
 Box FeatureStack::box_around(std::uint32_t trapezoid) const {
   const MeshTrapezoid& t = mesh_.trapezoids[trapezoid];
   const MeshEdge left = mesh_.edges[t.left];
@@ -41,7 +41,7 @@ Box FeatureStack::box_around(std::uint32_t trapezoid) const {
           mesh_.vertices[t.bottom].y};
 }
 
-/// The slot of the feature, or an empty one where it would be.
+/// The slot of the feature, or the empty one where it would be.
 std::size_t FeatureStack::slot_of(std::uint32_t row) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t i = (row * 0x9e3779b9u) >> 8 & mask;
@@ -58,7 +58,7 @@ std::uint32_t FeatureStack::find(std::uint32_t row) const {
   return last_ = number;
 }
 
-/// The number of a feature that is not there yet.
+/// Inserts a feature that does not exist yet and returns its number.
 std::uint32_t FeatureStack::insert(std::uint32_t row) {
   if (2 * (count_ + std::size_t{1}) > slots_.size()) grow();
   if (count_ == features_.size()) features_.emplace_back();
@@ -149,7 +149,7 @@ bool FeatureStack::add(std::uint32_t row, std::uint32_t trapezoid) {
   return true;
 }
 
-/// Visits the features over a feature whose boxes meet a box, until visit(number) is false.
+/// Visits the features over a feature whose boxes intersect a box, until visit(number) is false.
 template <typename Visit>
 void FeatureStack::for_each_cover(const Feature& feature, const Box& box,
                                   const Visit& visit) const {
@@ -181,7 +181,7 @@ void FeatureStack::cut(Feature& feature, CancellationCheck& check) {
       over_.push_back(cover);
       return true;
     });
-    // In an order that does not depend on what else is seen, as shares are rounded.
+    // In an order that does not depend on what else is visible, because shares are rounded.
     std::ranges::sort(over_, {}, [this](std::uint32_t cover) { return features_[cover].row; });
     visible_.add(trapezoid);
     for (const std::uint32_t cover : over_) {

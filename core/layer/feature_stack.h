@@ -1,5 +1,5 @@
-// What is to be seen of features that lie over each other: in the part of a layer that a picture
-// shows, the trapezoids of each less what is above it.
+// The visible parts of overlapping features: in the part of a layer that an image shows, the
+// trapezoids of each feature minus the features above it.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@
 
 namespace trapeze {
 
-/// Use for one picture: note() the feature of every trapezoid that is seen, find_covers(), and if
-/// there are any, note_place() of every trapezoid, settle(), add() them again, resolve(). Holds
-/// working memory for reuse; one thread at a time.
+/// Usage for one image: call note() for the feature of every visible trapezoid, then find_covers().
+/// If that returns true, call note_place() for every trapezoid, settle(), add() for every trapezoid
+/// again, and resolve(). Holds working memory for reuse. One thread at a time.
 class FeatureStack {
  public:
   /// How a feature is painted.
   struct Paint {
-    std::uint32_t colour = 0;  // any number that tells its colour from others
+    std::uint32_t colour = 0;  // any number that distinguishes its colour from others
     float opacity = 1;         // of its fill, 0 to 1
-    bool is_raised = false;    // above all that are not
+    bool is_raised = false;    // above all features that are not raised
 
     bool is_opaque() const { return opacity >= 1; }
   };
@@ -33,42 +33,43 @@ class FeatureStack {
     /// Overlaps narrower than so many cells are left as they are: at a tolerance, the borders of
     /// neighbours deviate by as much.
     double narrowest = 0;
-    /// Whether all of a feature is cut up that something lies over, and not only its trapezoids
+    /// Whether a feature that is covered anywhere is cut up as a whole, and not only its trapezoids
     /// there.
     bool cuts_whole_features = false;
     /// Whether all features are opaque and of one colour.
     bool is_plain = false;
   };
 
-  /// Begins anew, with trapezoids of a mesh; what is given must outlive the use of the stack. Where
-  /// all are opaque, features of one colour are cut only where their boundaries run along each
-  /// other, as there their areas together are more than what they cover.
+  /// Starts over with the trapezoids of a mesh; the arguments must outlive the use of the stack. If
+  /// all features are opaque, those of one colour are cut only where their boundaries run along
+  /// each other, because there their areas together exceed the area they cover.
   void begin(const OverlapTable& overlaps, const MeshView& mesh, const Options& options);
 
-  /// Takes notice of a feature, as often as one likes; paint_of(row) is called once for each.
+  /// Registers a feature; may be called repeatedly. paint_of(row) is called once for each feature.
   template <typename PaintOf>
   void note(std::uint32_t row, const PaintOf& paint_of);
 
-  /// Finds out which of the features lie over which, somewhere: whether there are any. A feature
-  /// lies over those of lower rows, unless only the other is raised. Throws Cancelled.
+  /// Finds which features are drawn over which ones anywhere, and returns whether there are any. A
+  /// feature is drawn over those of lower rows, unless only the other is raised. Throws Cancelled.
   bool find_covers(const Cancellation* cancellation);
 
-  /// After find_covers(): whether it deals with places that features have in common (see
-  /// FeatureOverlap::in_common()). Where all are opaque and none is cut up as a whole, the caller
-  /// does, which takes no more than leaving out the trapezoids below the uppermost one.
+  /// After find_covers(): whether the stack handles places that features share (see
+  /// FeatureOverlap::in_common()). If all features are opaque and none is cut up as a whole, the
+  /// caller handles them, which only means leaving out the trapezoids below the uppermost one.
   bool covers_in_common() const { return covers_in_common_; }
 
-  /// After find_covers(): where a trapezoid of a feature is.
+  /// After find_covers(): registers the place of a trapezoid of a feature.
   void note_place(std::uint32_t row, std::uint32_t trapezoid);
 
-  /// Finds out which features lie over which where they are seen: whether there are any.
+  /// Finds which features are drawn over which ones where they are visible, and returns whether
+  /// there are any.
   bool settle();
 
-  /// After settle(): whether something lies over a feature.
+  /// After settle(): whether the feature is covered anywhere.
   bool is_cut(std::uint32_t row) const;
 
-  /// After settle(), every trapezoid that has been noted. True if it is cut up, and not to be drawn
-  /// but by its parts.
+  /// After settle(), for every trapezoid that was registered. Returns true if it is cut up and must
+  /// be drawn only as its parts.
   bool add(std::uint32_t row, std::uint32_t trapezoid);
 
   /// Calls parts(row, trapezoids, parts) for every feature that is cut, in order of rows, with
@@ -80,12 +81,13 @@ class FeatureStack {
   struct Feature {
     std::uint32_t row = 0;
     Paint paint;
-    Box box;                    // of what is seen of it
-    bool is_in_a_pair = false;  // it lies over another one, or another one over it
+    Box box;                    // of its visible trapezoids
+    bool is_in_a_pair = false;  // it is drawn over another one or under it
     bool is_over_others = false;
-    std::vector<std::uint32_t> covers;      // numbers of the features over it, by the tops of boxes
-    std::vector<std::uint32_t> trapezoids;  // all of them, if it lies over others
-    std::vector<std::uint32_t> below;       // those that are cut up
+    std::vector<std::uint32_t> covers;      // numbers of the features over it, by the tops of their
+                                            // boxes
+    std::vector<std::uint32_t> trapezoids;  // all of them, if it is drawn over others
+    std::vector<std::uint32_t> below;       // the trapezoids that are cut up
     Sheet sheet;
     bool has_sheet = false;
 
@@ -112,7 +114,7 @@ class FeatureStack {
   const OverlapTable* overlaps_ = nullptr;
   MeshView mesh_;
   Options options_;
-  std::deque<Feature> features_;  // the first count_
+  std::deque<Feature> features_;  // the first count_ are in use
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> slots_;  // numbers of features by row, open addressing
   bool covers_in_common_ = true;

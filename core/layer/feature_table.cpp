@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kFreeSlot = 0xffffffff;
 constexpr std::size_t kFirstSlots = 64;
-constexpr std::size_t kBits = 64;  // rows to a word of nulls
+constexpr std::size_t kBits = 64;  // rows per word of nulls
 
 bool has_type(const Value& value, FieldType type) {
   switch (type) {
@@ -48,7 +48,7 @@ std::size_t heap_bytes(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
 }
 
-// A short string lives inside its object.
+// A short string is stored inside its object.
 std::size_t heap_bytes(const std::string& s) {
   return s.capacity() > std::string().capacity() ? s.capacity() + 1 : 0;
 }
@@ -212,13 +212,13 @@ void FeatureTable::replace_number(Column& column, std::uint32_t row, const Value
   }
 }
 
-/// Of a value that is a text or null.
+/// The number of a value that is a text or null.
 std::uint32_t FeatureTable::number_of(const Value& text) {
   return is_null(text) ? kNullText : intern(std::get<std::string_view>(text));
 }
 
 std::uint32_t FeatureTable::intern(std::string_view text_to_find) {
-  // At most half of the slots are taken, so a probe is short and always ends.
+  // At most half of the slots are occupied, so a probe is short and always ends.
   if (string_slots_.size() < 2 * (string_ends_.size() + 1)) grow_slots();
   const std::size_t mask = string_slots_.size() - 1;
   std::size_t slot = std::hash<std::string_view>{}(text_to_find)&mask;
@@ -235,7 +235,7 @@ std::uint32_t FeatureTable::intern(std::string_view text_to_find) {
 
 std::string_view FeatureTable::text(std::uint32_t number) const {
   const std::uint64_t begin = number == 0 ? 0 : string_ends_[number - 1];
-  // Of a file that is cut off while it is mapped, ends may read as zero.
+  // In a file that is truncated while it is mapped, ends may read as zero.
   const std::uint64_t end = std::max(begin, string_ends_[number]);
   return {string_bytes_.data() + begin, end - begin};
 }

@@ -1,7 +1,7 @@
-// Ids and attributes of the features of a layer, by row; their geometry is stored elsewhere,
-// under the same row.
+// Ids and attributes of the features of a layer, by row. The geometry is stored elsewhere, under
+// the same row.
 //
-// Thread-safety: immutable once filled, any number of threads may read.
+// Thread-safety: immutable once filled; any number of threads may read.
 #pragma once
 
 #include <cstddef>
@@ -44,20 +44,21 @@ class FeatureTable {
   FeatureTable() = default;
   explicit FeatureTable(std::vector<Field> fields);
   /// A table that is a view of cells, which must outlive it. Throws std::invalid_argument if their
-  /// sizes do not fit each other or the fields, so that no value is ever read from beyond them.
+  /// sizes do not match each other or the fields, so no value is ever read from beyond them.
   FeatureTable(std::vector<Field> fields, const Cells& cells);
 
-  /// Appends a row and returns its number; `values` are as many as fields, each null or of its
-  /// field's type (std::invalid_argument if not). `id` is the source's own feature id.
+  /// Appends a row and returns its number. There are as many `values` as fields, each null or of
+  /// its field's type; throws std::invalid_argument otherwise. `id` is the feature id of the
+  /// source.
   std::uint32_t append(std::int64_t id, std::span<const Value> values);
 
-  /// Puts other values in place of those of a row; otherwise as append().
+  /// Replaces the values of a row; otherwise like append().
   void replace(std::uint32_t row, std::span<const Value> values);
 
-  /// A table of its own that equals this one, and can be changed.
+  /// An independent, mutable copy of this table.
   FeatureTable copy() const;
 
-  /// Gives back memory that only appending needs.
+  /// Releases memory that only appending needs.
   void shrink_to_fit();
 
   std::size_t size() const { return ids_.size(); }
@@ -65,18 +66,18 @@ class FeatureTable {
   /// Number of the first field of that name, or -1.
   int field_index(std::string_view name) const;
   std::int64_t id(std::uint32_t row) const { return ids_[row]; }
-  /// `row` < size(), 0 <= `field` < fields().size().
+  /// Preconditions: `row` < size(), 0 <= `field` < fields().size().
   Value value(std::uint32_t row, int field) const;
   Cells cells() const;
   /// Memory held, in bytes: heap, or mapped.
   std::size_t memory() const;
 
  private:
-  // One column a field; a column uses one of the two kinds of cells. Equal strings of the whole
+  // One column per field; a column uses one of the two kinds of cells. Equal strings of the whole
   // table are stored once, whatever their field.
   struct Column {
     StoredArray<std::uint64_t> numbers;  // integer and real: the integer, or the bits of the double
-    StoredArray<std::uint64_t> nulls;    // integer and real: a bit a row, up to the last null
+    StoredArray<std::uint64_t> nulls;    // integer and real: one bit per row, up to the last null
     StoredArray<std::uint32_t> texts;    // text: number of the string, or kNullText
 
     Column copy() const { return {numbers.copy(), nulls.copy(), texts.copy()}; }
@@ -97,8 +98,8 @@ class FeatureTable {
   std::vector<Column> columns_;
   StoredArray<char> string_bytes_;
   StoredArray<std::uint64_t> string_ends_;
-  // Open addressing over string numbers, keyed by the bytes; the size is a power of two. Made when
-  // text is appended.
+  // Open addressing over string numbers, keyed by the bytes. The size is a power of two. Created
+  // when text is appended.
   std::vector<std::uint32_t> string_slots_;
 };
 

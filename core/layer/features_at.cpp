@@ -5,7 +5,7 @@
 namespace trapeze {
 namespace {
 
-/// The cells around the point: the index need not name trapezoids that the point only touches.
+/// The cells around the point: the index may omit trapezoids that the point only touches.
 Box around(Point point) {
   return {std::max(point.x, kGridMin + 1) - 1, std::max(point.y, kGridMin + 1) - 1,
           std::min(point.x, kGridMax - 1) + 1, std::min(point.y, kGridMax - 1) + 1};
@@ -14,10 +14,10 @@ Box around(Point point) {
 }  // namespace
 
 bool holds_point(const MeshView& mesh, const MeshTrapezoid& trapezoid, Point point) {
-  // By y alone and not in sweep order: trapezoids without height are not stored in a mesh.
+  // By y alone, not in sweep order: trapezoids without height are not stored in a mesh.
   if (point.y < mesh.vertices[trapezoid.top].y) return false;
   if (point.y >= mesh.vertices[trapezoid.bottom].y) return false;
-  // Edges lead downwards, so what is to their right lies in the west.
+  // Edges lead downwards, so the area to their right lies in the west.
   const auto side = [&](std::uint32_t edge) {
     const MeshEdge& e = mesh.edges[edge];
     return orientation(mesh.vertices[e.upper], mesh.vertices[e.lower], point);

@@ -1,4 +1,4 @@
-// Which features lie under a point of the map, as they are drawn at a tolerance.
+// The features under a point of the map, as drawn at a tolerance.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace trapeze {
 
-/// Whether the trapezoid holds the point. Exact; points on the left side and on the top belong to
-/// it, those on the right side and on the bottom do not: so of trapezoids that tile an area, each
-/// point lies in one.
+/// Whether the trapezoid contains the point. Exact. Points on the left side and on the top belong
+/// to it, those on the right side and on the bottom do not, so each point of an area tiled by
+/// trapezoids lies in exactly one.
 bool holds_point(const MeshView& mesh, const MeshTrapezoid& trapezoid, Point point);
 
-/// The rows of the features whose polygons hold the point at the level, in ascending order, each
-/// once. Polygons that are dust at the level hold nothing.
+/// The rows of the features whose polygons contain the point at the level, in ascending order, each
+/// once. Polygons that are dust at the level contain nothing.
 std::vector<std::uint32_t> features_at(const Layer& layer, Point point, Level level);
 
 }  // namespace trapeze

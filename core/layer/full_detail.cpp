@@ -31,7 +31,8 @@ void FullDetail::add(const TrapezoidalGraph& graph, const FaceFeatures& rows,
   const auto first_vertex = static_cast<std::uint32_t>(vertices_.size());
   const auto first_edge = static_cast<std::uint32_t>(edges_.size());
   require_countable(trapezoids_.size() + graph.nodes().size(), "trapezoids at full detail");
-  const auto vertex = [&](VertexId v) { return first_vertex + v.value - 1; };  // 0 is of the frame
+  const auto vertex = [&](VertexId v) { return first_vertex + v.value - 1; };  // vertex 0 belongs
+                                                                               // to the frame
   for (std::size_t v = 1; v <= graph.vertex_count(); ++v) {
     vertices_.push_back(graph.point(VertexId(v)));
   }

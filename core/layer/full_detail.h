@@ -1,5 +1,5 @@
-// Features as they were built, before anything is removed of them: to find out which lie over each
-// other where there is no layer that knows it (see overlaps.h).
+// Features as built, before any vertex is removed: used to find which of them overlap when no layer
+// has that information (see overlaps.h).
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,14 @@ namespace trapeze {
 /// One thread at a time.
 class FullDetail {
  public:
-  /// A graph of which nothing has been removed, and the rows of the features that cover its faces.
-  /// Each graph has a number of its own.
+  /// Adds a graph without removals and the rows of the features that cover its faces. Each graph
+  /// has a distinct `number`.
   void add(const TrapezoidalGraph& graph, const FaceFeatures& rows, std::uint32_t number);
-  /// What another one has been told.
+  /// Adds everything that was added to another one.
   void add(FullDetail&& other);
 
-  /// By row, up to the last that was added: 1 if the feature covers a place that another one covers
-  /// too, as OverlapTable has it of a layer. Depends neither on the order of graphs nor on
-  /// `threads`.
+  /// By row, up to the last one added: 1 if the feature overlaps another one, as the OverlapTable
+  /// of a layer reports it. Depends neither on the order of the graphs nor on `threads`.
   std::vector<std::uint8_t> overlapping(unsigned threads) const;
 
  private:
@@ -35,7 +34,7 @@ class FullDetail {
   std::vector<std::uint32_t> row_of_;          // by trapezoid
   std::vector<std::uint32_t> graph_of_;        // by row
   std::vector<Box> boxes_;                     // by row
-  std::vector<std::uint32_t> rows_in_common_;  // that cover a face together with others
+  std::vector<std::uint32_t> rows_in_common_;  // rows that share a face with others
 };
 
 }  // namespace trapeze

@@ -1,6 +1,6 @@
 // Finds the grains of a layer by place: what its polygons left behind when they became too small,
-// each with its feature. They serve where the dust of one feature must be told from that of
-// another; elsewhere motes are drawn, which are fewer (see dust.h).
+// each with its feature. Grains serve where the dust of one feature must be distinguished from that
+// of another. Elsewhere motes are drawn, which are fewer (see dust.h).
 #pragma once
 
 #include <algorithm>
@@ -18,23 +18,24 @@
 
 namespace trapeze {
 
-/// A grain (see history.h) as it is stored.
+/// The stored form of a grain (see history.h).
 struct FeatureGrain {
-  Point from;  // the axis of the rectangle that stands for it
+  Point from;  // the axis of the rectangle that represents it
   Point to;
   std::int64_t doubled_area = 0;  // cells squared; negative if it was a hole
-  std::uint32_t row = 0;          // of the feature
+  std::uint32_t row = 0;          // row of the feature
   Level born = 0;
   std::uint8_t is_covered = 0;  // see Grain: 1 if other features cover the place before and after
-  std::uint16_t unused = 0;     // in place of padding, so that equal grains are equal bytes
+  std::uint16_t unused = 0;     // instead of padding, so that equal grains are equal bytes
 
   double area() const { return static_cast<double>(doubled_area) / 2; }
   Strip strip() const { return strip_of({from, to}, area()); }
-  /// A box that holds the rectangle, with some room around it: it is asked for often.
+  /// A box around the rectangle, with some margin so that it is cheap to compute: it is needed
+  /// often.
   Box box() const;
 };
 
-// The rectangle reaches no further beyond its axis than a square of its area would be wide.
+// The rectangle extends beyond its axis by no more than the width of a square of its area.
 inline Box FeatureGrain::box() const {
   const auto reach = static_cast<std::int64_t>(std::sqrt(std::abs(area()))) + 2;
   const auto cell = [](std::int64_t v) {
@@ -44,8 +45,8 @@ inline Box FeatureGrain::box() const {
           cell(std::max(from.x, to.x) + reach), cell(std::max(from.y, to.y) + reach)};
 }
 
-/// By this key grains are in order for the index: those born in the same octave and near each other
-/// on the map are near each other in the array.
+/// Sorts grains for the index: those born in the same octave and near each other on the map are
+/// near each other in the array.
 std::uint64_t order_key(const FeatureGrain& grain);
 
 /// Thread-safety: immutable, any number of threads may read.
@@ -63,7 +64,7 @@ class GrainIndex {
     bool contains(std::uint32_t level) const { return first <= level && level <= last; }
   };
 
-  /// Calls visit(grain) for every grain of these births whose rectangle may meet the box.
+  /// Calls visit(grain) for every grain of these births whose rectangle may intersect the box.
   template <typename Visit>
   void visit(const Box& box, Births births, const Visit& visit) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -75,7 +76,7 @@ class GrainIndex {
     }
   }
 
-  /// As many grains as visit() looks at: at least those that it visits.
+  /// The number of grains that visit() examines: at least as many as it visits.
   std::size_t count_near(const Box& box, Births births) const;
 
   std::span<const FeatureGrain> grains() const { return grains_; }

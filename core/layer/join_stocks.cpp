@@ -21,10 +21,10 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffff;
-constexpr double kMostDoubledArea = 9e18;  // what 64 bits hold
+constexpr double kMostDoubledArea = 9e18;  // the limit of 64 bits
 constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
 
-/// Calls work(begin, end) for pieces of so many items, on up to `threads` threads.
+/// Calls work(begin, end) for chunks of the items, on up to `threads` threads.
 template <typename Work>
 void for_each_piece(std::size_t items, unsigned threads, const Work& work) {
   for_each_in_parallel((items + kItemsAtOnce - 1) / kItemsAtOnce, threads, [&](std::size_t piece) {
@@ -33,8 +33,8 @@ void for_each_piece(std::size_t items, unsigned threads, const Work& work) {
   });
 }
 
-/// A part of a builder, and what leads from indices of its stock to indices of the layer; wraps
-/// around where that is negative.
+/// A part of a builder, with the offsets from indices of its stock to indices of the layer;
+/// negative offsets wrap around.
 struct PartOf {
   const Stock* stock;
   std::size_t part;
@@ -52,8 +52,8 @@ std::span<const T> items_of(const PartOf& part, std::vector<T> History::*items,
   return std::span<const T>(all).subspan(from, to - from);
 }
 
-/// The parts of all builders in the order of features. Their vertices and edges come after so many
-/// that are there already.
+/// The parts of all builders in the order of features. Their vertices and edges follow the given
+/// numbers of existing ones.
 std::vector<PartOf> in_order_of_rows(const std::vector<Stock>& stocks, std::size_t vertices,
                                      std::size_t edges) {
   std::vector<PartOf> parts;
@@ -73,7 +73,7 @@ std::vector<PartOf> in_order_of_rows(const std::vector<Stock>& stocks, std::size
   return parts;
 }
 
-/// Trapezoids in order, and what is known of each.
+/// Trapezoids in order, with their properties.
 struct GrowingMesh {
   std::vector<MeshTrapezoid> trapezoids;
   std::vector<Lifespan> lifespans;
@@ -86,22 +86,23 @@ struct GrowingMesh {
   }
 };
 
-/// The arrays of a layer while they grow. Of a layer that takes over from an earlier one, vertices
-/// and edges begin with all of that one, and the others hold what is new until they are merged.
+/// The arrays of a layer while they grow. If the layer takes over from an earlier one, vertices and
+/// edges begin with all of that one, and the other arrays hold only new content until they are
+/// merged.
 struct GrowingLayer {
   std::vector<Point> vertices;
   std::vector<MeshEdge> edges;
   std::vector<LoopSize> loop_sizes;
   std::vector<MilestoneNote> milestone_notes;
-  // What takes the place of vertices and edges, see order_edges_and_vertices().
+  // These replace vertices and edges, see order_edges_and_vertices().
   std::vector<Point> ordered_vertices;
   std::vector<MeshEdge> ordered_edges;
   GrowingMesh mesh;
-  GrowingMesh horizontal_edges;  // each as a trapezoid without height, between the edge and itself
+  GrowingMesh horizontal_edges;  // each as a trapezoid without height whose sides are both the edge
   Rings outlines;
   std::vector<std::uint32_t> outline_ends;
   std::vector<std::uint32_t> graph_of;  // by row: the first row of its graph
-  std::vector<FeatureOverlap> known;    // of features that are not compared
+  std::vector<FeatureOverlap> known;    // between features that are not compared
 };
 
 FeatureGrain stored(const Grain& grain) {
@@ -110,9 +111,9 @@ FeatureGrain stored(const Grain& grain) {
           grain.row,       grain.born,    grain.is_covered};
 }
 
-/// Appends one array of the histories to what is there, and frees it there: so no more than one of
-/// them is held twice. `renumber` changes an item from indices of its stock to indices of the
-/// layer.
+/// Appends one array of the histories to the existing items and frees it there, so that no more
+/// than one of them is held twice. `renumber` converts an item from indices of its stock to indices
+/// of the layer.
 template <class T, class Renumber>
 std::vector<T> take_items(std::vector<Stock>& stocks, const std::vector<PartOf>& parts,
                           std::vector<T> History::*items, std::size_t Stock::Part::*begin,
@@ -132,7 +133,7 @@ std::vector<T> take_items(std::vector<Stock>& stocks, const std::vector<PartOf>&
   return all;
 }
 
-/// Throws if there is more of anything together than 32 bits count.
+/// Throws if the total number of items of any kind exceeds what 32 bits can count.
 void check_counts(const std::vector<Stock>& stocks, const LayerArrays& earlier) {
   LayerSize size;
   size.vertices = earlier.vertices.size();
@@ -155,7 +156,7 @@ void check_counts(const std::vector<Stock>& stocks, const LayerArrays& earlier) 
   require_countable(2 * grains, "loops that become dust");
 }
 
-/// By row, the first row of the graph that the feature is a part of.
+/// By row: the first row of the graph to which the feature belongs.
 void note_graphs(const std::vector<PartOf>& parts, const TakenOver& taken,
                  std::vector<std::uint32_t>& graph_of) {
   const auto note = [&graph_of](std::uint32_t row, std::uint32_t graph) {
@@ -182,7 +183,7 @@ std::vector<FeatureGrain> take_grains(std::vector<Stock>& stocks,
   return grains;
 }
 
-/// Those of the earlier layer, of dust among them; what is not used goes later.
+/// Starts with the items of the earlier layer, including dust; unused ones are removed later.
 void begin_with(const LayerArrays& earlier, GrowingLayer& layer) {
   const OutlineView& outline = earlier.outline;
   layer.loop_sizes.assign(outline.loop_sizes.begin(), outline.loop_sizes.end());
@@ -239,13 +240,13 @@ void concatenate_histories(std::vector<Stock>& stocks, const std::vector<PartOf>
   }
 }
 
-/// The outlines of all builders, and those that are taken over, in the order of features.
+/// The outlines of all builders and those taken over, in the order of features.
 void concatenate_outlines(const std::vector<Stock>& stocks, const TakenOver& taken,
                           GrowingLayer& layer) {
   struct Source {
     std::uint32_t row;
     std::uint32_t earlier_row;
-    const Stock* stock;  // null if it is taken over
+    const Stock* stock;  // null if the feature is taken over
     const Stock::Outline* outline;
   };
   std::vector<Source> sources;
@@ -274,7 +275,7 @@ void concatenate_outlines(const std::vector<Stock>& stocks, const TakenOver& tak
   }
 }
 
-/// By row, around the feature.
+/// By row: the bounding box of the feature.
 std::vector<Box> boxes_of(const GrowingLayer& layer) {
   std::vector<Box> boxes(layer.graph_of.size());
   std::size_t ring = 0;
@@ -286,13 +287,13 @@ std::vector<Box> boxes_of(const GrowingLayer& layer) {
   return boxes;
 }
 
-/// Whether it is known which of the features that are taken over lie over each other. How much they
-/// do depends on which is looked at first, by roundings.
+/// Whether the overlaps between features taken over are known. Because of rounding, their extent
+/// depends on which feature of a pair is examined first.
 bool are_overlaps_known(const TakenOver& taken) {
   return !taken.empty() && taken.earlier().layer().has_all_overlaps() && taken.keeps_order();
 }
 
-/// The pairs of features of which both are taken over; those with a face in common, or all.
+/// The pairs of features that are both taken over: those that share a face, or all.
 void take_overlaps(const TakenOver& taken, bool all, std::vector<FeatureOverlap>& overlaps) {
   if (taken.empty()) return;
   if (!all && !taken.earlier().layer().overlaps().are_any_in_common()) return;
@@ -304,8 +305,8 @@ void take_overlaps(const TakenOver& taken, bool all, std::vector<FeatureOverlap>
   }
 }
 
-/// By row, features that are not to be compared with each other: those of one graph, and all that
-/// are taken over if it is known which of them overlap.
+/// By row: features of the same kind are not compared with each other. These are the features of
+/// one graph, and all features taken over if the overlaps between them are known.
 std::vector<std::uint32_t> kinds_to_compare(const TakenOver& taken, bool are_known,
                                             const std::vector<std::uint32_t>& graph_of) {
   std::vector<std::uint32_t> kinds = graph_of;
@@ -320,7 +321,7 @@ struct Dust {
   std::vector<Mote> motes;
 };
 
-/// The order of `count` items by key; of equal keys, by index.
+/// The order of `count` items by key, then by index.
 template <typename KeyOf>
 LargeArray<KeyedIndex> order_by(std::size_t count, const KeyOf& key_of, unsigned threads) {
   LargeArray<KeyedIndex> order(count);
@@ -332,7 +333,7 @@ LargeArray<KeyedIndex> order_by(std::size_t count, const KeyOf& key_of, unsigned
   return order;
 }
 
-/// New trapezoids, or horizontal edges, in order for the index.
+/// The order of new trapezoids, or horizontal edges, for the index.
 LargeArray<KeyedIndex> order_for_index(const GrowingMesh& mesh, const MeshView& view,
                                        unsigned threads) {
   const auto key_of = [&](std::size_t i) {
@@ -341,16 +342,16 @@ LargeArray<KeyedIndex> order_for_index(const GrowingMesh& mesh, const MeshView& 
   return order_by(mesh.trapezoids.size(), key_of, threads);
 }
 
-/// A piece of an array in order: items of the earlier layer, of which those that are not taken over
-/// are to be left out, or one that is new.
+/// A run in an ordered array: items of the earlier layer, of which those not taken over must be
+/// left out, or one new item.
 struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
   bool is_fresh = false;
 };
 
-/// Adds what is new, in that order, and those trapezoids of the earlier layer from the first up to
-/// the second of `range` that are taken over.
+/// Adds the new items, in that order, and those trapezoids of the earlier layer within `range` (the
+/// second bound is excluded) that are taken over.
 void add_in_order(const TakenOver& taken, std::pair<std::size_t, std::size_t> range,
                   const GrowingMesh& fresh, const LargeArray<KeyedIndex>& order,
                   const std::vector<std::uint32_t>& graph_of, GrowingMesh& mesh, unsigned threads) {
@@ -417,8 +418,8 @@ std::size_t count_taken(const TakenOver& taken, unsigned threads) {
   return count;
 }
 
-/// Puts trapezoids in order for the index, those that are taken over among them, and behind them
-/// the horizontal edges, with room for so many motes. Returns the number of trapezoids.
+/// Puts trapezoids, including those taken over, in order for the index, followed by the horizontal
+/// edges, with room for so many motes. Returns the number of trapezoids.
 std::uint32_t order_mesh(const TakenOver& taken, std::size_t motes, GrowingLayer& layer,
                          unsigned threads) {
   const GrowingMesh fresh = std::exchange(layer.mesh, {});
@@ -440,13 +441,13 @@ std::uint32_t order_mesh(const TakenOver& taken, std::size_t motes, GrowingLayer
   add_in_order(taken, {0, polygons}, fresh, order, layer.graph_of, mesh, threads);
   const auto trapezoids = static_cast<std::uint32_t>(mesh.trapezoids.size());
   add_in_order(taken, {polygons, all}, edges, edge_order, layer.graph_of, mesh, threads);
-  // Of a file that is cut off there may be more than was counted.
+  // In a truncated file there may be more than were counted.
   mesh.trapezoids.reserve(mesh.trapezoids.size() + motes);
   mesh.lifespans.reserve(mesh.lifespans.size() + motes);
   return trapezoids;
 }
 
-/// Puts grains in order for the index, those that are taken over among them.
+/// Puts grains, including those taken over, in order for the index.
 void order_grains(const TakenOver& taken, const std::vector<std::uint32_t>& graph_of,
                   std::vector<FeatureGrain>& grains) {
   const LargeArray<KeyedIndex> order = order_by(
@@ -477,14 +478,14 @@ void order_grains(const TakenOver& taken, const std::vector<std::uint32_t>& grap
   grains.swap(ordered);
 }
 
-/// New numbers of edges and vertices, in the order in which the trapezoids use them, so that what
-/// is drawn together lies together in memory; kUnused if they go.
+/// New numbers of edges and vertices, in the order in which the trapezoids use them, so that items
+/// drawn together are near each other in memory; kUnused for those that are removed.
 struct Numbering {
   std::vector<std::uint32_t> edges;
   std::vector<std::uint32_t> vertices;
 };
 
-/// Numbers edges and vertices anew; the trapezoids are not changed. There is room for so many motes
+/// Renumbers edges and vertices; the trapezoids are not changed. Reserves room for so many motes
 /// after them.
 Numbering order_edges_and_vertices(std::size_t motes, GrowingLayer& layer) {
   Numbering number;
@@ -529,7 +530,7 @@ Numbering order_edges_and_vertices(std::size_t motes, GrowingLayer& layer) {
   return number;
 }
 
-/// Puts the ordered edges and vertices in place of those that there were.
+/// Replaces the edges and vertices by the ordered ones.
 void renumber(const Numbering& number, GrowingLayer& layer, unsigned threads) {
   layer.edges = std::move(layer.ordered_edges);
   layer.vertices = std::move(layer.ordered_vertices);
@@ -542,7 +543,7 @@ void renumber(const Numbering& number, GrowingLayer& layer, unsigned threads) {
   });
 }
 
-/// Those of each vertex together, in the order in which they were noted: in that of levels.
+/// Groups milestones by vertex, in the order in which they were noted, which is that of levels.
 void order_milestones(GrowingLayer& layer, LayerContents& to) {
   std::vector<std::uint32_t> ends(layer.ordered_vertices.size() + 1, 0);
   for (const MilestoneNote& note : layer.milestone_notes) {
@@ -558,7 +559,7 @@ void order_milestones(GrowingLayer& layer, LayerContents& to) {
     levels[place] = note.level;
   }
   layer.milestone_notes = {};
-  // Where those of a vertex began, they end by now.
+  // The begin of each vertex has advanced to its end.
   ends.pop_back();
   ends.shrink_to_fit();
   to.milestone_ends = std::move(ends);
@@ -627,8 +628,9 @@ void move_units(const std::vector<Stock>& stocks, LayerContents& layer) {
   layer.group_overlaps = std::move(all.overlaps);
 }
 
-/// What all builders take over. Of features with the same rings, each could have got the history of
-/// any: here they get them in order, so that what was in order is so again.
+/// Everything that the builders take over. Features with the same rings could each have received
+/// the history of any of them: here they get them in order, so that an order that was kept so far
+/// stays so.
 TakenOver take_over(const std::vector<Stock>& stocks, const EarlierLayer* earlier) {
   std::vector<TakenRow> rows;
   std::vector<Stock::Double> doubles;

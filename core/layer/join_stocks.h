@@ -1,5 +1,5 @@
-// Makes a layer of what its builders hold, and of what is taken over from an earlier one. Private
-// to LayerBuilder.
+// Makes a layer from the contents of its builders and the content taken over from an earlier one.
+// Private to LayerBuilder.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@
 
 namespace trapeze {
 
-/// The layer does not depend on which stock holds what, nor on what of it is taken over from
-/// `earlier`, which is null if nothing is, nor on the number of threads. Calls `progress`, if there
-/// is one, with the share of the time that has gone. Throws std::length_error if there are more of
-/// anything than 32 bits count.
+/// The layer depends neither on how content is distributed over the stocks, nor on how much of it
+/// is taken over from `earlier` (null if nothing is), nor on the number of threads. Calls
+/// `progress`, if given, with the elapsed fraction of the time. Throws std::length_error if there
+/// are more items of any kind than 32 bits can count.
 std::unique_ptr<Layer> join_stocks(std::vector<Stock> stocks, const EarlierLayer* earlier,
                                    const LayerOptions& options, FeatureTable features,
                                    const std::function<void(double)>& progress, unsigned threads);

@@ -9,7 +9,7 @@
 namespace trapeze {
 namespace {
 
-// What the tolerance has made that is larger than pixels are the later_births().
+// Anything larger than a pixel because of the tolerance belongs to the later_births().
 Level resolution_of(const Layer::Selection& selection) {
   return std::min(selection.level, selection.pixel_level);
 }
@@ -118,11 +118,11 @@ bool Layer::has_all_overlaps() const {
 }
 
 bool Layer::fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const {
-  // Dust may take area away.
+  // Dust may subtract area.
   return !have_dust(ranges) && cover_box(contents_->view, ranges, selection.box);
 }
 
-// Of what was built whole, dust comes last.
+// In content that was built whole, dust comes last.
 bool Layer::have_dust(std::span<const TrapezoidRange> ranges) const {
   if (ranges.empty()) return false;
   if (contents_->is_whole())
@@ -155,7 +155,7 @@ void Layer::append_outline(std::uint32_t row, Rings& rings) const {
   const RingRange range = c.rings_of(row);
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
     const std::uint32_t begin = i == 0 ? 0 : c.ring_ends[i - 1];
-    // Of a file that is cut off while it is mapped, ends may read as zero.
+    // In a file that is truncated while it is mapped, ends may read as zero.
     const std::uint32_t end = std::max(begin, c.ring_ends[i]);
     rings.add(std::span(c.outline_points).subspan(begin, end - begin));
   }

@@ -1,4 +1,5 @@
-// A layer ready to be drawn: the trapezoids of all its polygons, where they are, and its features.
+// A layer ready to be drawn: the trapezoids of all its polygons, their spatial index, and its
+// features.
 //
 // Thread-safety: immutable; any number of threads may read.
 #pragma once
@@ -23,9 +24,9 @@ namespace trapeze {
 
 struct LayerContents;  // the stored arrays
 
-/// What becomes of polygons, and of holes, that are too small for a tolerance.
+/// How polygons and holes that are too small for a tolerance are treated.
 enum class SmallPolygons : std::uint8_t {
-  dust,  // their area is kept as covered area where they were
+  dust,  // their area is kept as covered area in place
   keep,  // the caller draws them large enough to be seen, see Layer::small_polygons
   drop,  // they are left out
 };
@@ -46,92 +47,92 @@ class Layer {
   Layer& operator=(const Layer&) = delete;
 
   const FeatureTable& features() const;
-  /// The smallest box that holds all polygons; empty if there are none.
+  /// The bounding box of all polygons; empty if there are none.
   const Box& bounds() const;
   const MeshView& mesh() const;
-  /// By trapezoid of the mesh: the levels at which it is part of it; of dust, the resolutions.
+  /// By trapezoid of the mesh: the levels at which it is part of the mesh; for dust, the
+  /// resolutions.
   std::span<const Lifespan> lifespans() const;
-  /// Of the edges and vertices of the mesh, those of dust left out.
+  /// For the edges and vertices of the mesh, except those of dust.
   const OutlineView& outline() const;
 
-  /// The part of the mesh that is asked for.
+  /// The requested part of the mesh.
   struct Selection {
     Box box;
     Level level = 0;  // of tolerance
-    /// The level of a quarter of a pixel: dust is merged within pixels of this size, however much
-    /// greater the tolerance is.
+    /// The level whose tolerance is a quarter of a pixel: dust is merged within pixels of this
+    /// size, however much greater the tolerance is.
     Level pixel_level = kLastLevel;
     SmallPolygons small = SmallPolygons::dust;
 
-    /// Grains that are larger than a pixel, as the tolerance is: select() does not find them. None
-    /// unless it is greater than a quarter of a pixel.
+    /// Grains that are larger than a pixel because the tolerance is; select() does not find them.
+    /// None unless the tolerance is greater than a quarter of a pixel.
     GrainIndex::Births later_births() const;
   };
 
   /// Replaces `ranges` by the trapezoids of the mesh at the level that may touch the box, with or
-  /// without those that stand for dust, as disjoint ranges in ascending order. Never leaves out a
-  /// trapezoid whose interior meets the box; may name a few that do not. In a trapezoid of dust
-  /// that stands for holes, left and right edges are swapped: its area is negative.
+  /// without those that represent dust, as disjoint ranges in ascending order. Never omits a
+  /// trapezoid whose interior intersects the box; may include a few that do not. In a dust
+  /// trapezoid that represents holes, left and right edges are swapped: its area is negative.
   ///
-  /// A place that several features of a coverage have in common (FeatureOverlap::in_common()) has a
+  /// A place that several features of a coverage share (FeatureOverlap::in_common()) has a
   /// trapezoid for each, one after the other, the uppermost last; see have_in_common() and
   /// keep_uppermost().
   void select(const Selection& selection, std::vector<TrapezoidRange>& ranges) const;
 
-  /// Of places that features have in common, leaves the trapezoid of the uppermost feature only:
-  /// for drawing all features alike, in which each place counts once. `ranges` as select() found
-  /// them.
+  /// Where features share a place, keeps only the trapezoid of the uppermost feature. For drawing
+  /// all features alike, where each place counts once. `ranges` is the result of select().
   void keep_uppermost(std::vector<TrapezoidRange>& ranges) const;
 
-  /// Whether two of the trapezoids that select() finds are one place that two features have in
-  /// common.
+  /// Whether two of the trapezoids found by select() are the same place, shared by two features.
   bool have_in_common(std::uint32_t one, std::uint32_t other) const;
 
   /// Replaces `ranges` by the horizontal edges of the boundary at the level that may touch the box,
   /// as trapezoids without height whose left and right sides are the edge. All other edges of the
-  /// boundary are sides of trapezoids that select() finds.
+  /// boundary are sides of trapezoids found by select().
   void select_horizontal_edges(const Box& box, Level level,
                                std::vector<TrapezoidRange>& ranges) const;
 
-  /// About how many trapezoids select() finds, see MeshIndex::estimate().
+  /// Approximately how many trapezoids select() finds, see MeshIndex::estimate().
   std::uint64_t estimate_trapezoids(const Selection& selection) const;
-  /// About how many select_horizontal_edges() finds.
+  /// Approximately how many edges select_horizontal_edges() finds.
   std::uint64_t estimate_horizontal_edges(const Selection& selection) const;
 
-  /// What small polygons and holes left behind, feature by feature: the dust that select() finds,
-  /// before any of it is merged, and the later_births().
+  /// What small polygons and holes left behind, by feature: the dust found by select(), before any
+  /// of it is merged, and the later_births().
   const GrainIndex& grains() const;
 
-  /// Which features lie over each other.
+  /// The pairs of features that overlap.
   const OverlapTable& overlaps() const;
-  /// False if there were too many to find them all: of the others, neither lies over the other.
+  /// False if there were too many overlaps to find them all. For pairs that were not found, neither
+  /// feature counts as above the other.
   bool has_all_overlaps() const;
 
-  /// True only if the ranges that were selected cover the whole box of the selection, so that it is
-  /// filled without being drawn; may be false although they do.
+  /// True only if the selected ranges cover the whole box of the selection, so that it can be
+  /// filled without drawing them. May be false although they do.
   bool fill_box(const Selection& selection, std::span<const TrapezoidRange> ranges) const;
 
-  /// Whether any of the trapezoids that were selected stands for dust.
+  /// Whether any of the selected trapezoids represents dust.
   bool have_dust(std::span<const TrapezoidRange> ranges) const;
 
-  /// Replaces `places` by boxes around what is left of the small polygons of the selection, several
-  /// in one pixel being merged.
+  /// Replaces `places` by boxes around the remains of the small polygons of the selection; several
+  /// in one pixel are merged.
   void small_polygons(const Selection& selection, std::vector<Box>& places) const;
 
-  /// The boundary of feature `row` as it was built, on the grid; appended to `rings`. Of one that
-  /// is removed, as it was.
+  /// Appends the boundary of feature `row` as built, on the grid, to `rings`. For a removed
+  /// feature, the former boundary.
   void append_outline(std::uint32_t row, Rings& rings) const;
 
-  /// The row, in features(), of the polygon that a trapezoid, or a horizontal edge, is a part of;
+  /// The row, in features(), of the polygon to which a trapezoid or a horizontal edge belongs;
   /// kNoFeature for dust.
   std::uint32_t feature_of(std::uint32_t trapezoid) const;
 
-  /// Whether the feature of that row is no longer there: see LayerPatcher.
+  /// Whether the feature of that row has been removed: see LayerPatcher.
   bool is_removed(std::uint32_t row) const;
 
   LayerSize size() const;
 
-  /// Memory held by geometry and index, in bytes: heap, or mapped. Attributes are counted by
+  /// Memory held by geometry and index, in bytes: heap, or mapped. For attributes see
   /// features().memory().
   std::size_t memory() const;
 

@@ -12,20 +12,20 @@ namespace trapeze {
 namespace {
 
 constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;
-constexpr std::size_t kMostItems = 0xffffffff;  // what indices of 32 bits can tell apart
+constexpr std::size_t kMostItems = 0xffffffff;  // what 32-bit indices can distinguish
 
 void require(bool condition, const char* words) {
   if (!condition) throw std::invalid_argument(words);
 }
 
-/// Whether holds(item) for all items, looked at on all cores.
+/// Whether holds(item) is true for all items, checked on all cores.
 template <typename T, typename Holds>
 bool all_of(std::span<const T> items, const Holds& holds) {
   std::atomic<bool> result = true;
   const std::size_t pieces = (items.size() + kItemsAtOnce - 1) / kItemsAtOnce;
   for_each_in_parallel(pieces, pieces, [&](std::size_t piece) {
     const std::size_t begin = piece * kItemsAtOnce;
-    bool holds_here = true;  // without an early end, so that the loop can be vectorised
+    bool holds_here = true;  // no early exit, so that the loop can be vectorized
     for (const T& item : items.subspan(begin, std::min(kItemsAtOnce, items.size() - begin))) {
       holds_here &= holds(item);
     }
@@ -42,7 +42,7 @@ bool is_sorted_up_to(std::span<const std::uint32_t> ends, std::size_t end) {
   return std::ranges::is_sorted(ends) && (ends.empty() || ends.back() <= end);
 }
 
-/// A trapezoid then lies between its edges: nothing is divided by zero, and no point is off the
+/// Then the trapezoid lies between its edges: nothing is divided by zero, and no point is off the
 /// grid.
 bool lies_between_its_edges(const LayerArrays& a, const MeshTrapezoid& t) {
   const std::int32_t top = a.vertices[t.top].y;

@@ -1,4 +1,4 @@
-// The contents of a layer as flat arrays, which can be stored, and mapped again without copying.
+// The contents of a layer as flat arrays, which can be stored and mapped again without copying.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@
 
 namespace trapeze {
 
-/// The spans are views of memory that something else owns.
+/// The spans are views of memory owned by others.
 struct LayerArrays {
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
-  // In this order: of polygons, for horizontal edges, of single motes, of merged motes.
+  // In this order: polygons, horizontal edges, single motes, merged motes.
   std::span<const MeshTrapezoid> trapezoids;
   std::span<const Lifespan> lifespans;
-  std::span<const std::uint32_t> feature_of;  // of those of polygons and for horizontal edges
-  OutlineView outline;                        // of edges and vertices without those of dust
+  std::span<const std::uint32_t> feature_of;  // of the trapezoids of polygons and horizontal edges
+  OutlineView outline;                        // of edges and vertices except those of dust
   std::span<const MeshIndex::Entry> polygon_index;
   std::span<const MeshIndex::Entry> horizontal_edge_index;
   std::span<const MeshIndex::Entry> mote_index;
@@ -46,16 +46,16 @@ struct LayerArrays {
   LayerOptions options;
 };
 
-/// The arrays of a layer, which must outlive their use. It was built whole (see LayerPatcher).
+/// The arrays of a layer, which must outlive their use. The layer was built whole (see
+/// LayerPatcher).
 LayerArrays arrays_of(const Layer& layer);
 
-/// A layer that looks at the arrays and keeps `mapping` while it lives. Equal to the one that the
-/// arrays were taken from: draws the same, answers the same.
+/// A layer that is a view of the arrays and keeps `mapping` alive while it lives. It equals the
+/// layer from which the arrays were taken: it draws the same and returns the same results.
 ///
-/// Checks every item, on all cores, and throws std::invalid_argument, saying what is wrong, if an
-/// index is out of range or a trapezoid does not lie between its edges on the grid. No use of a
-/// layer that is returned reads beyond the arrays, whoever wrote them. They must not change during
-/// its lifetime.
+/// Checks every item, on all cores, and throws std::invalid_argument with the reason if an index is
+/// out of range or a trapezoid does not lie between its edges on the grid. No use of the returned
+/// layer reads beyond the arrays, whoever wrote them. They must not change during its lifetime.
 std::unique_ptr<Layer> layer_from(const LayerArrays& arrays, std::shared_ptr<const void> mapping);
 
 }  // namespace trapeze

@@ -11,12 +11,12 @@
 namespace trapeze {
 namespace {
 
-// Of the time that building takes, what is spent until there is a graph; measured on countries and
-// land use.
+// Fractions of the building time until the graph exists, measured on countries and land use.
 constexpr double kGraphShare = 0.25;     // of a single feature
 constexpr double kAssemblyShare = 0.45;  // of features that share borders
 
-/// Of every two features that have a face in common, once for either, however many faces they have.
+/// Notes every pair of features that share a face, once for each of the two, however many faces
+/// they share.
 void note_shared(const FaceFeatures& rows, std::vector<FeatureOverlap>& shared) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (const std::vector<std::uint32_t>& features : rows.shared()) {
@@ -35,7 +35,7 @@ void note_shared(const FaceFeatures& rows, std::vector<FeatureOverlap>& shared) 
 }
 
 std::uint32_t stored(std::size_t count) {
-  return static_cast<std::uint32_t>(count);  // of what has been found countable before
+  return static_cast<std::uint32_t>(count);  // known to be countable
 }
 
 FeatureUnit unit_of(const Digest& digest, std::uint32_t row, const BuildOutcome& outcome,
@@ -95,7 +95,7 @@ Assembly assembly_of(const BuiltUnitsView& units, std::uint32_t number) {
   outcome.is_crowded = unit.is_crowded != 0;
   outcome.areas.resize(members.size());
   for (const GroupOverlap& overlap : units.overlaps_of(number)) {
-    if (std::max(overlap.lower, overlap.upper) >= members.size()) continue;  // of a spoilt file
+    if (std::max(overlap.lower, overlap.upper) >= members.size()) continue;  // of a damaged file
     outcome.overlaps.push_back({overlap.lower, overlap.upper, std::bit_cast<double>(overlap.area)});
     outcome.areas[overlap.lower] = std::bit_cast<double>(overlap.lower_area);
   }
@@ -243,7 +243,7 @@ std::unique_ptr<Layer> LayerBuilder::join(std::vector<LayerBuilder>& builders,
   std::vector<Stock> stocks;
   for (LayerBuilder& builder : builders) {
     stocks.push_back(std::move(builder.state_->stock));
-    builder = LayerBuilder(builder.state_->options);  // what building took is given back
+    builder = LayerBuilder(builder.state_->options);  // frees the memory used for building
   }
   return join_stocks(std::move(stocks), earlier, options, std::move(features), progress, threads);
 }

@@ -1,5 +1,5 @@
-// From rings to a layer: every feature's polygon is trapezoidated, generalized through all levels,
-// and the history of its graph stored for drawing.
+// From rings to a layer: every feature's polygon is trapezoidated and generalized through all
+// levels, and the history of its graph is stored for drawing.
 #pragma once
 
 #include <cstddef>
@@ -23,15 +23,15 @@
 
 namespace trapeze {
 
-/// Builds the graphs of many features one after another and keeps the result. Use one builder a
+/// Builds the graphs of many features one after another and keeps the result. Use one builder per
 /// thread and join them at the end: the joined layer does not depend on which builder got which
 /// feature.
 class LayerBuilder {
  public:
-  /// Tells `share`, if there is one, how far it is with what it adds. What has the same rings as in
-  /// `earlier`, if there is one, is taken over from there and not built: the outcomes and the layer
-  /// are the same. It was built with equal options by the same program, and is that of all builders
-  /// that are joined. Both must outlive the builder, and `earlier` the joining.
+  /// Reports progress to `share`, if given. Content with the same rings as in `earlier`, if given,
+  /// is taken over from there and not built; the outcomes and the layer are the same. `earlier`
+  /// must have been built with equal options by the same program, and must be the same for all
+  /// builders that are joined. Both must outlive the builder, and `earlier` also the joining.
   explicit LayerBuilder(const LayerOptions& options = {}, WorkShare* share = nullptr,
                         EarlierLayer* earlier = nullptr);
   ~LayerBuilder();
@@ -39,30 +39,31 @@ class LayerBuilder {
   LayerBuilder& operator=(LayerBuilder&&) noexcept;
 
   /// Builds the graph of feature `row` from its rings, whatever their state: duplicates, spikes and
-  /// collapsed rings are dropped, crossings and touches noded on the grid, inside is even-odd.
-  /// `rings` is used as scratch memory. Never throws for bad geometry: see the outcome. On up to
-  /// `threads` threads, on which nothing depends.
+  /// collapsed rings are dropped, crossings and touches are noded on the grid, and inside is
+  /// even-odd. `rings` is used as scratch memory. Never throws for bad geometry: see the outcome.
+  /// Runs on up to `threads` threads; the result does not depend on their number.
   BuildOutcome add(std::uint32_t row, Rings& rings, unsigned threads = 1);
 
-  /// Builds one graph of those features of a group that can live in one, see assemble(): the
-  /// others, and none of these, are to be added by themselves. `rows` are in ascending order; the
-  /// rings are clean. On up to `threads` threads. Where the group is taken over, the outcome lacks
-  /// the faces, and the areas of features that do not lie under others. `classes` are of what may
-  /// become a block, see LayerOptions::merging(); by feature, or empty.
+  /// Builds one graph of those features of a group that can share one, see assemble(). The others
+  /// must be added separately, and none of these. `rows` are in ascending order; the rings are
+  /// clean. Runs on up to `threads` threads. If the group is taken over, the outcome lacks the
+  /// faces and the areas of features that are not below others. `classes` are the classes for
+  /// merging into blocks, see LayerOptions::merging(); by feature, or empty.
   Assembly add_coverage(std::span<const std::uint32_t> rows, std::span<const Rings* const> features,
                         unsigned threads = 1, std::span<const std::uint64_t> classes = {});
 
-  /// The tolerance (cells) from which on what was added last is not simplified any further, since
-  /// that would take too long; none as a rule. See HistoryRecorder::record().
+  /// The tolerance (cells) from which on the most recently added unit is not simplified any further
+  /// because that would take too long; usually none. See HistoryRecorder::record().
   std::optional<double> most_tolerance() const;
 
   /// How many features have been taken over.
   std::size_t taken_over() const;
 
-  /// Joins what the builders hold into one layer; the builders are empty afterwards. All were made
-  /// with the same options. Calls `progress`, if there is one, with the share of the time that has
-  /// gone. On up to `threads` threads, on which nothing depends. Throws std::length_error if there
-  /// are more of anything than 32 bits count; so do add() and add_coverage().
+  /// Joins the contents of the builders into one layer; the builders are empty afterwards. All were
+  /// made with the same options. Calls `progress`, if given, with the elapsed fraction of the time.
+  /// Runs on up to `threads` threads; the result does not depend on their number. Throws
+  /// std::length_error if there are more items of any kind than 32 bits can count; so do add() and
+  /// add_coverage().
   static std::unique_ptr<Layer> join(std::vector<LayerBuilder>& builders, FeatureTable features,
                                      const std::function<void(double)>& progress = {},
                                      unsigned threads = 1);

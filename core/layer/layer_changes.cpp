@@ -47,7 +47,7 @@ std::uint64_t hash_of(const Value& value) {
 
 using HashedPlaces = std::vector<std::pair<std::uint64_t, LayerChanges::Place>>;
 
-/// What is to be compared of a layer.
+/// The content of a layer that is compared.
 class Summary {
  public:
   Summary(const Layer& layer, Ids ids) : layer_(layer) {
@@ -56,14 +56,15 @@ class Summary {
     hash_features();
   }
 
-  /// The features whose hashes come more often here than there.
+  /// The features whose hashes occur more often here than there.
   std::vector<std::uint32_t> rows_without_equal(const Summary& other) const;
-  /// Appends those of them, with weights of that sign.
+  /// Appends the sides of these features, with weights of that sign.
   void append_sides(std::span<const std::uint32_t> rows, bool is_after,
                     std::vector<LayerChanges::Side>& sides) const;
-  /// Sides without height, which only outlines are drawn along, and dust, feature by feature.
+  /// Appends sides without height, along which only outlines are drawn, and dust, feature by
+  /// feature.
   void append_places(std::span<const std::uint32_t> rows, HashedPlaces& places) const;
-  /// What stands for dust that features share.
+  /// Appends the trapezoids that represent dust shared by features.
   void append_motes(HashedPlaces& places) const;
   void append_pairs(HashedPlaces& places) const;
 
@@ -83,7 +84,7 @@ class Summary {
   std::size_t rows() const { return layer_.features().size(); }
   const MeshView& mesh() const { return layer_.mesh(); }
   const LayerContents& contents() const { return layer_.contents(); }
-  /// Calls visit(trapezoid) for all trapezoids of one of the kinds that are there at some level.
+  /// Calls visit(trapezoid) for all trapezoids of one of the kinds that exist at some level.
   template <typename Visit>
   void for_each(MeshIndex MeshSegment::*kind, const Visit& visit) const;
   std::uint64_t spans_of(std::size_t trapezoid) const;
@@ -91,7 +92,7 @@ class Summary {
   const Layer& layer_;
   std::vector<std::uint64_t> edge_hashes_;
   std::vector<std::uint64_t> outlines_;    // by edge, see LayerChanges::Side::outline
-  std::vector<std::uint64_t> identities_;  // by row: of attributes, and ids if they matter
+  std::vector<std::uint64_t> identities_;  // by row: of attributes, and of ids if they matter
   std::vector<SetHash> hashes_;            // by row
   std::vector<Box> boxes_;                 // by row
 };
@@ -127,7 +128,7 @@ void Summary::hash_identities(Ids ids) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       hash.add({names[i], hash_of(features.value(row, static_cast<int>(i))), 1});
     }
-    identities_.push_back(hash.digest().low | 1);  // no multiple of it is 0 but that by 2^64
+    identities_.push_back(hash.digest().low | 1);  // no multiple of it is 0, except that by 2^64
   }
 }
 
@@ -142,7 +143,7 @@ void Summary::for_each(MeshIndex MeshSegment::*kind, const Visit& visit) const {
   }
 }
 
-/// The heights of a trapezoid, and when it is there.
+/// The heights of a trapezoid, and its lifespan.
 std::uint64_t Summary::spans_of(std::size_t trapezoid) const {
   const MeshTrapezoid& t = mesh().trapezoids[trapezoid];
   const Lifespan lifespan = contents().lifespans[trapezoid];
@@ -264,14 +265,14 @@ void Summary::append_motes(HashedPlaces& places) const {
 
 void Summary::append_pairs(HashedPlaces& places) const {
   for (const FeatureOverlap& pair : layer_.overlaps().pairs()) {
-    if (pair.row > pair.other) continue;  // the one that is above the other
+    if (pair.row > pair.other) continue;  // the one above
     places.emplace_back(hash_of(hashes_[pair.row].digest().low, hashes_[pair.other].digest().low,
                                 std::uint64_t{pair.width} << 32 | pair.along),
                         LayerChanges::Place{boxes_[pair.row], kAlways, false, boxes_[pair.other]});
   }
 }
 
-/// Appends those that one of the states has more often than the other.
+/// Appends the places that one of the states has more often than the other.
 void append_different(HashedPlaces& before, HashedPlaces& after,
                       std::vector<LayerChanges::Place>& places) {
   const auto hash = [](const auto& item) { return item.first; };
@@ -291,7 +292,7 @@ void append_different(HashedPlaces& before, HashedPlaces& after,
   }
 }
 
-/// A piece of an edge on which something is different.
+/// A piece of an edge along which something differs.
 struct Piece {
   Point upper;
   Point lower;
@@ -302,7 +303,7 @@ struct Piece {
   double x_at(double y) const { return EdgeLine(upper, lower).x_at(y); }
 };
 
-/// The pieces of edges at a level that the states do not have in common.
+/// The pieces of edges at a level that only one of the states has.
 std::vector<Piece> pieces_at(const LayerChanges& changes, Level level) {
   using Side = LayerChanges::Side;
   std::vector<const Side*> alive;
@@ -346,7 +347,7 @@ class TileMarks {
         last_((std::int64_t{1} << drawing.zoom) - 1),
         most_(most) {}
 
-  /// Where the boxes of the place lie, and near it.
+  /// Marks the tiles of the place and those near it.
   void mark(const LayerChanges::Place& place) {
     Range range = range_of(place.box);
     if (!place.other.is_empty()) {
@@ -359,7 +360,7 @@ class TileMarks {
       mark_row(row, range.first_column, range.last_column);
     }
   }
-  /// Whatever the piece comes near to.
+  /// Marks the tiles that the piece comes near to.
   void mark(const Piece& piece) {
     const std::int64_t last_row = tile_at(static_cast<double>(piece.bottom) + reach_);
     for (std::int64_t row = tile_at(static_cast<double>(piece.top) - reach_); row <= last_row;
@@ -371,7 +372,8 @@ class TileMarks {
       mark_row(row, tile_at(std::min(from, to) - reach_), tile_at(std::max(from, to) + reach_));
     }
   }
-  /// From where on, in the rows that it passes, the piece counts for all that lies east of it.
+  /// Determines from which tile on, in the rows that it passes, the piece counts for everything
+  /// east of it.
   void cover(const Piece& piece) {
     const std::int64_t last_row = tile_at(static_cast<double>(piece.bottom - 1));
     for (std::int64_t row = tile_at(static_cast<double>(piece.top)); row <= last_row; ++row) {

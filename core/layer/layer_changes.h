@@ -1,11 +1,11 @@
-// What may look different in one state of a layer than in another, and in which tiles.
+// Where two states of a layer may look different, and in which tiles.
 //
-// Features are compared by what is drawn of them and by their attributes: not by where they stand
-// in the layer, unless others lie over them. Of those that are not the same in both states,
-// the sides of trapezoids are compared, so that what was cut otherwise but covers the same place in
-// the same way is no change.
+// Features are compared by their drawn geometry and by their attributes; their position in the
+// layer matters only if others overlap them. For features that differ between both states, the
+// sides of trapezoids are compared, so a place that is only divided differently but covered in the
+// same way is no change.
 //
-// Thread-safety: any thread.
+// Thread-safety: may be called from any thread.
 #pragma once
 
 #include <cstddef>
@@ -20,25 +20,26 @@
 namespace trapeze {
 
 struct LayerChanges {
-  /// A side of a trapezoid: what lies east of it between two heights is covered, or is not.
+  /// A side of a trapezoid: where, between two heights, the area to the east of it starts or stops
+  /// being covered.
   struct Side {
     Point upper;  // of the edge
     Point lower;
-    std::int32_t top = 0;  // of the trapezoid
+    std::int32_t top = 0;  // of the trapezoid, as is the bottom
     std::int32_t bottom = 0;
     Lifespan lifespan;
-    std::uint64_t outline = 0;  // tells apart how an outline is drawn along the edge
-    /// Of the feature, with a sign that says whether it covers, and in which of the states: the sum
-    /// over all sides to the west of a place is 0 unless the place looks different.
+    std::uint64_t outline = 0;  // distinguishes how an outline is drawn along the edge
+    /// Weight of the feature, with a sign that depends on whether it covers and in which of the
+    /// states. The sum over all sides to the west of a place is 0 unless the place looks different.
     std::uint64_t weight = 0;
   };
   /// Anything within it may look different.
   struct Place {
     Box box;
     Lifespan lifespan;
-    bool is_dust = false;  // its lifespan is of the resolution, not of the tolerance
-    /// If it is not empty, only pictures matter that show something of both boxes: where a feature
-    /// lies over another, all of their outlines is cut up.
+    bool is_dust = false;  // its lifespan is in resolutions, not tolerances
+    /// If not empty, only images that show something of both boxes matter: where a feature is drawn
+    /// over another, all outlines of the lower one are cut up.
     Box other = {};
   };
 
@@ -48,12 +49,12 @@ struct LayerChanges {
   bool empty() const { return sides.empty() && places.empty(); }
 };
 
-/// Whether a feature with another id is another one. Many formats number features as they stand in
-/// a file.
+/// Whether a feature with another id is a different feature. Many formats number features by their
+/// position in a file.
 enum class Ids : bool { do_not_matter, matter };
 
-/// Nothing if the layers look the same in every style, or if ids do not matter, in every one that
-/// names none. Takes time by their sizes.
+/// Empty if the layers look the same in every style or, if ids do not matter, in every style that
+/// refers to no ids. The time depends on the sizes of the layers.
 LayerChanges changes_between(const Layer& before, const Layer& after, Ids ids);
 
 /// How tiles of one zoom are drawn.
@@ -61,7 +62,7 @@ struct TileDrawing {
   int zoom = 0;
   Level level = 0;        // of the tolerance
   Level pixel_level = 0;  // see Layer::Selection
-  double reach = 0;       // cells, of outlines and dust, beyond their places
+  double reach = 0;       // cells: how far outlines and dust extend beyond their places
 
   friend bool operator==(const TileDrawing&, const TileDrawing&) = default;
 };

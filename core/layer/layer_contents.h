@@ -18,7 +18,7 @@
 
 namespace trapeze {
 
-/// The trapezoids that follow each other in the mesh, by what they stand for, in this order.
+/// Consecutive trapezoids of the mesh, grouped by what they represent, in this order.
 struct MeshSegment {
   MeshIndex polygons;
   MeshIndex horizontal_edges;
@@ -26,7 +26,7 @@ struct MeshSegment {
   MeshIndex merged_motes;
 };
 
-/// Rings that follow each other: their numbers from the first up to the last.
+/// Consecutive rings: from `begin` up to, but not including, `end`.
 struct RingRange {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
@@ -34,12 +34,12 @@ struct RingRange {
 
 struct LayerContents {
   const MeshSegment& first_segment() const { return *segments.front(); }
-  /// Whether there is no more than what was built whole.
+  /// Whether the layer consists only of content that was built whole.
   bool is_whole() const { return segments.size() == 1; }
-  /// Of the feature, as it was built; none if there are none.
+  /// The rings of the feature as built; empty range if there are none.
   RingRange rings_of(std::uint32_t row) const;
   BuiltUnitsView units() const;
-  /// Of the graphs that the layer is built of.
+  /// The number of vertices of the graphs from which the layer was built.
   std::size_t count_vertices() const;
 
   std::shared_ptr<const void> mapping;  // owns the memory of the arrays that are views
@@ -47,14 +47,14 @@ struct LayerContents {
   StoredArray<MeshEdge> edges;
   StoredArray<MeshTrapezoid> trapezoids;
   StoredArray<Lifespan> lifespans;  // by trapezoid
-  // By trapezoid; those of dust at the end are left out, any others have none.
+  // By trapezoid. Dust at the end is left out; other dust has no feature.
   StoredArray<std::uint32_t> feature_of;
   MeshView view;  // of the arrays above
   StoredArray<LoopSize> loop_sizes;
   StoredArray<std::uint32_t> milestone_ends;
   StoredArray<Milestone> milestones;
   StoredArray<Level> milestone_levels;
-  OutlineView outline;  // of these
+  OutlineView outline;  // of the edges and vertices above
   // At least one, in order; a layer that was built whole has one. Layers may share them.
   std::vector<std::shared_ptr<const MeshSegment>> segments;
   GrainIndex grains;
@@ -65,10 +65,10 @@ struct LayerContents {
   // The rings of all features, in order of rows, as in Rings.
   StoredArray<Point> outline_points;
   StoredArray<std::uint32_t> ring_ends;
-  StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to it and with it
-  // Of a layer in which features were replaced: by row, of those that were, and of new ones.
+  StoredArray<std::uint32_t> outline_ends;  // by row: the number of rings up to and including it
+  // In a layer in which features were replaced: the rings of replaced and of new features, by row.
   std::unordered_map<std::uint32_t, RingRange> moved_outlines;
-  std::vector<bool> is_removed;  // by row; empty if none is
+  std::vector<bool> is_removed;  // by row; empty if none is removed
   // As in BuiltUnitsView.
   StoredArray<FeatureUnit> feature_units;
   StoredArray<GroupUnit> group_units;

@@ -1,5 +1,5 @@
-// A layer that is one of several parts of a larger one, or the overview of them all; and what is
-// known of it before anybody looks at it.
+// The identity and size of a layer that is one of several parts of a larger one, or the overview of
+// all parts; available without loading the layer.
 #pragma once
 
 #include <array>
@@ -11,30 +11,30 @@
 
 namespace trapeze {
 
-/// Which part it is.
+/// The identity of a part.
 struct PartNumber {
   std::uint32_t number = 0;    // 1 to count; 0: the overview
   std::uint32_t count = 0;     // of the parts
   std::uint64_t division = 0;  // equal for the parts into which one state of a source was divided
-  // Of an overview:
-  std::uint64_t revision_of_parts = 0;  // of those that it was made of
-  Level first_level = 0;  // it shows what there is at this level, and at those that are coarser
+  // For an overview only:
+  std::uint64_t revision_of_parts = 0;  // of the parts that it was made from
+  Level first_level = 0;                // it shows this level and all coarser ones
 
   bool is_overview() const { return number == 0; }
 
   friend bool operator==(const PartNumber&, const PartNumber&) = default;
 };
 
-/// How much of a layer there is at each level.
+/// The size of a layer at each level.
 struct LevelCounts {
   using Counts = std::array<std::uint64_t, std::size_t{kLastLevel} + 1>;
 
   Counts trapezoids = {};            // of polygons, alive at the tolerance
-  Counts horizontal_edges = {};      // likewise
+  Counts horizontal_edges = {};      // the same
   Counts motes = {};                 // alive at the resolution
   Counts grains = {};                // born at the level
-  std::uint64_t overlaps = 0;        // pairs of features that lie over each other, each twice
-  std::uint64_t overlaps_along = 0;  // of these, those whose boundaries run along each other
+  std::uint64_t overlaps = 0;        // pairs of features that overlap, each counted twice
+  std::uint64_t overlaps_along = 0;  // of these, pairs whose boundaries run along each other
 };
 
 LevelCounts count_by_level(const Layer& layer);

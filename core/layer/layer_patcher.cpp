@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 constexpr Lifespan kNever{0, 0};
-constexpr double kTouch = 8;  // cells: borders that are nearer to each other run along each other
+constexpr double kTouch = 8;  // cells: borders nearer to each other run along each other
 
 using Owners = std::vector<std::shared_ptr<const void>>;
 
-/// Around a feature of the layer as it was built.
+/// The bounding box of a feature of the layer as built.
 Box box_of_feature(const LayerContents& layer, std::uint32_t row) {
   const RingRange rings = layer.rings_of(row);
   Box box;
@@ -46,8 +46,8 @@ std::invalid_argument several_of(std::int64_t id) {
   return std::invalid_argument("there are several features of the id " + std::to_string(id));
 }
 
-/// Trapezoids at full detail of features of two kinds, each of which may lie over those of the
-/// other.
+/// Trapezoids at full detail of features of two kinds; features of either kind may be drawn over
+/// those of the other.
 class CrossOverlaps {
  public:
   enum Kind : std::uint32_t { kept, fresh };
@@ -60,7 +60,7 @@ class CrossOverlaps {
   }
 
   FeatureOverlaps find() const {
-    // In order of rows, as one way to look at two features differs from the other in roundings.
+    // In order of rows, because the two orders of comparing a pair differ in rounding.
     std::vector<std::uint32_t> rows;
     std::vector<std::uint32_t> kinds;
     std::vector<Box> boxes;
@@ -110,7 +110,7 @@ Squares squares_of(std::vector<Mote>& motes) {
   return squares;
 }
 
-/// One patch while it is made.
+/// The state of a patch while it is made.
 class Patching {
  public:
   Patching(const Layer& now, const LayerPatcher::Patch& patch,
@@ -125,7 +125,8 @@ class Patching {
   std::span<const std::uint32_t> rows() const { return rows_; }
   std::span<const std::uint32_t> replaced() const { return replaced_; }
 
-  /// Of all that is replaced, which are features of `units`, the trapezoids and the dust.
+  /// Ends the trapezoids and the dust of everything that is replaced, namely the features of
+  /// `units`.
   void end_lives(std::span<const Box> units, int most_motes) {
     for (const Box& unit : units) end_trapezoids(unit);
     std::vector<FeatureGrain> gone;
@@ -141,7 +142,7 @@ class Patching {
   }
 
   std::vector<Mote>& makeup() { return makeup_; }
-  /// Of all trapezoids: of those that were there before, up to `end`, and of what is new.
+  /// The lifespans of all trapezoids: the existing ones, up to `end`, and the new ones.
   std::vector<Lifespan> take_lifespans(std::uint32_t end, const LayerContents& from,
                                        const Squares& makeup) {
     lifespans_.resize(end, kNever);
@@ -159,7 +160,7 @@ class Patching {
     for (const FeatureGrain& grain : now_.grains().grains()) {
       if (is_replaced_[grain.row] == 0) kept.push_back(grain);
     }
-    // Both are in order, as they are of layers.
+    // Both are in order, as in layers.
     std::vector<std::size_t> places;
     std::size_t last = 0;
     for (const FeatureGrain& grain : fresh) {
@@ -182,7 +183,7 @@ class Patching {
     return all;
   }
 
-  /// Of all features of the next state, of whose segments those from `first_fresh` on are new.
+  /// Of all features of the next state, whose segments from `first_fresh` on are new.
   FeatureOverlaps overlaps(const LayerContents& next, std::size_t first_fresh) const {
     FeatureOverlaps all = overlaps_with_kept(next, first_fresh);
     for (const FeatureOverlap& pair : now_.overlaps().pairs()) {
@@ -215,7 +216,7 @@ class Patching {
   }
 
  private:
-  /// Of what is new with what stays.
+  /// Of new features with those that stay.
   FeatureOverlaps overlaps_with_kept(const LayerContents& next, std::size_t first_fresh) const {
     CrossOverlaps search(next);
     std::vector<TrapezoidRange> ranges;
@@ -288,7 +289,8 @@ class Patching {
     });
   }
 
-  /// Ends what stands for it alone; of what stands for others as well, notes what makes up for it.
+  /// Ends the mote if it represents only replaced features; otherwise notes a mote that compensates
+  /// for it.
   void end_mote(const Mote& mote) {
     Level from = mote.lifespan.born;
     const Box box = box_of_mote(mote.x, mote.y, std::abs(mote.area));
@@ -324,7 +326,7 @@ class Patching {
   std::vector<TrapezoidRange> ranges_;
 };
 
-/// How much there is of what a patch refers to by number.
+/// The sizes of the arrays to which a patch refers by number.
 struct Ends {
   std::uint32_t vertices = 0;
   std::uint32_t edges = 0;
@@ -346,7 +348,7 @@ struct LayerPatcher::State {
   std::shared_ptr<const Layer> first;
   std::shared_ptr<const Layer> now;
   std::size_t patches = 0;
-  int most_motes = 1;  // of a grain, in the layer as it was given
+  int most_motes = 1;  // of a grain, in the original layer
 
   SharedArray<Point> vertices;
   SharedArray<MeshEdge> edges;
@@ -359,7 +361,7 @@ struct LayerPatcher::State {
   SharedArray<Point> outline_points;
   SharedArray<std::uint32_t> ring_ends;
 
-  std::unordered_map<std::int64_t, std::uint32_t> row_of_id;  // of those that are gone as well
+  std::unordered_map<std::int64_t, std::uint32_t> row_of_id;  // including removed features
   std::vector<std::uint32_t> group_of;                        // by row; kNone
   std::vector<std::vector<std::uint32_t>> groups;             // rows
 
@@ -375,7 +377,7 @@ struct LayerPatcher::State {
         outline_points(whole.outline_points),
         ring_ends(whole.ring_ends) {}
 
-  /// Throws as the constructor of LayerPatcher does.
+  /// Throws like the constructor of LayerPatcher.
   void number_first() {
     const LayerContents& whole = first->contents();
     patches = 0;
@@ -395,7 +397,7 @@ struct LayerPatcher::State {
     }
   }
 
-  /// `row_of` leads from rows of that layer to rows of now.
+  /// `row_of` maps rows of that layer to present rows.
   template <typename RowOf>
   void note_groups(const LayerContents& layer, const RowOf& row_of) {
     const BuiltUnitsView units = layer.units();
@@ -408,8 +410,8 @@ struct LayerPatcher::State {
     }
   }
 
-  /// Around the units of which these rows are all: however much it is simplified, each stays within
-  /// its own; a feature of a group may leave that of its own.
+  /// The boxes of the units to which these rows belong. However much it is simplified, each unit
+  /// stays within its box; a feature of a group may leave its own.
   std::vector<Box> boxes_of_units(std::span<const std::uint32_t> rows) const {
     std::vector<Box> boxes;
     std::unordered_set<std::uint32_t> done;
@@ -424,7 +426,7 @@ struct LayerPatcher::State {
     return boxes;
   }
 
-  /// Contents that look at what has been appended by now.
+  /// Contents that are views of everything appended so far.
   std::unique_ptr<LayerContents> new_contents(Owners owners) const {
     auto contents = std::make_unique<LayerContents>();
     contents->vertices = vertices.view();
@@ -512,7 +514,7 @@ struct LayerPatcher::State {
     trapezoids.append(shifted);
   }
 
-  // Here and below, arrays that end before dust does are padded first.
+  // From here on, arrays that end before dust does are padded first.
   void append_features(const LayerContents& from, const Ends& before, const Patching& patching) {
     std::vector<std::uint32_t> rows(from.feature_of.begin(), from.feature_of.end());
     for (std::uint32_t& row : rows) {
@@ -536,7 +538,7 @@ struct LayerPatcher::State {
     outline_points.append(from.outline_points);
   }
 
-  /// What has been appended from `before` on is there, and what it replaces is not.
+  /// The next state: items appended since `before` exist, and those that they replace do not.
   std::shared_ptr<const Layer> next(const LayerContents& from, const Squares& makeup,
                                     const Ends& before, Patching& patching) const {
     const LayerContents& old = now->contents();

@@ -1,12 +1,12 @@
-// Makes one state of a layer after the other in a time that goes by what changed, not by what there
-// is: for sources that tell which of their features are others now.
+// Makes successive states of a layer in a time proportional to the changes, not to the size of the
+// layer: for sources that report which of their features have changed.
 //
-// States share the arrays of the mesh, which only grow: what is new is appended, as a segment with
-// indexes of its own, and the trapezoids of what it replaces get a lifespan that is over before it
-// begins. Whole units (see built_units.h) are replaced, so that what is drawn of polygons is what
-// would be drawn if the layer were built anew. The dust of what was replaced is taken away where it
-// had not been merged with that of others, and made up for by motes of negative area where it had:
-// the area is right at every level, but may lie off by a part of a pixel.
+// States share the arrays of the mesh, which only grow. New content is appended as a segment with
+// its own indexes, and the trapezoids that it replaces get a lifespan that ends before it begins.
+// Whole units (see built_units.h) are replaced, so polygons are drawn exactly as if the whole layer
+// were rebuilt. Dust of replaced units is removed if it had not been merged with that of others,
+// and otherwise compensated by motes of negative area: the area is right at every level, but may be
+// off in position by a fraction of a pixel.
 #pragma once
 
 #include <cstddef>
@@ -22,47 +22,48 @@
 
 namespace trapeze {
 
-/// One thread at a time. States, once made, are layers like others: any number of threads may read
-/// them, also while the next one is made.
+/// One thread at a time. States, once made, are ordinary layers: any number of threads may read
+/// them, even while the next one is made.
 class LayerPatcher {
  public:
-  /// Copies the layer, which was built whole, in a time by its size. Throws std::invalid_argument
-  /// if two of its features have one id.
+  /// Copies the layer, which was built whole, in a time that depends on its size. Throws
+  /// std::invalid_argument if two of its features have the same id.
   explicit LayerPatcher(const Layer& whole);
   ~LayerPatcher();
   LayerPatcher(LayerPatcher&&) noexcept;
   LayerPatcher& operator=(LayerPatcher&&) noexcept;
 
-  /// The layer as it was given, from which a later one may take over (see EarlierLayer).
+  /// The original layer, from which a later one may take over content (see EarlierLayer).
   const std::shared_ptr<const Layer>& first() const;
-  /// The state of now.
+  /// The current state.
   const std::shared_ptr<const Layer>& now() const;
-  /// How many times apply() has been called since the first state; each makes drawing a little
+  /// How many times apply() has been called since the first state. Each call makes drawing a little
   /// slower.
   std::size_t patches() const;
 
-  /// Which features have to be built anew if those of `ids` change, appear or go, and what they
-  /// become, or come near to, lies in `places`: the ids of units that change or that `places` come
-  /// within `reach` cells of, and the `ids` themselves. In order of rows, those that are new last.
+  /// The features that must be rebuilt if those of `ids` are changed, added or removed, and
+  /// `places` contains the new geometries and those that they come near to: the `ids` themselves,
+  /// and the ids of units that change or that lie within `reach` cells of `places`. In order of
+  /// rows, new ones last.
   std::vector<std::int64_t> ids_to_build(std::span<const std::int64_t> ids,
                                          std::span<const Box> places, double reach) const;
 
   struct Patch {
-    /// As ids_to_build() said.
+    /// The result of ids_to_build().
     std::span<const std::int64_t> ids;
-    /// All of them that there are now, with their attributes, in that order, built as the whole
-    /// layer was. The fields are those of the layer.
+    /// All of them that exist now, with their attributes, in that order, built like the whole
+    /// layer. The fields are those of the layer.
     const Layer& features;
   };
-  /// Makes the next state, and returns where it may look different. A feature that was there before
-  /// keeps its row; new ones come after all others. Throws std::length_error, and changes nothing,
-  /// if there are more of anything than 32 bits count; std::invalid_argument, likewise, if the
-  /// fields are others or two features have one id; std::bad_alloc, after which nothing more can
-  /// be applied.
+  /// Makes the next state and returns where it may look different. Existing features keep their
+  /// rows; new ones come after all others. Throws std::length_error if there are more items of any
+  /// kind than 32 bits can count, and std::invalid_argument if the fields differ or two features
+  /// have the same id; both leave the state unchanged. Throws std::bad_alloc, after which no more
+  /// patches can be applied.
   LayerChanges apply(const Patch& patch);
 
-  /// Goes back to the first state, as if nothing had been applied. What has been appended stays
-  /// where it is, as states that are in use look at it.
+  /// Returns to the first state, as if nothing had been applied. Appended content stays in place,
+  /// because states in use refer to it.
   void start_over();
 
  private:

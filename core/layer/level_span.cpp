@@ -10,7 +10,7 @@ bool is_drawn(std::span<const std::uint8_t> classes, std::uint32_t row) {
   return classes.empty() || classes[row] != kNotDrawn;
 }
 
-/// Of an edge or a mote: it is enough to look at its box.
+/// For an edge or a mote, testing its box is enough.
 bool box_meets(const MeshView& mesh, std::uint32_t trapezoid, const Box& box) {
   const MeshTrapezoid& t = mesh.trapezoids[trapezoid];
   Box around;

@@ -1,5 +1,5 @@
-// What of a layer may be met by any tile of a place, whatever its zoom within a range: found once
-// for all of them, and narrowed down from a place to the places within it.
+// The items of a layer that tiles of a place may need at any zoom within a range: found once for
+// all these tiles, then narrowed down from a place to the places within it.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace trapeze {
 
-/// Of levels, both ends being part of it.
+/// A range of levels, inclusive at both ends.
 struct LevelRange {
   Level finest = 0;
   Level coarsest = kLastLevel;
@@ -27,11 +27,10 @@ struct LevelRange {
   friend bool operator==(const LevelRange&, const LevelRange&) = default;
 };
 
-/// What is looked at. A part of it has a box within its boxes, and levels and births within its
-/// own.
+/// The selection. A part of it has a box within its boxes, and levels and births within its ranges.
 struct LevelSpanSelection {
   Box box;       // of trapezoids and edges
-  Box dust_box;  // of what small polygons left behind
+  Box dust_box;  // of the remains of small polygons
   LevelRange levels;
   bool has_edges = false;  // horizontal edges, for outlines
   bool has_motes = false;
@@ -41,17 +40,17 @@ struct LevelSpanSelection {
 
 class LevelSpan {
  public:
-  /// Of the features that `classes` does not leave undrawn; all if it is empty. False, and nothing
-  /// is held, if the index counts more than `most` trapezoids there.
+  /// Finds the items of features that are drawn according to `classes`; of all features if it is
+  /// empty. Returns false and holds nothing if the index counts more than `most` trapezoids there.
   bool find(const Layer& layer, std::span<const std::uint8_t> classes,
             const LevelSpanSelection& selection, std::uint64_t most);
-  /// What of another span belongs to a part of its selection.
+  /// Takes over the items of another span that belong to a part of its selection.
   void narrow(const Layer& layer, const LevelSpan& from, const LevelSpanSelection& selection);
 
-  /// The trapezoids of polygons that may meet the box, in ascending order; those at one level are
-  /// to be told by their lifespans.
+  /// The trapezoids of polygons that may intersect the box, in ascending order. Use their lifespans
+  /// to find those alive at a level.
   std::span<const std::uint32_t> polygons() const { return polygons_; }
-  /// Horizontal edges, as Layer::select_horizontal_edges() has them.
+  /// Horizontal edges, as found by Layer::select_horizontal_edges().
   std::span<const std::uint32_t> edges() const { return edges_; }
   std::span<const std::uint32_t> motes() const { return motes_; }
   std::span<const FeatureGrain* const> grains() const { return grains_; }

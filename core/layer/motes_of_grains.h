@@ -1,4 +1,4 @@
-// From the grains of a layer to motes, and from these to trapezoids.
+// Converts the grains of a layer to motes, and motes to trapezoids.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace trapeze {
 
-/// What small loops left behind where features are not told apart: a place that others cover is as
-/// it was.
+/// What small loops left behind, for drawing that does not distinguish features: a place covered by
+/// others is unchanged.
 std::vector<Grain> uncovered(std::span<const FeatureGrain> grains);
 
-/// By this key motes are in order for a MeshIndex.
+/// Sorts motes for a MeshIndex.
 std::uint64_t order_key(const Mote& mote);
 
-/// The square of a mote as a trapezoid; one of negative area has its edges swapped.
+/// Appends the square of a mote as a trapezoid. For negative area, its edges are swapped.
 void append_mote(const Mote& mote, std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
                  std::vector<MeshTrapezoid>& trapezoids);
 

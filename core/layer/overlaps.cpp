@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kNarrowest = 2;                           // cells
 constexpr double kAlong = 32;                              // cells apart, at most: half a metre
-constexpr std::size_t kMostPairsOf = 16;                   // for each trapezoid
+constexpr std::size_t kMostPairsOf = 16;                   // per trapezoid
 constexpr std::size_t kLeastPairs = std::size_t{1} << 20;  // 12 MB
-constexpr std::uint64_t kMostStepsOf = 1024;               // for each trapezoid
+constexpr std::uint64_t kMostStepsOf = 1024;               // per trapezoid
 constexpr int kMostHalvings = 64;
-constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;  // by a thread
+constexpr std::size_t kItemsAtOnce = std::size_t{1} << 15;  // per thread
 constexpr std::size_t kRowsAtOnce = 1024;
 constexpr std::uint64_t kLeastSteps = std::uint64_t{1} << 24;
 
-/// The common part of two boxes; empty if they only touch.
+/// The intersection of two boxes; empty if they only touch.
 Box common_part(const Box& a, const Box& b) {
   const Box part{std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
                  std::min(a.max_y, b.max_y)};
@@ -36,17 +36,17 @@ Box common_part(const Box& a, const Box& b) {
 struct Item {
   Box box;
   std::uint32_t trapezoid = 0;
-  std::int32_t reach = 0;  // the greatest max_y of its feature's items up to it
+  std::int32_t reach = 0;  // the greatest max_y of its feature's items up to this one
 };
 
-/// What two trapezoids, or two features, have in common.
+/// What two trapezoids, or two features, share.
 struct Common {
   double area = 0;
   double min_x = std::numeric_limits<double>::infinity();
   double max_x = -min_x;
   double min_y = min_x;
   double max_y = -min_x;
-  double along = 0;  // how far their boundaries run along each other
+  double along = 0;  // length along which their boundaries coincide
 
   void add(const Common& more) {
     area += more.area;
@@ -117,7 +117,8 @@ class OverlapSearch {
   std::vector<Item> items_;                // by row, and by top
   std::vector<std::size_t> begins_;        // by row; and the end
   std::vector<std::uint8_t> is_compared_;  // by row
-  bool is_looking_ahead_ = true;           // only which features are to be compared is looked for
+  bool is_looking_ahead_ = true;           // the first pass only determines which features have to
+                                           // be compared
   FeatureOverlaps found_;
   std::uint64_t steps_ = 0;
   std::uint64_t most_steps_ = 0;
@@ -126,7 +127,7 @@ class OverlapSearch {
   std::vector<const Item*> others_;
 };
 
-/// Only of features that are to be compared, which are few on most maps.
+/// Only for features that have to be compared, which are few on most maps.
 void OverlapSearch::collect_items() {
   struct Owned {
     Item item;
@@ -175,7 +176,7 @@ void OverlapSearch::order_items(std::uint32_t row) {
   for (Item& item : items) item.reach = reach = std::max(reach, item.box.max_y);
 }
 
-/// Halves the region, so many times at most, until few features are left in each part of it.
+/// Halves the region, at most so many times, until few features are left in each part.
 void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region, int halvings) {
   constexpr std::size_t kFew = 16;
   const std::int64_t width = std::int64_t{region.max_x} - region.min_x;
@@ -207,13 +208,14 @@ void OverlapSearch::join(std::span<const std::uint32_t> rows, const Box& region,
     if (!common_part(input_.boxes[row], before).is_empty()) some.push_back(row);
     if (!common_part(input_.boxes[row], after).is_empty()) others.push_back(row);
   }
-  // Of features that are all as large as the region there are no fewer in its parts.
+  // If the features are as large as the region, its parts contain no fewer of them.
   if (some.size() + others.size() > rows.size() * 7 / 4) return join_each(rows, region);
   join(some, before, halvings - 1);
   join(others, after, halvings - 1);
 }
 
-/// A place that two features have in common is looked at where its north-western corner lies.
+/// The common part of two features is examined in the region that contains its north-western
+/// corner.
 void OverlapSearch::join_each(std::span<const std::uint32_t> rows, const Box& region) {
   for (std::size_t i = 0; i < rows.size() && !is_over(); ++i) {
     steps_ += rows.size() - i;
@@ -234,7 +236,7 @@ void OverlapSearch::join_each(std::span<const std::uint32_t> rows, const Box& re
   }
 }
 
-/// Items that meet the place, in order of their tops.
+/// Items that intersect the place, in order of their tops.
 void OverlapSearch::take_items(std::uint32_t row, const Box& place,
                                std::vector<const Item*>& items) {
   items.clear();
@@ -259,7 +261,7 @@ void OverlapSearch::compare(std::uint32_t a, std::uint32_t b, const Box& place) 
     all.add(both);
     width = std::max(width, both.width());
   };
-  // Each pair is met where the later of the two begins.
+  // Each pair is found where the later of the two begins.
   std::size_t i = 0;
   std::size_t k = 0;
   while (i < some_.size() && k < others_.size()) {
@@ -277,8 +279,8 @@ void OverlapSearch::compare(std::uint32_t a, std::uint32_t b, const Box& place) 
   found_.pairs.push_back({b, a, cells, along});
 }
 
-/// Visits those of the others, from there on, that the item's box meets; returns how many were
-/// looked at.
+/// Visits those of the others, from there on, that the item's box intersects; returns how many were
+/// examined.
 template <typename Visit>
 std::size_t OverlapSearch::scan(const Item& item, const std::vector<const Item*>& others,
                                 std::size_t from, const Visit& visit) {
@@ -289,7 +291,7 @@ std::size_t OverlapSearch::scan(const Item& item, const std::vector<const Item*>
   return i - from + 1;
 }
 
-/// By the common widths at some heights.
+/// Computed from the common widths at a few heights.
 Common OverlapSearch::common(const Item& a, const Item& b) const {
   constexpr int kHeights = 5;
   const int top = std::max(a.box.min_y, b.box.min_y);
@@ -317,7 +319,7 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
   };
   add_sides(s_left, t_left);
   add_sides(s_right, t_right);
-  // Level sides; or both have a vertex of that height beside them.
+  // Horizontal sides; or both have a vertex at that height beside them.
   const auto add_level = [&](int y, int other_y, int at) {
     const double apart = std::abs(static_cast<double>(y) - other_y);
     if (apart <= kAlong) common.along += std::max(0.0, to[at] - from[at]);
@@ -329,7 +331,7 @@ Common OverlapSearch::common(const Item& a, const Item& b) const {
     const bool is_end = i == 0 || i == kHeights - 1;
     common.add({(to[i] - from[i]) * step * (is_end ? 0.5 : 1), from[i], to[i], top + i * step,
                 top + i * step});
-    // It may reach as far as to the next heights.
+    // The overlap may extend as far as the adjacent heights.
     for (const int k : {std::max(i - 1, 0), std::min(i + 1, kHeights - 1)}) {
       common.add(
           {0, std::min(from[k], to[k]), std::max(from[k], to[k]), top + k * step, top + k * step});

@@ -24,7 +24,7 @@ struct Pieces {
   std::vector<std::uint32_t> rows;
 };
 
-/// A mote of a part as a grain without length, which is laid out as that mote again.
+/// A mote of a part as a grain without length, which is laid out as the same mote again.
 Grain grain_of_mote(const MeshView& mesh, const MeshTrapezoid& t, Level born) {
   const Box box = box_of(mesh, t);
   const Point middle{static_cast<std::int32_t>((std::int64_t{box.min_x} + box.max_x) / 2),
@@ -57,7 +57,7 @@ struct OverviewBuilder::State {
   std::size_t vertices_of_parts = 0;
 };
 
-/// One part, and what its rows, edges and vertices are called here.
+/// One part, with the numbers of its rows, edges and vertices in the overview.
 class OverviewBuilder::Adding {
  public:
   Adding(const Layer& part, State& state)
@@ -99,8 +99,8 @@ class OverviewBuilder::Adding {
   }
 
  private:
-  /// Of the features of which something is left, in the order that they have: later ones lie over
-  /// others.
+  /// Numbers the features of which something is left, in their original order: later ones are drawn
+  /// over others.
   void number_rows() {
     for (std::size_t i = 0; i < from_.feature_of.size(); ++i) {
       if (from_.lifespans[i].dies > state_.first_level) rows_[from_.feature_of[i]] = 0;
@@ -167,7 +167,7 @@ void append_in_order(const Pieces& pieces, const MeshView& mesh, Pieces& all) {
   }
 }
 
-/// Appends those that are single or merged, in order for an index.
+/// Appends the single motes, or the merged ones, in order for an index.
 void append_motes(const std::vector<Mote>& motes, bool are_merged, std::vector<Point>& vertices,
                   std::vector<MeshEdge>& edges, Pieces& all) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;

@@ -1,12 +1,12 @@
-// The overview of a layer that is in several parts: what of them is left at coarse levels, as one
-// layer, so that a picture of the whole world need not look at every part.
+// The overview of a layer in several parts: everything that remains of them at coarse levels, as
+// one layer, so that an image of the whole world need not read every part.
 //
-// Polygons and outlines are those of the parts. So is dust, feature by feature, that comes to be at
-// these levels; what came to be before is there as motes, which the parts have merged already, and
-// which are merged here across parts. They are as large as those of the layer as a whole but for
-// the rounding of their sides to cells, and lie within the same pixel, but not always at the same
-// place in it. Attributes and outlines at full detail are left out: the overview is for what
-// draws all features alike.
+// Polygons and outlines are those of the parts. So is the dust, feature by feature, that arises at
+// these levels. Dust that arose earlier is present as motes, which the parts have already merged
+// and which are merged here across parts. Their sizes equal those in an undivided layer, except for
+// the rounding of their sides to cells, and they lie within the same pixel, but not always at the
+// same place in it. Attributes and outlines at full detail are left out: the overview serves
+// drawing that treats all features alike.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,21 @@
 
 namespace trapeze {
 
-/// Takes the parts one after the other, so that no more than one of them need be there. One thread
+/// Takes the parts one after the other, so only one of them has to be loaded at a time. One thread
 /// at a time.
 class OverviewBuilder {
  public:
-  /// The level from which on the overview is one.
+  /// The overview starts at `first_level` and covers all coarser levels.
   explicit OverviewBuilder(Level first_level);
   ~OverviewBuilder();
   OverviewBuilder(const OverviewBuilder&) = delete;
   OverviewBuilder& operator=(const OverviewBuilder&) = delete;
 
-  /// A layer that was built whole. Throws std::length_error if there is more of anything together
-  /// than 32 bits count.
+  /// Adds a layer that was built whole. Throws std::length_error if there are more items of any
+  /// kind in total than 32 bits can count.
   void add(const Layer& part);
 
-  /// On up to `threads` threads, on which nothing depends.
+  /// Runs on up to `threads` threads; the result does not depend on their number.
   std::unique_ptr<Layer> finish(unsigned threads = 1);
 
  private:

@@ -12,7 +12,7 @@
 namespace trapeze {
 namespace {
 
-/// As trapezoids hold points: those on the left side and on the top belong to the area.
+/// Like trapezoids: points on the left side and on the top belong to the area.
 bool holds(std::span<const Point> ring, Point point) {
   bool is_inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -52,7 +52,7 @@ double area_of(const Box& box) {
          (static_cast<double>(box.max_y) - box.min_y);
 }
 
-/// The rings that hold the point, the innermost first: one lies within the other.
+/// The boxes of the rings that contain the point, the innermost first: the rings are nested.
 std::vector<Box> boxes_around(const Rings& rings, Point point) {
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -80,7 +80,8 @@ Box part_at(const Rings& rings, Point point) {
   if (rings.empty()) return {};
   const std::vector<Box> around = boxes_around(rings, point);
   if (around.size() % 2 == 1) return around.front();
-  // Outside, or in a hole: of that the ring around it is meant, unless an island in it is nearer.
+  // The point is outside, or in a hole. In a hole the ring around it counts, unless an island in it
+  // is nearer.
   const auto ring = rings[nearest_ring(rings, point)];
   const bool is_hole = around.size() > 1 && holds(ring, point);
   return is_hole ? around[1] : box_of(ring);

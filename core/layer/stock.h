@@ -1,5 +1,5 @@
-// What one builder of a layer holds: the histories of its features and coverages one after another.
-// Private to LayerBuilder.
+// The contents of one builder of a layer: the histories of its features and coverages, one after
+// another. Private to LayerBuilder.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct Stock {
     std::size_t begin;  // rings
     std::size_t end;
   };
-  /// A feature that is taken over, of whose rings there are several.
+  /// A feature that is taken over and whose rings occur more than once.
   struct Double {
     Digest digest;
     TakenRow row;
@@ -39,9 +39,9 @@ struct Stock {
   History history;
   std::vector<Outline> outlines;
   Rings outline_rings;
-  std::vector<FeatureOverlap> shared;  // of features with a face of a coverage in common
+  std::vector<FeatureOverlap> shared;  // pairs of features that share a face of a coverage
   std::vector<TakenRow> taken;         // from an earlier layer
-  std::vector<Double> doubles;         // likewise
+  std::vector<Double> doubles;         // also from an earlier layer
   BuiltUnits units;                    // of all, built or taken over
 };
 

@@ -1,5 +1,5 @@
 // What a layer takes over from an earlier one: which features, and where their trapezoids and
-// grains belong among those that are built anew. Private to LayerBuilder.
+// grains belong among newly built ones. Private to LayerBuilder.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace trapeze {
 /// A feature that is taken over.
 struct TakenRow {
   std::uint32_t earlier = 0;  // its row in the earlier layer
-  std::uint32_t row = 0;      // now
-  std::uint32_t first = 0;    // the first row of its graph now
+  std::uint32_t row = 0;      // its present row
+  std::uint32_t first = 0;    // the first present row of its graph
 };
 
-/// Where an item belongs in an array that is in order of keys, and of graphs where keys are equal;
-/// those of one graph keep their order.
+/// The place of an item in an array that is in order of keys, then of graphs; items of one graph
+/// keep their order.
 struct OrderPlace {
   std::uint64_t key = 0;
   std::uint32_t graph = 0;  // its first row
@@ -36,27 +36,27 @@ class TakenOver {
  public:
   static constexpr std::uint32_t kNotTaken = 0xffffffff;
 
-  /// Nothing.
+  /// Takes over nothing.
   TakenOver() = default;
-  /// `rows` are those of whole units; `earlier` must outlive this.
+  /// `rows` are those of whole units. `earlier` must outlive this object.
   TakenOver(const EarlierLayer& earlier, std::vector<TakenRow> rows);
 
   bool empty() const { return rows_.empty(); }
-  /// In order of rows now.
+  /// In order of present rows.
   std::span<const TakenRow> rows() const { return rows_; }
-  /// Whether the rows of any two are in the order in which they were.
+  /// Whether any two rows are still in their earlier order.
   bool keeps_order() const { return std::ranges::is_sorted(rows_, {}, &TakenRow::earlier); }
-  /// If it is not empty.
+  /// Precondition: not empty.
   const EarlierLayer& earlier() const { return *earlier_; }
-  /// Now, of a row of the earlier layer; kNotTaken if it is not taken over.
+  /// The present row of a row of the earlier layer; kNotTaken if it is not taken over.
   std::uint32_t row_now(std::uint32_t earlier_row) const { return row_now_[earlier_row]; }
 
-  /// Goes through items of the earlier layer and new ones in the order in which they would be if
-  /// all were new. Those of the earlier layer are the ones of `range`, from the first up to the
-  /// second, which are in order there; key_of(i) is the key of item i, and row_of(i) the row that
-  /// its feature had. `fresh` are the places of the new ones in order. Calls take(begin, end) for
-  /// earlier items, of which those that are not taken over are to be left out, and take_fresh(k).
-  /// Sorts on up to `threads` threads where features have changed places; calls from one thread.
+  /// Merges items of the earlier layer and new ones into the order in which they would be if all
+  /// were new. The earlier items are those in `range` (the second bound is excluded), which are in
+  /// order there; key_of(i) is the key of item i, and row_of(i) the earlier row of its feature.
+  /// `fresh` are the places of the new ones, in order. Calls take(begin, end) for earlier items,
+  /// among which the caller must leave out those that are not taken over, and take_fresh(k). Sorts
+  /// on up to `threads` threads if features have changed places; makes the calls from one thread.
   template <typename KeyOf, typename RowOf, typename Take, typename TakeFresh>
   void merge(std::pair<std::size_t, std::size_t> range, const KeyOf& key_of, const RowOf& row_of,
              std::span<const OrderPlace> fresh, const Take& take, const TakeFresh& take_fresh,
@@ -71,10 +71,10 @@ class TakenOver {
   const EarlierLayer* earlier_ = nullptr;
   std::vector<TakenRow> rows_;
   std::vector<std::uint32_t> row_now_;  // by earlier row
-  // By earlier row: the first row of its graph now. Of what is not taken over, that of the graph
-  // before it that is.
+  // By earlier row: the first present row of its graph. For rows that are not taken over, that of
+  // the last preceding graph that is.
   std::vector<std::uint32_t> graph_now_;
-  bool is_in_order_ = true;  // graphs follow each other as they did
+  bool is_in_order_ = true;  // graphs are in their earlier order
 };
 
 template <typename KeyOf, typename RowOf>
@@ -89,7 +89,7 @@ std::vector<std::uint32_t> TakenOver::in_order_now(std::pair<std::size_t, std::s
       if (row_now_[row] != kNotTaken) visit(static_cast<std::uint32_t>(i), graph_now_[row]);
     }
   };
-  std::vector<std::uint32_t> graphs;  // read once, for where a file is cut off it changes
+  std::vector<std::uint32_t> graphs;  // read once, because it changes if a file is truncated
   for_each_taken([&](std::uint32_t, std::uint32_t graph) {
     ++ends[graph + 1];
     graphs.push_back(graph);
@@ -129,7 +129,7 @@ void TakenOver::merge(std::pair<std::size_t, std::size_t> range, const KeyOf& ke
   };
   std::size_t done = 0;
   for (std::size_t k = 0; k < fresh.size(); ++k) {
-    // In steps that double, as the next one is not far off where much is new.
+    // In steps that double: the next one is near if much is new.
     std::size_t step = 1;
     std::size_t low = done;
     while (low + step <= count && is_before(low + step - 1, fresh[k])) {

@@ -1,5 +1,5 @@
-// A layer generalized without the topological consistency test (paper, section 4.2), beside the one
-// that was generalized with it.
+// A layer generalized without the topological consistency test (paper, section 4.2), to be compared
+// with the one generalized with it.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace trapeze {
 
-/// The same polygons without the test, and each by itself; without a table of features. Takes about
-/// as long and as much memory as loading the layer did.
+/// The same polygons without the test, each by itself, and without a table of features. Takes about
+/// as much time and memory as loading the layer did.
 std::unique_ptr<const Layer> build_without_topology_test(const Layer& layer);
 
 }  // namespace trapeze

@@ -6,9 +6,9 @@
 namespace trapeze {
 namespace {
 
-constexpr double kCellsPerEdge = 8;  // of the lattice, at most about so many
+constexpr double kCellsPerEdge = 8;  // of the lattice, approximate maximum
 
-/// Points in order of their y, then their x.
+/// Orders points by y, then x.
 std::uint64_t order_of(Point p) {
   const auto from_least = [](std::int32_t v) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v) ^ 0x80000000U);
@@ -23,7 +23,7 @@ Point point_of(std::uint64_t order) {
   return {part(order), part(order >> 32)};
 }
 
-/// Of ways from one point: in order of their angles, from x to y.
+/// For directions from one point: in order of their angles, from x to y.
 bool is_turned_less(Point at, Point a, Point b) {
   const auto is_lower_half = [at](Point p) { return p.y < at.y || (p.y == at.y && p.x < at.x); };
   const bool of_a = is_lower_half(a);
@@ -72,7 +72,7 @@ void BoundaryMap::find(const Box& box, double distance) {
   index(box, distance);
 }
 
-// Where several faces lie on one side, that is of none: they lie over each other.
+// If several faces lie on one side, that side belongs to none: the faces overlap.
 void BoundaryMap::unite_sides() {
   sort_sides(sides_, side_order_);
   sort_sides(cuts_, cut_order_);
@@ -138,8 +138,8 @@ std::uint32_t BoundaryMap::edge_number(std::uint32_t piece, std::uint32_t edge) 
   return found != names_.end() && found->key == name ? found->index : kNone;
 }
 
-// Faces of horizontal edges are those of the edges beside them, around either end; where those are
-// horizontal, too, it takes as many rounds as there are in a row.
+// Faces of horizontal edges are found from the edges next to them, around either end. If those are
+// horizontal too, this takes as many rounds as there are horizontal edges in a row.
 void BoundaryMap::link() {
   sort_ends();
   next_.assign(2 * edges_.size(), kNone);
@@ -163,7 +163,7 @@ void BoundaryMap::link() {
   }
 }
 
-// By where they are. The edges are in order of their upper ends.
+// Sorts ends by place; the edges are already in order of their upper ends.
 void BoundaryMap::sort_ends() {
   lower_ends_.clear();
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
@@ -184,7 +184,7 @@ void BoundaryMap::sort_ends() {
   }
 }
 
-/// Of ends in one place: by the angles at which the edges go away from it.
+/// Sorts ends at one place by the angles at which their edges leave it.
 void BoundaryMap::sort_around(std::span<End> ends) const {
   if (ends.size() < 2) return;
   const Point at = point_of(ends.front().at);
@@ -197,8 +197,9 @@ Point BoundaryMap::other_end(const End& end) const {
   return end.is_upper ? edges_[end.edge].lower : edges_[end.edge].upper;
 }
 
-// Between one way from the vertex and the next lies a face: on that side of the one to which it is
-// turned, and on the other side of the next. Whether a face has become known.
+// Between two successive directions from the vertex lies a face: on the side of the first edge
+// towards the second, and on the side of the second towards the first. Returns whether a face has
+// become known.
 bool BoundaryMap::link_around(std::span<const End> ends) {
   bool has_more = false;
   for (std::size_t i = 0; i < ends.size() && ends.size() > 1; ++i) {
@@ -231,7 +232,7 @@ void BoundaryMap::for_each_cell(const Edge& edge, const Visit& visit) const {
   const int first_row = row_of(from.y);
   const int last_row = row_of(from.y + way.y);
   for (int row = first_row; row <= last_row; ++row) {
-    // Of the part of the edge in this row; the outermost rows reach as far as there is something.
+    // For the part of the edge in this row; the outermost rows extend to the end of the content.
     const auto x_at = [&](double y) {
       return way.y == 0 ? from.x : from.x + way.x * std::clamp((y - from.y) / way.y, 0.0, 1.0);
     };
@@ -246,8 +247,8 @@ void BoundaryMap::for_each_cell(const Edge& edge, const Visit& visit) const {
   }
 }
 
-// Cells are about as large as edges are long, so that each edge comes into few of them, and of each
-// there are few in a cell; but not more than there is to be put into them.
+// Cells are about as large as edges are long, so each edge is in few cells and each cell has few
+// edges; but there are not more cells than items to put into them.
 void BoundaryMap::index(const Box& box, double distance) {
   corner_ = {static_cast<double>(box.min_x), static_cast<double>(box.min_y)};
   const double width = static_cast<double>(box.max_x) - box.min_x;
@@ -270,7 +271,7 @@ void BoundaryMap::index(const Box& box, double distance) {
   }
   for (std::size_t i = 1; i <= cells; ++i) cell_end_[i] += cell_end_[i - 1];
   cell_edges_.resize(cell_end_[cells]);
-  // Counted from the begin of each cell, which becomes its end.
+  // Starts as the begin of each cell, and becomes its end.
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
     const Edge& edge = edges_[i];
     if (edge.is_cut) continue;

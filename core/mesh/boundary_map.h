@@ -1,12 +1,13 @@
-// The boundary of the faces of meshes at one level, in a part of the plane: which face lies on
-// either side of each edge, which edge follows which around a face, and which edges are near.
+// The boundary of the faces of meshes at one level, in a part of the plane: the face on either side
+// of each edge, the order of edges around a face, and the edges near a place.
 //
-// Edges between the same two points are one, whichever meshes they come from: so layers in parts
-// are as one, and polygons that share a wall are neighbours though each was built by itself.
+// Edges between the same two points are one edge, whichever meshes they come from. So layers in
+// parts behave like one layer, and polygons that share a wall are neighbours although each was
+// built separately.
 //
-// A side of an edge is numbered: 2 * edge + 1 if the face lies on its right, going from the upper
-// end to the lower one that is to the east, and 2 * edge if to the west. Along a side one goes so
-// that the face is on the side to which x turns to y: from the upper end on even sides.
+// Sides of edges are numbered: 2 * edge + 1 if the face lies to the east of the edge (on its right,
+// in the sense of the mesh), 2 * edge if to the west. A side is traversed so that the face is on
+// the side towards which x turns to y: even sides start at the upper end.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -26,7 +27,7 @@
 
 namespace trapeze {
 
-/// A place or a way on the plane, in cells.
+/// A point or a displacement in the plane, in cells.
 struct Vector {
   double x = 0;
   double y = 0;
@@ -39,7 +40,7 @@ struct Vector {
 constexpr double dot(Vector a, Vector b) {
   return a.x * b.x + a.y * b.y;
 }
-/// Positive if b points to the side of a to which x turns to y.
+/// Positive if b points to the side of a towards which x turns to y.
 constexpr double cross(Vector a, Vector b) {
   return a.x * b.y - a.y * b.x;
 }
@@ -52,7 +53,7 @@ constexpr Vector to_vector(Point p) {
 
 class BoundaryMap {
  public:
-  using Face = std::uint64_t;  // the piece, and what the caller numbers in it
+  using Face = std::uint64_t;  // the piece, and the caller's number of the face in it
   static constexpr Face kNoFace = std::numeric_limits<Face>::max();
   static constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -63,27 +64,29 @@ class BoundaryMap {
     Point upper;
     Point lower;
     std::array<Face, 2> faces{kNoFace, kNoFace};  // by side
-    bool is_cut = false;                          // where polygons were cut off: nothing ends there
+    bool is_cut = false;                          // where polygons were cut off: it is no boundary
 
     Vector from() const { return to_vector(upper); }
     Vector way() const { return to_vector(lower) - to_vector(upper); }
   };
 
-  /// Begins anew, without a piece.
+  /// Starts over, without any piece.
   void begin();
-  /// What is added next is of that mesh, which must stay until find().
+  /// Starts a piece: subsequent additions belong to that mesh, which must remain valid until
+  /// find().
   void begin_piece(const MeshView& mesh);
-  /// A trapezoid of a face of the piece.
+  /// Adds a trapezoid of a face of the piece.
   void add(const MeshTrapezoid& trapezoid, std::uint32_t face);
-  /// One of the sides of a face of the piece, on the right of the edge or on its left; the edge is
-  /// not horizontal.
+  /// Adds one of the sides of a face of the piece, on the right of the edge or on its left. The
+  /// edge is not horizontal.
   void add_side(std::uint32_t edge, std::uint32_t face, bool is_right);
-  /// An edge that is a side of no trapezoid, being horizontal.
+  /// Adds a horizontal edge, which is a side of no trapezoid.
   void add_edge(std::uint32_t edge) { sides_.push_back(side_of(edge, kNoFace, 0)); }
-  /// Nothing ends at the edge, which has been or will be added.
+  /// Marks an edge, which has been or will be added, as a cut: nothing ends there.
   void add_cut(std::uint32_t edge) { cuts_.push_back(side_of(edge, kNoFace, 0)); }
 
-  /// Finds out what lies where, within the box, for look-ups within about that distance.
+  /// Determines faces and neighbours within the box and prepares look-ups within about that
+  /// distance.
   void find(const Box& box, double distance);
 
   std::span<const Edge> edges() const { return edges_; }
@@ -91,11 +94,11 @@ class BoundaryMap {
   /// The number of an edge of a piece; kNone if it has not been added, or the same face lies on
   /// both of its sides.
   std::uint32_t edge_number(std::uint32_t piece, std::uint32_t edge) const;
-  /// The side that follows, or goes before, around the same face; kNone where that is not known.
+  /// The next or previous side around the same face; kNone if it is not known.
   std::uint32_t next(std::uint32_t side) const { return next_[side]; }
   std::uint32_t before(std::uint32_t side) const { return before_[side]; }
 
-  /// An edge that is no cut, as look-ups meet it.
+  /// An edge that is no cut, as passed to look-ups.
   struct Near {
     Point upper;
     Point lower;
@@ -105,13 +108,15 @@ class BoundaryMap {
     Vector from() const { return to_vector(upper); }
     Vector way() const { return to_vector(lower) - to_vector(upper); }
   };
-  /// About how far look-ups should reach first, in cells of the grid.
+  /// A suitable first radius of look-ups, in cells of the grid.
   double cell() const { return cell_; }
-  /// Calls visit(near) for what may come into the box, at least for what does, some several times.
+  /// Calls visit(near) for all edges that intersect the box and possibly for some others; some are
+  /// visited several times.
   template <typename Visit>
   void for_each_near(Vector min, Vector max, const Visit& visit) const;
-  /// The same for what may meet a way, from its begin on: last() tells up to which share of it that
-  /// is still wanted, and does not grow.
+  /// The same for edges that may intersect the path from `from` along `way`, in order from its
+  /// start. last() returns up to which fraction of the path edges are still needed; it must not
+  /// grow.
   template <typename Visit, typename Last>
   void for_each_along(Vector from, Vector way, const Last& last, const Visit& visit) const;
 
@@ -158,17 +163,17 @@ class BoundaryMap {
   std::vector<MeshView> meshes_;  // by piece
   std::vector<Side> sides_;
   std::vector<Side> cuts_;
-  // By their upper ends, then their lower ones: sides_, and cuts_.
+  // Ordered by upper ends, then lower ends: indices of sides_ and of cuts_.
   std::vector<KeyedIndex> side_order_;
   std::vector<KeyedIndex> cut_order_;
   std::vector<Edge> edges_;
-  std::vector<KeyedIndex> names_;  // the piece and its edge, and the number
+  std::vector<KeyedIndex> names_;  // the piece and its edge, with the number
   std::vector<KeyedIndex> lower_ends_;
   std::vector<KeyedIndex> scratch_;
   std::vector<End> ends_;
   std::vector<std::uint32_t> next_;    // by side
   std::vector<std::uint32_t> before_;  // by side
-  // Cells of a lattice, by row and column, with the edges that come into each.
+  // Cells of a lattice, by row and column, with the edges that intersect each.
   Vector corner_;
   double cell_ = 1;
   double per_cell_ = 1;
@@ -190,8 +195,8 @@ void BoundaryMap::for_each_near(Vector min, Vector max, const Visit& visit) cons
   }
 }
 
-// Row by row, and column by column within each, as the way goes. Cells are met by what is up to
-// kBeside away from them, as numbers are rounded.
+// Visits cells row by row, and column by column within each row, in the direction of the path.
+// Edges up to kBeside away count as being in a cell, because numbers are rounded.
 template <typename Visit, typename Last>
 void BoundaryMap::for_each_along(Vector from, Vector way, const Last& last,
                                  const Visit& visit) const {
@@ -203,7 +208,7 @@ void BoundaryMap::for_each_along(Vector from, Vector way, const Last& last,
   const int last_row = row_of(to.y);
   const double per_x = way.x == 0 ? 0 : 1 / way.x;
   const double per_y = way.y == 0 ? 0 : 1 / way.y;
-  // The share of the way at which it comes to a line, and a little less.
+  // The fraction of the path at which it reaches a line, minus a small margin.
   const auto share_at = [](double line, double at, double per_way, int step) {
     return (line - step * kBeside - at) * per_way;
   };

@@ -9,12 +9,12 @@
 namespace trapeze {
 namespace {
 
-// How far a chord may be from its curve, in pixels.
+// Maximum distance of a chord from its curve, in pixels.
 constexpr double kMostOff = 0.04;
-constexpr int kMostHalves = 12;  // chords of each half of a curve, at most
+constexpr int kMostHalves = 12;  // maximum number of chords of each half of a curve
 
-// Triangles of a smaller area, in pixels, are not worth it: of their third, which changes its face,
-// no pixel shows more than a 255th.
+// Triangles of a smaller area, in square pixels, are not worth rounding: a third of the triangle
+// changes its face, which no pixel shows as more than 1/255.
 constexpr double kLeastArea = 0.01;
 
 double distance(Point a, Point b) {
@@ -23,7 +23,7 @@ double distance(Point a, Point b) {
   return std::sqrt(x * x + y * y);
 }
 
-/// The point at that distance from one towards another.
+/// The point at the fraction `share` of the way from one point to the other.
 Point point_towards(Point from, Point to, double share) {
   const auto between = [share](std::int32_t a, std::int32_t b) {
     return static_cast<std::int32_t>(std::lround(a + (static_cast<double>(b) - a) * share));
@@ -31,8 +31,8 @@ Point point_towards(Point from, Point to, double share) {
   return {between(from.x, to.x), between(from.y, to.y)};
 }
 
-/// Of the parabola from a to b that leads towards the tip: after i of n steps, rounded to a cell.
-/// The same backwards.
+/// The point after i of n steps on the parabola from a to b that bends towards the tip, rounded to
+/// a cell. Symmetric in the direction.
 Point point_on_curve(Point a, Point tip, Point b, int i, int n) {
   const auto at = [i, n](std::int64_t from, std::int64_t by, std::int64_t to) {
     const std::int64_t whole = std::int64_t{n} * n;
@@ -45,7 +45,7 @@ Point point_on_curve(Point a, Point tip, Point b, int i, int n) {
   return {at(a.x, tip.x, b.x), at(a.y, tip.y, b.y)};
 }
 
-/// Chords of half the curve, so that none is more than kMostOff pixels away from it.
+/// The number of chords of half the curve such that none is more than kMostOff pixels away from it.
 int halves_of(Point a, Point tip, Point b, double pixel) {
   const double x = static_cast<double>(a.x) - 2.0 * tip.x + b.x;
   const double y = static_cast<double>(a.y) - 2.0 * tip.y + b.y;
@@ -54,7 +54,8 @@ int halves_of(Point a, Point tip, Point b, double pixel) {
   return static_cast<int>(std::clamp(chords, 1.0, double{kMostHalves}));
 }
 
-/// Whether it lies in the triangle, its sides included. The corners go round one way or the other.
+/// Whether the point lies in the triangle, including its sides. The corners may be in either
+/// orientation.
 bool holds(const std::array<Point, 3>& triangle, Point p) {
   int left = 0;
   int right = 0;
@@ -66,8 +67,8 @@ bool holds(const std::array<Point, 3>& triangle, Point p) {
   return left == 0 || right == 0;
 }
 
-/// Appends the triangle of three vertices, and of the edges between the first and the second, the
-/// second and the third, the third and the first.
+/// Appends the triangle of three vertices. `sides` are the edges between the first and the second,
+/// the second and the third, the third and the first.
 void append_triangle(const std::array<std::uint32_t, 3>& corners,
                      const std::array<std::uint32_t, 3>& sides, bool is_hole,
                      const std::vector<Point>& vertices, std::vector<MeshTrapezoid>& trapezoids) {
@@ -170,8 +171,7 @@ void CornerRounding::find_places() {
 
 void CornerRounding::find(const Size& size) {
   unite_sides();
-  // About as long as the sides of triangles are in the mean: so few vertices are looked at for
-  // each.
+  // About as long as the mean side of a triangle, so that few vertices are examined for each.
   double sides = 0;
   for (const Edge& edge : edges_) {
     sides += std::min(distance(edge.upper, edge.lower) / 2, size.radius * size.pixel);
@@ -204,8 +204,8 @@ bool CornerRounding::is_empty(const std::array<Point, 3>& triangle, VertexKey ti
   }
 }
 
-/// The faces on the side of the edge where a point lies, and on the other; nothing of one that is
-/// horizontal.
+/// The faces on the side of the edge where a point lies, and on the other side; none for a
+/// horizontal edge.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> CornerRounding::faces_beside(
     const Edge& edge, Point inner) {
   if (edge.is_level()) return std::nullopt;
@@ -265,7 +265,7 @@ void CornerRounding::trace(std::uint32_t piece, const MeshView& mesh, std::uint3
   const auto append = [&way](Point place, double share) {
     if (way.empty() || way.back().place != place) way.push_back({place, share});
   };
-  // From the middle of the curve to its end on the edge, and the other way round.
+  // Appends from the middle of the curve to its end on the edge, or in reverse.
   const auto append_half = [&](const Corner& corner, bool is_at_lower) {
     const std::span<const Point> points = points_of(corner);
     const std::size_t half = points.size() / 2;
@@ -288,7 +288,7 @@ void CornerRounding::trace(std::uint32_t piece, const MeshView& mesh, std::uint3
   if (lower == nullptr) append(mesh.vertices[ends.lower], 1);
 }
 
-// A fan of triangles around the tip: the curve is seen from there.
+// A fan of triangles around the tip, from which the whole curve is visible.
 void CornerRounding::append_place(const Corner& corner, bool is_hole, std::vector<Point>& vertices,
                                   std::vector<MeshEdge>& edges,
                                   std::vector<MeshTrapezoid>& trapezoids) const {

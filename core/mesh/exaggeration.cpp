@@ -15,56 +15,56 @@ constexpr std::uint32_t kNone = BoundaryMap::kNone;
 constexpr std::uint32_t kLong = kNone - 1;  // instead of the number of a loop
 constexpr std::uint32_t kSeen = kNone - 1;  // instead of that of a moved side, until all are known
 
-// Instead of how long a ray is: not known at all, and not known but for being long enough.
+// Instead of the length of a ray: not known at all, or known only to be long enough.
 constexpr float kUnknown = -1;
 constexpr float kWide = -2;
-constexpr double kRounding = 1e-6;  // of numbers that are kept, and more
+constexpr double kRounding = 1e-6;  // at least the rounding error of stored numbers
 
 // Lengths in pixels.
 constexpr double kLeastStep = 1;    // between samples
-constexpr double kOffEnds = 0.05;   // what is told of an end of an edge is told beside it
-constexpr double kTouching = 0.02;  // walls so near to each other are one
+constexpr double kOffEnds = 0.05;   // values for an end of an edge are computed slightly beside it
+constexpr double kTouching = 0.02;  // walls this near to each other are one
 constexpr double kLeastMove = 0.002;
 constexpr double kLeastBend = 0.004;
 
-// Samples after which a strip is broken in any case, so that what is drawn of an edge here does not
-// depend on how much of it is known.
+// A strip is always split after this many samples, so that the drawing of an edge does not depend
+// on how much of it is known.
 constexpr std::int32_t kStepsOfStrip = 4;
 
-constexpr double kStraight = 0.052336;  // the sine of 3 degrees: smaller angles are no corner
-constexpr double kMostOfTip = 1.5;      // of how far the sides of a corner move
+constexpr double kStraight = 0.052336;  // the sine of 3 degrees: smaller angles are not corners
+constexpr double kMostOfTip = 1.5;      // times the distance by which the sides of a corner move
 
 constexpr unsigned kStepsBetweenChecks = 1024;
 
-// How far from a place it is seen how thick a face is there: by how much discs within it have to
-// grow on the way, about as they do in a corner of 40 degrees; and how much thinner it is taken for
-// by what is farther away.
+// How the thickness of a face at some distance counts at a place: the radius of discs within the
+// face must grow by this fraction of the distance, about as in a corner of 40 degrees. Otherwise,
+// the thickness counts for less by this factor times the excess distance.
 constexpr double kOpening = 0.36;
 constexpr double kThinnerBeyond = 2;
-// Of reserves, for which it counts what is farther than the radius of a disc away from it.
+// For reserves: the same factor, for the distance beyond the radius of the disc.
 constexpr double kLessReserve = 0.5;
 
-// What a ray meets is the other side of a face where it is about parallel to the side at hand, and
-// not, as at the ends of strips that are not quite square, where it is about at right angles to it:
-// cosines of the angle between them, of about 60 and 70 degrees.
+// The boundary met by a ray is the opposite side of a face if it is about parallel to the present
+// side. It is not if it is about at right angles, as at the ends of strips that are not quite
+// square. Cosines of the angle between them, of about 60 and 70 degrees.
 constexpr double kOpposite = 0.49;
 constexpr double kBeside = 0.34;
 
-// In widths: how far a ray goes, and how large discs are.
+// In widths: the length of rays and the sizes of discs.
 constexpr double kRay = 2.5;
 constexpr std::array<double, 2> kMostRadii{0.5, 1};
 
-// In widths: how far along the boundary it is looked for what is thick.
+// In widths: how far along the boundary thick places are searched.
 constexpr double kWalk = 2;
-constexpr double kMostOfLoop = 16;  // how long boundaries are of which all is known at once
+constexpr double kMostOfLoop = 16;  // maximum length of a boundary that is examined as a whole
 
-// Of boundaries of which is known what lies near them: how many sides they have, and how many edges
-// may be near.
+// Boundaries whose neighbourhood is gathered: the maximum number of their sides, and of the edges
+// nearby.
 constexpr int kMostSidesOfLoop = 64;
 constexpr std::uint32_t kMostEdgesInLoop = 32;
 
-// Of a radius: how far within the boundary a disc is looked for where there is none beside it, as
-// it is uneven.
+// In radii: how far within the boundary a disc is searched if none fits directly beside an uneven
+// boundary.
 constexpr double kDepth = 1.5;
 
 Vector turned(Vector way) {
@@ -80,22 +80,22 @@ Point to_point(Vector v) {
 
 struct Touch {
   double radius = 0;
-  double share = 0;  // of the way, where it is touched
+  double share = 0;  // of the way: where it is touched
 };
 
-/// For how wide a face is taken, by a disc so far away from it.
+/// The width that a face counts as having, because of a disc at that distance.
 double seen_from(double far, double own_radius, double radius) {
   const double opened = std::max(0.0, radius - own_radius) / kOpening;
   return 2 * radius - kThinnerBeyond * std::max(0.0, far - opened);
 }
 
-/// Of an angle.
+/// Of an angle, given by its sine and cosine.
 bool is_straight(double sine, double cosine) {
   return cosine > 0 && std::abs(sine) < kStraight;
 }
 
 /// The smallest circle that touches a line through `from` there, on the side of the normal, and
-/// reaches the way that begins at `at`.
+/// reaches the segment that begins at `at`.
 std::optional<Touch> circle_to(Vector from, Vector normal, Vector at, Vector way) {
   const Vector c = at - from;
   const double nc = dot(normal, c);
@@ -114,7 +114,7 @@ std::optional<Touch> circle_to(Vector from, Vector normal, Vector at, Vector way
   };
   take(0);
   take(1);
-  // Where the radius changes no more along the way.
+  // Where the radius no longer changes along the segment.
   const double a = vv * nv;
   const double half_b = vv * nc;
   const double e = 2 * cv * nc - nv * cc;
@@ -130,8 +130,8 @@ std::optional<Touch> circle_to(Vector from, Vector normal, Vector at, Vector way
   return least;
 }
 
-/// Whether the way that begins at `at` keeps farther away from (0, 0). Is not where the two are
-/// alike but for rounding.
+/// Whether the segment that begins at `at` keeps farther away from (0, 0). False if the difference
+/// is within rounding.
 inline bool is_farther(Vector at, Vector way, double square_of_distance) {
   const double square = square_of_distance * (1 + kRounding);
   const double before = -dot(at, way);
@@ -142,7 +142,7 @@ inline bool is_farther(Vector at, Vector way, double square_of_distance) {
   return beside * beside > square * all;
 }
 
-/// The shares of the way between which it is in the box; nothing if it is not.
+/// The fractions of the segment between which it is in the box; none if it is not.
 std::optional<std::pair<double, double>> shares_in(const Box& box, Vector from, Vector way) {
   const Vector to = from + way;
   if (std::max(from.x, to.x) < box.min_x || std::min(from.x, to.x) > box.max_x ||
@@ -174,9 +174,8 @@ struct Ends {
   double x_at(double y) const { return EdgeLine(upper, lower).x_at(y); }
 };
 
-/// Appends, as holes, what lies between two heights to the east of both `wests` and to the west of
-/// both `easts`, which all reach from one height to the other. Where they cross is rounded to
-/// cells.
+/// Appends, as holes, the area between two heights, east of both `wests` and west of both `easts`,
+/// which all span these heights. Crossings are rounded to cells.
 void append_cut(const std::array<Ends, 2>& wests, const std::array<Ends, 2>& easts,
                 std::int32_t top, std::int32_t bottom, std::vector<Point>& vertices,
                 std::vector<MeshEdge>& edges, std::vector<MeshTrapezoid>& trapezoids) {
@@ -228,7 +227,7 @@ void Exaggeration::find(const Size& size, const Box& box, const Cancellation* ca
   beside_others_.clear();
   CancellationCheck check(cancellation, kStepsBetweenChecks);
   const auto sides = static_cast<std::uint32_t>(2 * boundary_.edges().size());
-  // Face by face, and by where they lie: what one of them looks at has just been looked at.
+  // Face by face, and by place, so that the data that one needs has just been read.
   number_of_moved_.assign(sides, kNone);
   const auto move_around = [&](std::uint32_t side) {
     for (; side != kNone && number_of_moved_[side] == kNone; side = boundary_.next(side)) {
@@ -286,7 +285,7 @@ bool Exaggeration::has_sample(At at) const {
   return row.steps > 0 && at.step >= row.first && at.step < row.first + row.count;
 }
 
-/// Until the next call.
+/// Valid until the next call.
 Exaggeration::Sample& Exaggeration::sample(At at) {
   const Row& row = rows_[at.side / 2];
   if (row.sample == kNone) take_samples(at.side / 2);
@@ -304,7 +303,7 @@ void Exaggeration::take_samples(std::uint32_t edge) {
   const BoundaryMap::Edge& line = boundary_.edges()[edge];
   row.sample = static_cast<std::uint32_t>(samples_.size());
   samples_.resize(samples_.size() + 2 * static_cast<std::size_t>(row.count));
-  // At an end of the edge, a little beside it.
+  // At an end of the edge, slightly beside it.
   const double off = std::min(kOffEnds * pixel_ / length(line.way()), 0.125);
   for (std::int32_t i = row.first; i < row.first + row.count; ++i) {
     const double share = static_cast<double>(i) / row.steps;
@@ -341,9 +340,9 @@ std::optional<Exaggeration::At> Exaggeration::step_back(At at) const {
   return next;
 }
 
-// ---- how wide a face is
+// ---- width of a face
 
-/// Whether it is less than the width straight into the face, to its boundary.
+/// Whether the distance straight into the face to its boundary is less than the width.
 bool Exaggeration::is_narrow(At at) {
   if (const float known = sample(at).ray; known != kUnknown) return known >= 0 && known < width_;
   if (look_across(at, (1 + kRounding) / kRay)) return sample(at).ray < width_;
@@ -351,14 +350,15 @@ bool Exaggeration::is_narrow(At at) {
   return false;
 }
 
-/// Straight into the face, to its boundary, and no farther than kRay.
+/// The distance straight into the face to its boundary, at most kRay.
 float Exaggeration::ray(At at) {
   if (const float known = sample(at).ray; known >= 0) return known;
   look_across(at, 1);
   return sample(at).ray;
 }
 
-/// Whether there is a boundary up to that share of kRay, or that is all of it.
+/// Looks for the boundary up to that fraction of kRay. Returns whether it was found, or whether
+/// that is all of kRay.
 bool Exaggeration::look_across(At at, double share) {
   const Vector from = place(at);
   const Vector way = inward(at.side) * (kRay * width_);
@@ -383,7 +383,7 @@ bool Exaggeration::look_across(At at, double share) {
     facing = met < least ? cosine : std::max(facing, cosine);
     least = met;
   };
-  // Up to where it leaves the box of a loop, all that it may meet is known.
+  // Up to where the ray leaves the box of a loop, everything that it may meet is known.
   const std::uint32_t number = loop_of(at.side);
   bool is_known = false;
   if (number != kLong && loops_[number].edge_count > 0) {
@@ -410,7 +410,7 @@ double Exaggeration::half_ray(At at, double most) {
   return std::min(most, ray(at) / 2.0);
 }
 
-/// A disc in the face, over against the place: the smaller one, or the larger one, of kMostRadii.
+/// A disc in the face, inwards from the place: the smaller or the larger one of kMostRadii.
 Exaggeration::Disc Exaggeration::disc(At at, std::size_t size) {
   if (const std::uint32_t known = sample(at).discs[size]; known != kNone) return discs_[known];
   const double most = kMostRadii[size] * width_;
@@ -427,8 +427,7 @@ Exaggeration::Disc Exaggeration::disc(At at, std::size_t size) {
   return found;
 }
 
-/// How far it is to the boundary, and no more than `most`, of a place within the face that the loop
-/// is of.
+/// The distance, at most `most`, of a point within the face of the loop from the boundary.
 double Exaggeration::clearance(Vector middle, double most, std::uint32_t loop) {
   double square = most * most;
   const auto look_at = [&](const BoundaryMap::Near& near) {
@@ -447,7 +446,8 @@ double Exaggeration::clearance(Vector middle, double most, std::uint32_t loop) {
         std::min({middle.x - min.x, max.x - middle.x, middle.y - min.y, max.y - middle.y});
     if (radius() <= to_side) return radius();
   }
-  // Near the place first: it often becomes so small there that little else has to be looked at.
+  // Near the point first: the distance often becomes so small there that little else has to be
+  // examined.
   for (double looked_at = std::min(boundary_.cell() / 2, most);;) {
     const Vector corner{looked_at, looked_at};
     boundary_.for_each_near(middle - corner, middle + corner, look_at);
@@ -456,7 +456,8 @@ double Exaggeration::clearance(Vector middle, double most, std::uint32_t loop) {
   }
 }
 
-/// Calls visit(at, place) for those along the boundary, on both sides, until one returns true.
+/// Calls visit(at, place) for places along the boundary, in both directions, until one returns
+/// true.
 template <typename Visit>
 void Exaggeration::walk_from(At at, double far, const Visit& visit) {
   const Vector from = place(at);
@@ -468,7 +469,7 @@ void Exaggeration::walk_from(At at, double far, const Visit& visit) {
     while (walked <= far) {
       const auto next = is_on ? step_on(last) : step_back(last);
       if (!next) break;
-      if (next->side == at.side && next->step == at.step) return;  // once around
+      if (next->side == at.side && next->step == at.step) return;  // went all the way round
       const Vector next_place = place(*next);
       walked += length(next_place - last_place);
       last = *next;
@@ -478,8 +479,8 @@ void Exaggeration::walk_from(At at, double far, const Visit& visit) {
   }
 }
 
-/// How wide the face is for growth, at a place where it is narrow straight across, and no less than
-/// that: in a corner, as where the corner has become wide.
+/// The width of the face that counts for growth, at a place where it is narrow straight across, and
+/// at least that width: in a corner, the width that the corner reaches.
 double Exaggeration::width_beside(At at) {
   const std::uint32_t loop = loop_of(at.side);
   if (loop != kLong && loops_[loop].is_short) {
@@ -499,7 +500,7 @@ double Exaggeration::width_beside(At at) {
   return widest;
 }
 
-/// The same, where the boundary is a loop.
+/// The same, if the boundary is a loop.
 double Exaggeration::widest_in(const Loop& loop, At at) {
   const std::span<LoopPlace> places = std::span(loop_places_).subspan(loop.first, loop.count);
   const std::int32_t steps = rows_[at.side / 2].steps;
@@ -534,13 +535,13 @@ double Exaggeration::radius_of(LoopPlace& place) {
   return place.radius;
 }
 
-/// Of loops_, or kLong.
+/// An index into loops_, or kLong.
 std::uint32_t Exaggeration::loop_of(std::uint32_t side) {
   return loop_of_side_[side] == kNone ? find_loop(side) : loop_of_side_[side];
 }
 
-/// Finds the boundary along which a side lies, if it has few edges, and else finds that out for as
-/// many sides as have been gone along.
+/// Finds the boundary to which a side belongs, if it has few edges; otherwise marks all sides
+/// followed so far as long.
 std::uint32_t Exaggeration::find_loop(std::uint32_t side) {
   std::uint32_t end = side;
   int count = 0;
@@ -652,8 +653,8 @@ double Exaggeration::growth(At at) {
   const bool is_still =
       boundary_.edges()[at.side / 2].is_cut || boundary_.face_of(at.side) == BoundaryMap::kNoFace;
   double by = is_still ? 0 : growth_across(at);
-  // Beside a corner that is not quite square, a ray may end at its other side: what is told of the
-  // next place holds there.
+  // Beside a corner that is not quite square, a ray may end at the corner's other side; there the
+  // value of the next place is used.
   const std::int32_t steps = rows_[at.side / 2].steps;
   const At inner{at.side, at.step == 0 ? 1 : at.step - 1};
   const bool is_end = at.step == 0 || at.step == steps;
@@ -679,7 +680,7 @@ double Exaggeration::reserve(At at) {
   return sample(at).reserve;
 }
 
-/// Between samples, of which `of` tells.
+/// Interpolates between samples, for which `of` returns the values.
 template <typename Of>
 double Exaggeration::between_steps(std::uint32_t side, double share, const Of& of) {
   const Row& row = rows_[side / 2];
@@ -694,7 +695,7 @@ double Exaggeration::between_steps(std::uint32_t side, double share, const Of& o
   return of_step(step) * (1 - between) + of_step(step + 1) * between;
 }
 
-/// Between samples; less than 0 where there is a reserve.
+/// Interpolated between samples; negative where there is a reserve.
 double Exaggeration::signed_growth(std::uint32_t side, double share) {
   return between_steps(side, share, [this](At at) {
     const double by = growth(at);
@@ -702,16 +703,16 @@ double Exaggeration::signed_growth(std::uint32_t side, double share) {
   });
 }
 
-/// The same, but for what is less than 0. Reserves, which take long to find, matter only beside
-/// what grows.
+/// The same, except for negative values. Reserves, which take long to find, matter only beside
+/// something that grows.
 double Exaggeration::positive_growth(std::uint32_t side, double share) {
   const double most = between_steps(side, share, [this](At at) { return growth(at); });
   return most > 0 ? std::max(0.0, signed_growth(side, share)) : 0;
 }
 
-// ---- how far it may grow
+// ---- limits of growth
 
-/// By how much a place may move along the normal, up to `by`.
+/// How far a place may move along the normal, up to `by`.
 double Exaggeration::limited(Vector from, Vector normal, double by,
                              const std::array<std::uint32_t, 3>& exempt) {
   if (by <= 0) return 0;
@@ -724,7 +725,7 @@ double Exaggeration::limited(Vector from, Vector normal, double by,
     if (std::max(ahead, ahead + dot(normal, way)) < -touching) return;
     const double reach = within + touching;
     if (is_farther(c - normal * within, way, reach * reach)) return;
-    // On which side of the edge the place lies, if not by so little that it is on both.
+    // The side of the edge on which the place lies, unless it is so near that it is on both.
     const double turn = cross(c, way);
     const bool is_on_edge = turn * turn < touching * touching * dot(way, way) * (1 + kRounding);
     if (!is_on_edge && !near.has_face[turn > 0 ? 1 : 0]) return;
@@ -737,7 +738,7 @@ double Exaggeration::limited(Vector from, Vector normal, double by,
       const double gap = length(near.from() + way * at - from);
       if (gap - width_ / 2 >= most) return;
       const std::uint32_t side = 2 * near.edge + number;
-      // Beyond a void nothing is grown over.
+      // Across a void, nothing is grown over.
       const bool is_beside_void = edge.faces[1 - number] == BoundaryMap::kNoFace;
       const double left =
           gap - (is_beside_void ? positive_growth(side, at) : signed_growth(side, at));
@@ -752,7 +753,7 @@ double Exaggeration::limited(Vector from, Vector normal, double by,
     if (beside > -touching) limit(1, touch->radius, touch->share);
     if (beside < touching) limit(0, touch->radius, touch->share);
   };
-  // What is near first: the circles that reach it are small, and no larger one matters then.
+  // Nearby edges first: the circles that reach them are small, and then no larger one matters.
   for (double looked_at = std::min(boundary_.cell() / 2, by);;
        looked_at = std::min(2 * looked_at, most)) {
     const Vector middle = from + normal * looked_at;
@@ -777,13 +778,13 @@ double Exaggeration::growth_at_end(std::uint32_t side, bool is_at_head) {
   return limited_by_neighbour(side, is_lower ? 1 : 0, growth(at));
 }
 
-/// As one goes along a side.
+/// The direction in which a side is traversed.
 Vector Exaggeration::way_of(std::uint32_t side) const {
   const Vector way = boundary_.edges()[side / 2].way();
   return is_forward(side) ? way : way * -1;
 }
 
-/// At the end of a side.
+/// The turn at the end of a side.
 Exaggeration::Turn Exaggeration::turn_between(std::uint32_t side, std::uint32_t next) const {
   const Vector one = way_of(side);
   const Vector other = way_of(next);
@@ -792,7 +793,7 @@ Exaggeration::Turn Exaggeration::turn_between(std::uint32_t side, std::uint32_t 
 }
 
 /// Where the boundary turns away from the face: how far from the end of the side, and from the
-/// begin of the next, their moved lines meet.
+/// beginning of the next, their moved lines meet.
 std::optional<std::array<double, 2>> Exaggeration::fold_between(std::uint32_t side,
                                                                 std::uint32_t next) {
   if (cross(way_of(side), way_of(next)) >= 0) return std::nullopt;
@@ -808,7 +809,7 @@ std::optional<std::array<double, 2>> Exaggeration::fold_between(std::uint32_t si
   return gone;
 }
 
-// ---- what moves
+// ---- moving
 
 void Exaggeration::move_side(std::uint32_t side) {
   const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
@@ -886,7 +887,7 @@ void Exaggeration::move_side(std::uint32_t side) {
       {side, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(moved_.size() - begin)});
 }
 
-/// Leaves out places that lie on the line between those before and after them.
+/// Drops places that lie on the line between those before and after them.
 void Exaggeration::straighten(std::size_t first, std::int32_t steps) {
   std::size_t kept = first + 1;
   for (std::size_t i = first + 1; i < moved_.size(); ++i) {
@@ -972,7 +973,7 @@ Point Exaggeration::end_place(std::uint32_t side, bool is_at_head) const {
   return place_of(side, is_lower ? places[places.size() - 2] : places[1]);
 }
 
-/// Where the moved lines of two sides meet, from their common end.
+/// Where the moved lines of two sides meet, relative to their common end.
 std::optional<Vector> Exaggeration::tip_between(std::uint32_t side, std::uint32_t next, double one,
                                                 double other) {
   if (one == 0 && other == 0) return std::nullopt;
@@ -983,7 +984,7 @@ std::optional<Vector> Exaggeration::tip_between(std::uint32_t side, std::uint32_
   if (on <= 0 || back <= 0) return std::nullopt;
   const BoundaryMap::Edge& edge = boundary_.edges()[side / 2];
   const Vector inner = inward(side);
-  const Vector along{inner.y, -inner.x};  // the way of the side
+  const Vector along{inner.y, -inner.x};  // the direction of the side
   const Vector tip = inner * -one + along * on;
   const double far = length(tip);
   const Vector direction = tip * (1 / far);
@@ -1017,7 +1018,7 @@ double Exaggeration::moved_end(std::uint32_t side, bool is_at_head) const {
   return end.share == (is_lower ? 1 : 0) ? end.by : 0;
 }
 
-// Beyond a void nothing is grown over.
+// Across a void, nothing is grown over.
 bool Exaggeration::is_beside_others(std::uint32_t side) const {
   return boundary_.face_of(side ^ 1U) != BoundaryMap::kNoFace;
 }
@@ -1044,7 +1045,7 @@ void Exaggeration::sort_triangles() {
   triangles_.insert(triangles_.end(), beside_others_.begin(), beside_others_.end());
 }
 
-// ---- what is drawn
+// ---- drawing
 
 void Exaggeration::trace(std::uint32_t piece, const MeshView& mesh, std::uint32_t edge,
                          std::vector<PlateCarreeMesh::PointOnWay>& way) const {
@@ -1086,7 +1087,7 @@ void Exaggeration::trace(std::uint32_t piece, const MeshView& mesh, std::uint32_
   if (tips[1] != nullptr) append(tips[1]->at, 1);
 }
 
-/// How far a side has moved at that share of its edge.
+/// The distance by which a side has moved at that fraction of its edge.
 double Exaggeration::moved_by(std::span<const Moved> places, double share) {
   const auto next = std::ranges::upper_bound(places, share, {}, &Moved::share);
   if (next == places.begin() || places.empty()) return 0;

@@ -1,29 +1,30 @@
-// What is narrower than a width is drawn that wide: the strips by which faces grow (the paper's
-// Figure 10b, and 10a where two of them meet).
+// Draws features narrower than a given width at that width: the strips by which faces grow (the
+// paper's Figure 10b, and 10a where two of them meet).
 //
-// From places p along the boundary of a face, three lengths are told:
+// Three lengths are computed at points p along the boundary of a face:
 //
-//   width      how far it is from p, straight into the face, to its opposite side; but not less
-//              than the diameter of a disc within the face beside p, so that corners of what is
-//              wide are not taken for narrow;
-//   growth     half of what the width lacks. There the boundary moves outwards by that, and
+//   width      the distance from p, straight into the face, to its opposite side; but at least
+//              the diameter of a disc within the face beside p, so that corners of wide features
+//              do not count as narrow;
+//   growth     half of what the width lacks. The boundary there moves outwards by that much, and
 //              corners remain corners;
-//   reserve    of what is wide enough: half of what a disc within it beside p has more than the
-//              width asked for. So far others may grow over the face at p.
+//   reserve    where the face is wide enough: half of the excess of the diameter of a disc
+//              within it beside p over the requested width. Others may grow over the face at p
+//              by so much.
 //
 //        |      :          |             a, narrow here, grows by the same on both sides, up to
-//        |  a   :<- growth |   b         the dotted line; between a and b, which grows towards it,
-//        |      :          |             neither goes beyond the middle of the void if both would.
+//        |  a   :<- growth |   b         the dotted line. Between a and b, which grows towards it,
+//        |      :          |             neither passes the middle of the void if both want to.
 //
 // Towards the boundary of another face, or of another part of the same one, p moves along its
-// normal at most until it is as near to that boundary as to p: into the disc that touches p and the
-// other boundary no second normal of that kind comes. Where the other does not want to grow so far,
-// it may move as much farther, and where the other has a reserve, over it as far as that goes. So
-// no two strips overlap, and none covers what is itself too narrow; see "Exaggeration" in
+// normal at most until it is as near to that boundary as to p: no second normal of that kind enters
+// the disc that touches p and the other boundary. If the other boundary needs less room, p may move
+// farther by the rest; if the other has a reserve, p may move over it by that much. So no two
+// strips overlap, and none covers a feature that is itself too narrow; see "Growth" in
 // core/README.md.
 //
-// What grows, and how, does not depend on what else has been added, as long as there is everything
-// within reach_of() of it.
+// What grows, and how, does not depend on what else has been added, provided that everything within
+// reach_of() of it has been.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -45,39 +46,39 @@ namespace trapeze {
 class Exaggeration {
  public:
   struct Size {
-    double width = 0;  // to which faces grow, in pixels
+    double width = 0;  // the width to which faces grow, in pixels
     double pixel = 1;  // cells
   };
 
-  /// How far around a place the boundary has to be known; both in pixels.
+  /// How far around a place the boundary must be known. Both in pixels.
   static constexpr double reach_of(double width) { return 8 * width + 8; }
 
-  /// Three points around a place that belongs to the face as well.
+  /// A triangle around additional area of the face.
   struct Triangle {
     BoundaryMap::Face face = BoundaryMap::kNoFace;
-    std::array<Point, 3> corners;   // the uppermost first
-    bool is_beside_others = false;  // whether it may have places in common with other faces
+    std::array<Point, 3> corners;   // the uppermost one first
+    bool is_beside_others = false;  // whether it may overlap other faces
   };
 
   /// To be filled before find().
   BoundaryMap& boundary() { return boundary_; }
   const BoundaryMap& boundary() const { return boundary_; }
 
-  /// Finds what grows into the box. Throws Cancelled.
+  /// Finds the growth that reaches into the box. Throws Cancelled.
   void find(const Size& size, const Box& box, const Cancellation* cancellation);
 
-  /// Leaves out what grows of faces for which is_kept(face) is false.
+  /// Drops the growth of faces for which is_kept(face) is false.
   template <typename IsKept>
   void keep(const IsKept& is_kept);
 
-  /// Without places in common, nor any in common with the face that they belong to.
+  /// The triangles overlap neither each other nor the face that they belong to.
   std::span<const Triangle> triangles() const { return triangles_; }
 
-  /// The way of an edge of a piece, moved, from its upper end to its lower one. Replaces `way`.
+  /// Replaces `way` by the moved path of an edge of a piece, from its upper end to its lower one.
   void trace(std::uint32_t piece, const MeshView& mesh, std::uint32_t edge,
              std::vector<PlateCarreeMesh::PointOnWay>& way) const;
 
-  /// Appends, with negative area, what the triangles have in common with the trapezoid.
+  /// Appends, with negative area, the intersection of the triangles with the trapezoid.
   void append_common(const MeshView& mesh, const MeshTrapezoid& trapezoid,
                      std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
                      std::vector<MeshTrapezoid>& trapezoids) const;
@@ -90,38 +91,40 @@ class Exaggeration {
     Vector middle;
     double radius = -1;
   };
-  // A place on the boundary of a face. What is not known yet is less than 0, or kNone.
+  // A point on the boundary of a face. Values not computed yet are negative, or kNone.
   struct Sample {
-    float ray = -1;    // or -2: not less than the width
-    float facing = 0;  // from 0 to 1: whether that meets the opposite side of the face
+    float ray = -1;    // or -2: at least the width
+    float facing = 0;  // from 0 to 1: how far the boundary that the ray meets is the opposite side
+                       // of the face
     float growth = -1;
     float reserve = -1;
-    // Of discs_: within the face, a smaller and a larger one.
+    // Indices in discs_ of a smaller and a larger disc within the face.
     std::array<std::uint32_t, 2> discs{BoundaryMap::kNone, BoundaryMap::kNone};
   };
-  // Of an edge: so many steps, and samples of those in the box.
+  // The number of steps of an edge, and its samples in the box.
   struct Row {
     Vector normal;           // of length 1, into the face of the even side
     std::int32_t steps = 0;  // 0: no sample
     std::int32_t first = 0;
     std::int32_t count = 0;
-    std::uint32_t sample = BoundaryMap::kNone;  // of the first, on both sides in turn; once needed
+    std::uint32_t sample = BoundaryMap::kNone;  // index of the first sample, both sides
+                                                // alternating; once needed
   };
   // A boundary of few edges around a face.
   struct Loop {
-    std::uint32_t side = 0;  // one of it
-    // What lies in the box around it, of loop_edges_, if that is not too much.
+    std::uint32_t side = 0;  // one of its sides
+    // The contents of the box around it, in loop_edges_, if they are not too many.
     Vector min;
     Vector max;
     std::uint32_t first_edge = 0;
     std::uint32_t edge_count = 0;
-    // Its places, in order, of loop_places_ and loop_order_; once needed, if it is short.
+    // Its places, in order, in loop_places_ and loop_order_; once needed, if it is short.
     bool is_short = false;
-    double around = 0;  // how long it is
+    double around = 0;  // its length
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
-  // By how much the boundary turns from one side to the next, towards the face.
+  // The angle by which the boundary turns from one side to the next, towards the face.
   struct Turn {
     double sine = 0;
     double cosine = 0;
@@ -133,23 +136,24 @@ class Exaggeration {
   struct LoopPlace {
     At at;
     Vector place;
-    double most = 0;     // of the radius of the smaller disc, known without looking
+    double most = 0;     // upper bound of the radius of the smaller disc, known without a search
     double radius = -1;  // once needed
-    double along = 0;    // how far from the first one
+    double along = 0;    // distance from the first one along the loop
   };
-  // A place that moves: how far from the upper end, as a share of the edge, and how far outwards.
+  // A point that moves: its distance from the upper end as a fraction of the edge, and the distance
+  // by which it moves outwards.
   struct Moved {
     double share = 0;
     double by = 0;
-    bool is_folded = false;  // the end of an edge, where this side and the next leave no room
+    bool is_folded = false;  // the end of an edge where this side and the next leave no room
   };
   struct MovedSide {
     std::uint32_t side = 0;
-    std::uint32_t first = 0;  // of moved_
+    std::uint32_t first = 0;  // index in moved_
     std::uint32_t count = 0;
   };
   struct Tip {
-    std::uint32_t side = 0;  // the one that ends there, so that the next begins there
+    std::uint32_t side = 0;  // the side that ends there; the next one begins there
     Point at;
   };
 
@@ -216,24 +220,25 @@ class Exaggeration {
   double width_ = 0;  // cells
   double pixel_ = 1;  // cells
   Box box_;
-  Box around_box_;         // where what moves may come into the box
+  Box around_box_;         // growth into the box may start here
   std::vector<Row> rows_;  // by edge
   std::vector<Sample> samples_;
   std::vector<Vector> places_;  // of the samples of both sides
   std::vector<Disc> discs_;
   std::vector<std::uint32_t> loop_of_side_;   // kNone: not known; kLong, see find_loop()
-  std::vector<std::uint32_t> place_of_side_;  // if it is of a loop: of the first one, in its order
+  std::vector<std::uint32_t> place_of_side_;  // if in a loop: its first place, in the order of the
+                                              // loop
   std::vector<Loop> loops_;
   std::vector<BoundaryMap::Near> loop_edges_;
   std::vector<LoopPlace> loop_places_;
-  std::vector<std::uint32_t> loop_order_;  // of loop_places_: the largest `most` first
+  std::vector<std::uint32_t> loop_order_;  // of loop_places_: by `most`, the largest first
   std::vector<Moved> moved_;
   std::vector<MovedSide> moved_sides_;          // by side
   std::vector<std::uint32_t> number_of_moved_;  // of moved_sides_, by side, or kNone
   std::vector<Tip> tips_;                       // by side
   std::vector<Triangle> triangles_;  // those beside others last, by their uppermost corners
   std::vector<Triangle> beside_others_;
-  std::int32_t highest_ = 0;  // of those beside others, in cells
+  std::int32_t highest_ = 0;  // largest height of those beside others, in cells
 };
 
 template <typename IsKept>

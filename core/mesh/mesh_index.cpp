@@ -39,13 +39,13 @@ bool spans(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box,
   return left.max + 1 <= box.min_x && right.min - 1 >= box.max_x;
 }
 
-/// One class an octave of levels; level 0 and kNeverDies have classes of their own.
+/// One class per octave of levels; level 0 and kNeverDies have classes of their own.
 unsigned lifespan_class(Level level) {
   return (level + kLevelsPerOctave - 1u) / kLevelsPerOctave;
 }
 
-/// Where the heights of a tree over `count` items begin, and where the last one ends. The last has
-/// one entry, or the first none.
+/// Where the levels of a tree over `count` items begin, and where the last one ends. The last level
+/// has one entry, or the first has none.
 std::vector<std::size_t> heights_over(std::size_t count, std::size_t fanout) {
   std::vector<std::size_t> begins = {0};
   std::size_t entries = count;
@@ -76,11 +76,11 @@ bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box)
   if (top > bottom || mesh.vertices[trapezoid.top].y == mesh.vertices[trapezoid.bottom].y) {
     return false;
   }
-  // The heights at which a line is to the west of a place, or to the east of it, as a span.
+  // The span of heights at which a line is to the west, or to the east, of an x.
   double from = top;
   double to = bottom;
   const auto narrow = [&](double x_top, double x_bottom, double x, bool is_west_wanted) {
-    const double at_top = is_west_wanted ? x - x_top : x_top - x;  // >= 0 where it is as wanted
+    const double at_top = is_west_wanted ? x - x_top : x_top - x;  // >= 0 on the wanted side
     const double at_bottom = is_west_wanted ? x - x_bottom : x_bottom - x;
     if (at_top >= 0 && at_bottom >= 0) return;
     const double crossing = top + (bottom - top) * (at_top / (at_top - at_bottom));
@@ -95,7 +95,8 @@ bool meets(const MeshView& mesh, const MeshTrapezoid& trapezoid, const Box& box)
 }
 
 bool cover_box(const MeshView& mesh, std::span<const TrapezoidRange> ranges, const Box& box) {
-  // A tile within a large polygon meets a few trapezoids; with more than this it has a boundary.
+  // A tile within a large polygon intersects a few trapezoids; with more than this, it contains a
+  // boundary.
   constexpr std::size_t kMaxTrapezoids = 48;
   struct Rows {
     std::int32_t begin;
@@ -204,7 +205,7 @@ void MeshIndex::descend(std::size_t height, std::size_t index, const Query& quer
 }
 
 std::uint64_t MeshIndex::estimate(const Box& box, Level born, Level alive) const {
-  constexpr std::uint64_t kFound = 5;  // of the eight of a block; 4 to 6 on maps of all kinds
+  constexpr std::uint64_t kFound = 5;  // of the eight in a block; 4 to 6 on maps of all kinds
   if (range_.count == 0) return 0;
   const Wanted wanted{box, born, alive};
   const std::size_t root = heights_.size() - 2;

@@ -10,7 +10,7 @@ namespace {
 constexpr double kSizesPerOctave = 8;
 constexpr double kLeastStretch = 0.75;
 constexpr double kMostStretch = 8;
-constexpr double kMostOfFirst = 1.5;  // of what is taken for the first edge of a loop
+constexpr double kMostOfFirst = 1.5;  // of the presumed length of the first edge of a loop
 constexpr double kRounding = 2;       // cells: milestones are whole ones
 
 double length_of(const MeshView& mesh, const MeshEdge& edge) {
@@ -21,8 +21,8 @@ double length_of(const MeshView& mesh, const MeshEdge& edge) {
   return std::sqrt(x * x + y * y);
 }
 
-/// Of an edge with one end where lengths begin anew: the first of its loop, or the last. The
-/// lengths at that end, and at the other one.
+/// The lengths at the ends of an edge that has one end where lengths restart: the first or the last
+/// edge of its loop. First the length at that end, then at the other one.
 struct AlongEnds {
   double beginning;
   double other;
@@ -51,7 +51,7 @@ double extent_of(LoopSize size) {
 Milestone OutlineView::milestone(std::uint32_t vertex, Level level) const {
   if (vertex >= milestone_ends.size()) return 0;
   const std::uint32_t begin = vertex == 0 ? 0 : milestone_ends[vertex - 1];
-  // Of a file that is cut off while it is mapped, ends may read as zero.
+  // In a file that is truncated while it is mapped, ends may read as zero.
   std::uint32_t i = std::max(begin, milestone_ends[vertex]);
   while (i > begin + 1 && milestone_levels[i - 1] > level) --i;
   return i > begin ? milestones[i - 1] : 0;

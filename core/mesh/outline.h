@@ -1,8 +1,8 @@
-// What is known of the boundary of a layer besides its edges, so that a piece of it is drawn alike
-// wherever it is met: how large the loop is that an edge is a part of, and how far along the loop
-// its ends lie.
+// Properties of the boundary of a layer besides its edges, so that a piece of it is drawn in the
+// same way everywhere: the size of the loop that an edge belongs to, and the distance of its ends
+// along the loop.
 //
-// Thread-safety: immutable, any number of threads may read.
+// Thread-safety: immutable; any number of threads may read.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace trapeze {
 
-/// The extent of a loop (the diameter of the circle that has its area) on a logarithmic scale,
-/// eight steps an octave: so within 4.5 %.
+/// The extent of a loop (the diameter of the circle of the same area) on a logarithmic scale with
+/// eight steps per octave: accurate to 4.5 %.
 using LoopSize = std::uint8_t;
 constexpr int kLoopSizes = 256;
 
@@ -23,41 +23,42 @@ LoopSize loop_size_of(double area);
 /// In cells.
 double extent_of(LoopSize size);
 
-/// The length of the boundary from the beginning of a loop to a vertex, as it is drawn at a level:
-/// in cells, modulo 2^32. 0 where a loop begins, and where several meet: lengths begin anew there.
+/// The length of the boundary from the beginning of a loop to a vertex, as drawn at a level: in
+/// cells, modulo 2^32. 0 where a loop begins and where several meet: lengths restart there.
 using Milestone = std::uint32_t;
 
-/// A view of the arrays of a layer, or of a mapped file. What is not there has size 255 and
+/// A view of the arrays of a layer, or of a mapped file. Missing entries have size 255 and
 /// milestone 0.
 struct OutlineView {
-  std::span<const LoopSize> loop_sizes;  // by edge: of the larger of the loops that it parts
-  std::span<const std::uint32_t> milestone_ends;  // by vertex: where those of the vertex end
-  // Of a vertex in ascending order of levels: each holds from its level up to that of the next.
+  std::span<const LoopSize> loop_sizes;  // by edge: of the larger of the loops that it separates
+  std::span<const std::uint32_t> milestone_ends;  // by vertex: one past its last milestone
+  // The milestones of a vertex in ascending order of levels: each applies from its level up to that
+  // of the next.
   std::span<const Milestone> milestones;
   std::span<const Level> milestone_levels;
 
   LoopSize loop_size(std::uint32_t edge) const {
     return edge < loop_sizes.size() ? loop_sizes[edge] : LoopSize{kLoopSizes - 1};
   }
-  /// Of a vertex that is part of the boundary at the level.
+  /// Precondition: the vertex is part of the boundary at the level.
   Milestone milestone(std::uint32_t vertex, Level level) const;
 };
 
-/// Lengths along the outline, in cells; their difference is about the length of the edge, and may
-/// be negative.
+/// Lengths along the outline, in cells. Their difference is about the length of the edge and may be
+/// negative.
 struct AlongEdge {
   double upper = 0;  // at its upper vertex
   double lower = 0;
 };
 
-/// The lengths along the outline between which an edge of the mesh at that level lies. Where two
-/// edges meet they agree, but for the beginnings of loops and places where loops meet.
+/// The lengths along the outline at the ends of an edge of the mesh at that level. Where two edges
+/// meet they agree, except at the beginnings of loops and where loops meet.
 AlongEdge along_edge(const MeshView& mesh, const OutlineView& outline, std::uint32_t edge,
                      Level level);
 
-/// Whether lengths from `from` to `to` fit an edge as long as that, and the length between them,
-/// which is negative if they go down: dashes along it are no longer than they should be, and not
-/// shorter than an eighth of that. Neither is 0.
+/// `fits` states whether the lengths `from` and `to` fit an edge of that length: dashes along it
+/// are then no longer than they should be, and at least an eighth of that. `length` is the length
+/// between them, negative if they decrease. Neither `from` nor `to` is 0.
 struct Stretch {
   bool fits = false;
   double length = 0;

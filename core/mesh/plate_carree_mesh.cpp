@@ -23,7 +23,7 @@ void PlateCarreeMesh::begin(double cells_per_row, const Box& box) {
 }
 
 void PlateCarreeMesh::add(const MeshView& mesh, std::span<const TrapezoidRange> ranges) {
-  std::size_t count = trapezoids_.size();  // at least, and mostly not many more
+  std::size_t count = trapezoids_.size();  // a lower bound, usually not much exceeded
   for (const TrapezoidRange& range : ranges) count += range.count;
   trapezoids_.reserve(count);
   edges_.reserve(2 * count);
@@ -62,12 +62,12 @@ void PlateCarreeMesh::append(std::int64_t top, std::int64_t bottom, const Side& 
   trapezoids_.push_back({v + 4, v + 5, e, e + 1});
 }
 
-// What is upright stays so.
+// Vertical sides stay straight.
 bool PlateCarreeMesh::is_cut(const Side& side) const {
   return side.upper.x != side.lower.x && std::int64_t{side.lower.y} - side.upper.y > height_;
 }
 
-/// Between the cuts before and after that place.
+/// The piece between the cuts before and after that height.
 PlateCarreeMesh::Side PlateCarreeMesh::piece_at(const Side& side, std::int64_t y) const {
   if (!is_cut(side)) return side;
   const std::int64_t from = cut_before(y, height_);
@@ -90,7 +90,7 @@ void PlateCarreeMesh::cut(Point from, Point to, std::vector<PointOnWay>& points)
     if (points.empty() || points.back().place != drawn) {
       points.push_back({drawn, share});
     } else if (points.size() > 1) {
-      points.back().share = share;  // of the end
+      points.back().share = share;  // exact at the end
     }
   };
   if (!is_cut(side)) {
@@ -98,7 +98,7 @@ void PlateCarreeMesh::cut(Point from, Point to, std::vector<PointOnWay>& points)
     add(to, 1);
   } else {
     const double all = static_cast<double>(side.lower.y) - side.upper.y;
-    // One piece beyond the box on either side: what is farther away is not seen.
+    // One piece beyond the box on either side: anything farther away is not visible.
     const std::int64_t first = std::max<std::int64_t>(side.upper.y, cut_before(north_, height_));
     const std::int64_t last =
         std::min<std::int64_t>(side.lower.y, cut_before(south_, height_) + height_);

@@ -1,9 +1,9 @@
-// Trapezoids and edges of the grid as they are drawn in plate carree.
+// Trapezoids and edges of the grid as drawn in plate carree.
 //
-// Points go where they belong, rounded to cells. Edges that are so high that they would not be
-// straight (see plate_carree.h) are cut at certain rows of the grid, the same in all pictures of
-// that resolution, and trapezoids with them: so neighbours still share their sides, nothing
-// overlaps and nothing gapes. A side is never farther from its curve than kMostCurved of a row.
+// Points are moved to their place there, rounded to cells. Edges so high that they would not be
+// straight (see plate_carree.h) are cut at certain rows of the grid, the same in all images of that
+// resolution, and trapezoids with them. So neighbours still share their sides, and there are
+// neither overlaps nor gaps. A side is never farther from its curve than kMostCurved of a row.
 //
 // Thread-safety: one thread at a time.
 #pragma once
@@ -20,19 +20,19 @@ namespace trapeze {
 
 class PlateCarreeMesh {
  public:
-  /// How far a side may be from the curve that it stands for, in rows of the picture.
+  /// The maximum distance of a side from the curve that it represents, in rows of the image.
   static constexpr double kMostCurved = 0.01;
 
-  /// Begins a picture whose rows have that many cells of plate carree, and which shows nothing of
-  /// the grid above or below the box.
+  /// Starts an image whose rows are that many cells of plate carree high, and which shows nothing
+  /// of the grid above or below the box.
   void begin(double cells_per_row, const Box& box);
 
-  /// Adds trapezoids, as far as they lie in the box.
+  /// Adds the parts of trapezoids that lie in the box.
   void add(const MeshView& mesh, std::span<const TrapezoidRange> ranges);
 
-  /// Of an edge, or a piece of one: the points between which it is drawn, from end to end, as far
-  /// as they matter to the box; nothing if it does not. Replaces `points`, which have shares of the
-  /// way from one end to the other, ascending.
+  /// Replaces `points` by the points between which an edge, or a piece of one, is drawn, from end
+  /// to end, as far as they matter to the box; empty if the edge does not. Their shares of the way
+  /// from one end to the other ascend.
   struct PointOnWay {
     Point place;
     double share = 0;
@@ -46,7 +46,7 @@ class PlateCarreeMesh {
   static Point projected(Point p) { return {p.x, plate_carree_row(p.y)}; }
 
  private:
-  // The two ends of a side, upper first.
+  // The two ends of a side, the upper one first.
   struct Side {
     Point upper;
     Point lower;

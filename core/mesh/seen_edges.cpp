@@ -16,7 +16,7 @@ struct Piece {
   float share;
 };
 
-/// Sorts pieces, and joins those that go on where another one of the same share ends.
+/// Sorts pieces, and joins those that continue where another one of the same share ends.
 void join(std::vector<Piece>& pieces) {
   std::ranges::sort(pieces, {}, [](const Piece& piece) {
     return std::tuple(piece.edge, piece.share, piece.begin, piece.end);
@@ -38,8 +38,8 @@ std::int32_t rounded(double cells) {
   return static_cast<std::int32_t>(std::floor(cells + 0.5));
 }
 
-/// The heights between which a line that is not horizontal lies in a box; none if the first is
-/// greater.
+/// The heights between which a line that is not horizontal lies in a box; there are none if the
+/// first is greater.
 std::pair<double, double> heights_within(const Box& box, Point upper, Point lower) {
   const double first = std::max(upper.y, box.min_y);
   const double last = std::min(lower.y, box.max_y);

@@ -1,5 +1,5 @@
-// Where the boundary of a feature is seen, of which parts are hidden by others that lie over it: as
-// far as its inside is seen beside it.
+// The visible parts of the boundary of a feature whose interior is partly hidden by overlapping
+// features: the boundary is visible where the interior beside it is.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,27 @@ namespace trapeze {
 /// A piece of an edge.
 struct SeenEdge {
   std::uint32_t edge = 0;
-  Point from;  // the end that is nearer to the upper vertex of the edge
+  Point from;  // the end nearer to the upper vertex of the edge
   Point to;
   float share = 1;  // see TrapezoidPart
 
   friend bool operator==(const SeenEdge&, const SeenEdge&) = default;
 };
 
-/// What is visible of a feature in a box, and perhaps beyond.
+/// The visible area of a feature in a box, and perhaps beyond.
 struct VisibleInBox {
-  std::span<const TrapezoidPart> parts;  // all that meet the box
+  std::span<const TrapezoidPart> parts;  // all parts that intersect the box
   Box box;
 };
 
-/// Appends what is seen of the edges of the feature, which are those of `own`, in ascending order:
-/// of edges that are sides of its visible parts. A piece is as long as can be. One that goes on
-/// beyond the box goes on to the end of its edge, and edges that do not meet the box are left out:
-/// so nothing depends on where trapezoids end outside of it.
+/// Appends the visible pieces of the edges of the feature (those of `own`, in ascending order) that
+/// are sides of its visible parts. A piece is as long as possible. A piece that extends beyond the
+/// box is continued to the end of its edge, and edges that do not intersect the box are left out.
+/// So the result does not depend on where trapezoids end outside the box.
 void append_seen_sides(const MeshView& mesh, std::span<const std::uint32_t> own,
                        const VisibleInBox& visible, std::vector<SeenEdge>& seen);
 
-/// Appends what is seen of a horizontal edge of the feature, likewise.
+/// The same for the visible pieces of a horizontal edge of the feature.
 void append_seen_level_edge(const MeshView& mesh, std::uint32_t edge, const VisibleInBox& visible,
                             std::vector<SeenEdge>& seen);
 

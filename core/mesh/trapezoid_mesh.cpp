@@ -40,7 +40,7 @@ void append_rectangle(const std::array<Point, 4>& corners, std::vector<Point>& v
     const std::uint32_t bottom = by_height[i + 1];
     if (corners[top].y == corners[bottom].y) continue;
     const double y = (static_cast<double>(corners[top].y) + corners[bottom].y) / 2;
-    std::vector<std::pair<double, std::uint32_t>> sides;  // where they are at that height
+    std::vector<std::pair<double, std::uint32_t>> sides;  // their positions at that height
     for (std::uint32_t side = 0; side < 4; ++side) {
       const Point upper = vertices[edges[e + side].upper];
       const Point lower = vertices[edges[e + side].lower];

@@ -1,10 +1,10 @@
-// The trapezoids of a whole layer as they are stored for drawing: flat, immutable arrays.
+// The trapezoids of a whole layer as stored for drawing: flat, immutable arrays.
 //
 // A mesh holds every version of every trapezoid between the finest and the coarsest tolerance, each
-// with its lifespan; the trapezoids alive at one level tile the polygons of the
-// layer at that tolerance, without overlap (inside one polygon). Only inside trapezoids are stored.
+// with its lifespan. The trapezoids alive at one level tile the polygons of the layer at that
+// tolerance, without overlaps within one polygon. Only inside trapezoids are stored.
 //
-// Thread-safety: immutable after construction, any number of threads may read.
+// Thread-safety: immutable after construction; any number of threads may read.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct MeshEdge {
 };
 
 /// The area between two edges, from the y of vertex `top` down to the y of vertex `bottom`. Both
-/// edges reach from one to the other. The four corners lie on the edges and are not stored. top.y
-/// == bottom.y is possible (the sweep order breaks ties): such a trapezoid has no area.
+/// edges span that height. The four corners lie on the edges and are not stored. top.y == bottom.y
+/// is possible (the sweep order breaks ties): such a trapezoid has no area.
 struct MeshTrapezoid {
   std::uint32_t top = 0;     // index of a vertex
   std::uint32_t bottom = 0;  // index of a vertex
@@ -37,10 +37,10 @@ struct MeshTrapezoid {
   friend constexpr bool operator==(const MeshTrapezoid&, const MeshTrapezoid&) = default;
 };
 
-/// What a renderer draws from; a view of the arrays of a layer or of a mapped file.
+/// The input of a renderer: a view of the arrays of a layer or of a mapped file.
 struct MeshView {
   std::uint64_t id =
-      0;  // unique in this process: equal ids mean equal contents, so that uploads can be reused
+      0;  // unique in this process: equal ids mean equal contents, so uploads can be reused
   std::span<const Point> vertices;
   std::span<const MeshEdge> edges;
   std::span<const MeshTrapezoid> trapezoids;
@@ -65,15 +65,15 @@ class EdgeLine {
   double slope_;
 };
 
-/// An id that no mesh of this process has had; never 0. Thread-safe.
+/// Returns an id that no mesh of this process has had; never 0. Thread-safe.
 std::uint64_t new_mesh_id();
 
 /// Appends a rectangle to the arrays of a mesh: four vertices, two edges, one trapezoid.
 void append_box(const Box& box, std::vector<Point>& vertices, std::vector<MeshEdge>& edges,
                 std::vector<MeshTrapezoid>& trapezoids);
 
-/// Appends a rectangle of any direction: four vertices, four edges, and one to three trapezoids.
-/// The corners follow each other around it, rounded to cells; it is many cells wide.
+/// Appends a rectangle of any orientation: four vertices, four edges, and one to three trapezoids.
+/// The corners are in order around it, rounded to cells. The rectangle must be many cells wide.
 void append_rectangle(const std::array<Point, 4>& corners, std::vector<Point>& vertices,
                       std::vector<MeshEdge>& edges, std::vector<MeshTrapezoid>& trapezoids);
 
@@ -93,7 +93,7 @@ void for_each_trapezoid(std::span<const TrapezoidRange> ranges, const Visit& vis
   }
 }
 
-/// To ranges in ascending order, all below it.
+/// Appends a trapezoid to ranges in ascending order, all below it.
 inline void append_trapezoid(std::uint32_t trapezoid, std::vector<TrapezoidRange>& ranges) {
   if (!ranges.empty() && ranges.back().first + ranges.back().count == trapezoid) {
     ++ranges.back().count;

@@ -6,7 +6,7 @@
 namespace trapeze {
 namespace {
 
-constexpr double kNothing = 1.0 / 64;  // cells: edges that near each other are one
+constexpr double kNothing = 1.0 / 64;  // cells: edges this near to each other are one
 
 /// An edge between two heights.
 struct Side {
@@ -106,7 +106,7 @@ void VisibleParts::cover(const Pending& pending, std::span<const Sheet::Item> it
   parts_.push_back(part);
 }
 
-/// False if the part is not touched. What lies beside the trapezoid above is pending then.
+/// False if the part is not touched. Parts beside the trapezoid above are then pending.
 bool VisibleParts::cut(const TrapezoidPart& part, const Sheet::Item& above, float share,
                        std::size_t next) {
   const std::int32_t y0 = std::max(part.top, above.top);

@@ -28,7 +28,7 @@ void Boundary::end_vertices() {
       Point{std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()});
 }
 
-/// Keys come in order.
+/// Keys must come in ascending order.
 VertexId Boundary::vertex_at(std::uint64_t key) {
   const Point p = point_of(key);
   const VertexId last(vertices.size() - 1);
@@ -44,7 +44,7 @@ void Boundary::number_vertices(std::size_t count) {
 }
 
 void Boundary::index_incident_edges() {
-  // Two entries an edge, counted into place.
+  // Two entries per edge, counted into place.
   first.assign(vertices.size() + 1, 0);
   for (const Ends& e : edges) {
     ++first[VertexId(e.upper.value + 1)];

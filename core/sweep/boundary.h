@@ -1,5 +1,5 @@
-// The boundary of a polygon as the plane sweep needs it: vertices in sweep order, edges between
-// them, and the edges that meet at each vertex.
+// The boundary of a polygon in the form that the plane sweep needs: vertices in sweep order, edges
+// between them, and the edges that meet at each vertex.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct Boundary {
 
   Table<VertexId, Point> vertices;
   Table<EdgeId, Ends> edges;
-  /// Edges at vertex v: incident[first[v] .. first[v + 1]), in no order.
+  /// Edges at vertex v: incident[first[v] .. first[v + 1]), in no particular order.
   Table<VertexId, std::uint32_t> first;
   std::vector<EdgeId> incident;
   /// Whether some vertex has more than two edges: rings touch there.
@@ -46,17 +46,17 @@ struct Boundary {
                                                      first[VertexId(v.value + 1)] - first[v]);
   }
 
-  /// Edge i runs from the i-th point of the rings to the next one of its ring. Rings are clean (see
-  /// clean_rings.h).
+  /// Edge i runs from the i-th point of the rings to the next point of its ring. Rings are clean
+  /// (see clean_rings.h).
   void assign(const Rings& rings);
-  /// Edges between points; each edge once, its end points distinct.
+  /// Edges between points. Each edge occurs once and its end points are distinct.
   void assign(std::span<const std::pair<Point, Point>> segments);
-  /// The same, faster, for segments with their upper ends first and in sweep order by these. On up
-  /// to `threads` threads.
+  /// The same, faster, for segments with their upper ends first, sorted by these in sweep order.
+  /// Runs on up to `threads` threads.
   void assign_sorted(std::span<const std::pair<Point, Point>> segments, unsigned threads = 1);
 
-  /// Drops the edges for which it is false, and the vertices that have none then. What is left
-  /// keeps its order.
+  /// Drops the edges for which it is false, and vertices that then have no edge. The rest keeps its
+  /// order.
   void keep(const std::vector<bool>& edges_to_keep);
 
  private:
@@ -68,7 +68,7 @@ struct Boundary {
 
   LargeArray<KeyedIndex> sorted_;  // by sweep order
   LargeArray<KeyedIndex> scratch_;
-  std::vector<VertexId> vertex_of_;  // by index of point
+  std::vector<VertexId> vertex_of_;  // by index of the point
 };
 
 }  // namespace trapeze

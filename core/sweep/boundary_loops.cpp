@@ -39,8 +39,8 @@ void BoundaryLoops::trace(const Boundary& boundary, TrapezoidalGraph& graph) {
   if (boundary.has_touches) cut_into_simple_loops(graph);
 }
 
-// The edges around v in a circle: those that start at v from left to right, then those that end at
-// v from right to left. Two successive edges with inside between them are paired.
+// The edges around v in circular order: those that start at v from left to right, then those that
+// end at v from right to left. Two successive edges with inside between them are paired.
 void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph& graph,
                                VertexId v) {
   const auto edges = boundary.edges_at(v);
@@ -55,7 +55,8 @@ void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph&
                                      [&](EdgeId e) { return boundary.edges[e].upper == v; });
   const Point p = boundary.vertices[v];
   // Negative orientation is to the right of an edge that goes down from v, and to the left of one
-  // that comes from above: the same comparison turns the same way round v in both halves.
+  // that comes from above: the same comparison yields the same direction of rotation around v in
+  // both halves.
   std::sort(around_.begin(), middle, [&](EdgeId a, EdgeId b) {
     return orientation(p, boundary.vertices[boundary.edges[a].lower],
                        boundary.vertices[boundary.edges[b].lower]) < 0;
@@ -66,7 +67,8 @@ void BoundaryLoops::pair_edges(const Boundary& boundary, const TrapezoidalGraph&
   });
   for (std::size_t i = 0; i < around_.size(); ++i) {
     const EdgeId e = around_[i];
-    // What follows e in the circle is on the right of an edge below v and on the left of one above.
+    // The area that follows e in circular order is on the right of an edge below v and on the left
+    // of one above.
     const bool below = boundary.edges[e].upper == v;
     const Side following = below ? kRight : kLeft;
     if (graph.edge(e).face[following] != kOutside)
@@ -93,7 +95,7 @@ void BoundaryLoops::cut_into_simple_loops(TrapezoidalGraph& graph) {
     for (const CornerId c : loop_) {
       const std::uint32_t at = position_[corners[c].vertex.value];
       if (at != 0) {
-        // From the earlier visit to here is a loop of its own.
+        // The part from the earlier visit to here is a loop of its own.
         for (std::size_t k = at - 1; k < stack_.size(); ++k) {
           position_[corners[stack_[k]].vertex.value] = 0;
         }

@@ -1,8 +1,8 @@
 // Finds the simple loops of the boundary and stores them as the corners of a trapezoidal graph.
 //
 // Rings of the source that do not touch are such loops already. Where rings touch, the edges at the
-// common vertex are paired again, so that each pair bounds one inside wedge; a loop that still
-// returns to a vertex is cut there, so that every loop visits a vertex at most once.
+// shared vertex are paired again so that each pair bounds one inside wedge. A loop that still
+// returns to a vertex is cut there, so every loop visits a vertex at most once.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace trapeze {
 
-/// Holds working memory for reuse; one thread at a time.
+/// Holds working memory for reuse. One thread at a time.
 class BoundaryLoops {
  public:
-  /// Fills the corners of `graph` from rings that do not touch each other or themselves; `boundary`
-  /// was made from these rings. Corner i is the i-th point of the rings.
+  /// Fills the corners of `graph` from rings that touch neither each other nor themselves.
+  /// `boundary` was made from these rings. Corner i is the i-th point of the rings.
   void take_rings(const Rings& rings, const Boundary& boundary, TrapezoidalGraph& graph);
 
-  /// Fills the corners of `graph` from its edges and faces alone; edge i leaves corner i.
+  /// Fills the corners of `graph` from its edges and faces alone. Edge i leaves corner i.
   void trace(const Boundary& boundary, TrapezoidalGraph& graph);
 
  private:

@@ -1,4 +1,4 @@
-// Walks along a boundary from edge to edge and stores the corners on the way.
+// Walks along a boundary from edge to edge and stores the corners.
 #pragma once
 
 #include "core/graph/trapezoidal_graph.h"
@@ -8,13 +8,13 @@ namespace trapeze {
 
 struct BoundaryWalk {
   bool is_loop;   // its last corner leads to its first
-  CornerId last;  // has no next one if the walk is no loop
+  CornerId last;  // has no next corner if the walk is no loop
   VertexId end;   // where the edge of `last` ends
 };
 
-/// Walks from `start` along `first`, and from then on along partner(v, e), the edge by which the
-/// walk leaves v after arriving by e, until there is none or it is `first` again. The corner that
-/// edge i leaves is corner i; each corner is linked to the previous and the next one.
+/// Walks from `start` along `first`, and then along partner(v, e), the edge by which the walk
+/// leaves v after arriving by e, until there is none or it is `first` again. The corner left by
+/// edge i is corner i; each corner is linked to the previous and the next one.
 template <typename Partner>
 BoundaryWalk walk_boundary(const Boundary& boundary, VertexId start, EdgeId first,
                            const Partner& partner, Table<CornerId, Corner>& corners) {

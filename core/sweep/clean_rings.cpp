@@ -5,7 +5,8 @@
 namespace trapeze {
 namespace {
 
-/// b is no corner of a boundary a, b, c: the boundary stays at b, or turns back on itself there.
+/// Whether b is no corner of a boundary a, b, c: the boundary stays at b, or turns back on itself
+/// there.
 bool is_spike(Point a, Point b, Point c) {
   if (a == b || b == c || a == c) return true;
   if (orientation(a, b, c) != 0) return false;
@@ -14,10 +15,10 @@ bool is_spike(Point a, Point b, Point c) {
   return dot < 0;
 }
 
-/// Cleans points[begin, end) in place and returns the end of the points that remain, at least three
-/// or none.
+/// Cleans points[begin, end) in place and returns the end of the remaining points, which are at
+/// least three or none.
 std::size_t clean_ring(std::vector<Point>& points, std::size_t begin, std::size_t end) {
-  std::size_t top = begin;  // points[begin, top) has no spike but perhaps at its two ends
+  std::size_t top = begin;  // points[begin, top) has no spike, except possibly at its two ends
   for (std::size_t i = begin; i < end; ++i) {
     const Point p = points[i];
     while (top >= begin + 2 && is_spike(points[top - 2], points[top - 1], p)) --top;

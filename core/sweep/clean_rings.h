@@ -8,9 +8,9 @@
 
 namespace trapeze {
 
-/// Drops consecutive duplicates (a repeated first point included) and spikes (a boundary that runs
-/// back over itself), then rings of fewer than three points. The set of points inside by even-odd
-/// does not change. Returns the number of rings that were dropped.
+/// Drops consecutive duplicates (including a repeated first point) and spikes (where a boundary
+/// runs back over itself), then rings of fewer than three points. The set of points inside by
+/// even-odd does not change. Returns the number of rings dropped.
 std::size_t clean_rings(Rings& rings);
 
 }  // namespace trapeze

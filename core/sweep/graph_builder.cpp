@@ -46,8 +46,8 @@ BuildOutcome GraphBuilder::build(Rings& rings, TrapezoidalGraph& graph, unsigned
 
 bool GraphBuilder::build_noded(const Rings& rings, TrapezoidalGraph& graph, unsigned threads,
                                BuildOutcome& outcome) {
-  // Noding at crossings only is fast and is repeated while it may help. Noding at all vertices
-  // always suffices at once; it is repeated only for safety.
+  // Noding only at crossings is fast and is repeated while it may help. Noding at all vertices
+  // suffices in one pass; it is repeated only for safety.
   constexpr int kQuickPasses = 3;
   constexpr int kMaxPasses = 6;
   std::vector<Segment> segments = segments_of(rings);

@@ -12,7 +12,7 @@
 
 namespace trapeze {
 
-/// What happened to the rings of one feature on the way to its graph.
+/// What happened to the rings of one feature while its graph was built.
 struct BuildOutcome {
   bool built = false;               // false: nothing left to draw, or failed
   bool noded = false;               // rings crossed, touched or overlapped and were noded
@@ -22,14 +22,14 @@ struct BuildOutcome {
   std::string failure;              // why it could not be built, empty otherwise
 };
 
-/// Holds working memory for reuse; one thread at a time.
+/// Holds working memory for reuse. One thread at a time.
 class GraphBuilder {
  public:
-  /// Makes `graph` the graph of the rings by even-odd. Drops duplicates, spikes and collapsed
-  /// rings; nodes crossings, touches and overlaps on the grid, as long as there are not too many
-  /// (see most_meetings() in noding.h). `rings` are cleaned in place. Never throws for bad
-  /// geometry: `graph` is meaningful only if the outcome says built. On up to `threads` threads;
-  /// the graph does not depend on their number.
+  /// Makes `graph` the graph of the rings by even-odd. Cleans `rings` in place: drops duplicates,
+  /// spikes and collapsed rings. Nodes crossings, touches and overlaps on the grid unless there are
+  /// too many (see most_meetings() in noding.h). Never throws for bad geometry: `graph` is
+  /// meaningful only if `built` is true in the outcome. Runs on up to `threads` threads; the graph
+  /// does not depend on their number.
   BuildOutcome build(Rings& rings, TrapezoidalGraph& graph, unsigned threads = 1);
 
  private:

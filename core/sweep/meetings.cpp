@@ -31,11 +31,11 @@ int sign(Int128 v) {
   return (v > 0) - (v < 0);
 }
 
-/// Where the lines of two segments cross, exactly: at the share num / den of the first one.
+/// Where the lines of two segments cross, exactly: at the fraction num / den of the first one.
 class CrossingPoint {
  public:
   CrossingPoint(const Segment& s, const Segment& t) : from_(s.first), to_(s.second) {
-    // Along s the orientation to t goes linearly from one to the other.
+    // Along s, the orientation with respect to t changes linearly from one value to the other.
     const Int128 first = orientation(t.first, t.second, s.first);
     const Int128 second = orientation(t.first, t.second, s.second);
     num_ = first;
@@ -71,11 +71,11 @@ class CrossingPoint {
   Int128 den_;
 };
 
-/// The vertices [first, last) of a boundary, swept as if alone.
+/// The sweep over vertices [first, last) of a boundary, independent of the rest.
 class MeetingSweep {
  public:
-  /// `slot_of`, by edge, is shared by the slabs of a boundary: each uses those of the edges that
-  /// begin there.
+  /// `slot_of`, by edge, is shared by the slabs of a boundary: each slab uses the entries of the
+  /// edges that begin in it.
   MeetingSweep(const Boundary& boundary, std::size_t most, VertexId first, VertexId last,
                LargeArray<std::uint32_t>& slot_of)
       : most_(most),
@@ -87,7 +87,7 @@ class MeetingSweep {
     order_.clear();
   }
 
-  /// False if there are more meetings than that.
+  /// False if there are more than `most` meetings.
   bool run() {
     if (first_.value > 1) begin_below(edges_across(boundary_, first_));
     for (std::size_t i = first_.value; i < last_.value; ++i) {
@@ -95,7 +95,8 @@ class MeetingSweep {
       if (!swap_what_has_crossed()) return false;
       if (!pass_vertex()) return false;
     }
-    // What has crossed since the last vertex is in its new order where the next slab begins.
+    // Segments that have crossed since the last vertex must be in their new order where the next
+    // slab begins.
     vertex_ = last_;
     return swap_what_has_crossed();
   }
@@ -135,8 +136,8 @@ class MeetingSweep {
   }
   static bool is_end(Slot slot) { return slot == Order::kFirst || slot == Order::kLast; }
 
-  // Every two that have crossed since the last vertex are the wrong way round now. While there are
-  // any, some of them are neighbours, and these are known.
+  // Any two segments that have crossed since the last vertex are in the wrong order now. While
+  // there are any, some of them are neighbours, and these are known.
   bool swap_what_has_crossed() {
     while (!crossings_.empty() && crossings_.front().due <= vertex_) {
       std::pop_heap(crossings_.begin(), crossings_.end(), std::greater<>());
@@ -144,7 +145,7 @@ class MeetingSweep {
       crossings_.pop_back();
       const Slot left = slot_of(crossing.left);
       const Slot right = order_.next(left);
-      if (is_end(right) || order_[right] != crossing.right) continue;  // no neighbours any more
+      if (is_end(right) || order_[right] != crossing.right) continue;  // no longer neighbours
       points_.push_back(CrossingPoint(segment(crossing.left), segment(crossing.right)).rounded());
       if (++count_ > most_) return false;
       place(crossing.right, left);
@@ -160,7 +161,7 @@ class MeetingSweep {
     slot_of(e) = slot;
   }
 
-  /// Notes when two neighbours cross, if they do so other than at a vertex.
+  /// Records the crossing of two neighbours, if they cross other than at a vertex.
   void expect_crossing(Slot left, Slot right) {
     if (is_end(left) || is_end(right)) return;
     const EdgeId a = order_[left];
@@ -173,7 +174,8 @@ class MeetingSweep {
         a_is_shorter ? side_of(point(b_ends.upper), point(b_ends.lower), point(a_ends.lower)) > 0
                      : side_of(point(a_ends.upper), point(a_ends.lower), point(b_ends.lower)) < 0;
     if (!do_cross) return;
-    // The first vertex that is not above the crossing: from the present one to the end of one.
+    // The first vertex that is not above the crossing: between the present one and the end of one
+    // of the segments.
     const CrossingPoint crossing(segment(a), segment(b));
     std::size_t from = vertex_.value;
     std::size_t to = (a_is_shorter ? a_ends : b_ends).lower.value;
@@ -191,9 +193,9 @@ class MeetingSweep {
     std::push_heap(crossings_.begin(), crossings_.end(), std::greater<>());
   }
 
-  //     \   |   /      What contains the vertex is a run of neighbours. Those that end here leave,
-  //   ---------v---    those that start here join those that pass through, which may change their
-  //       /    \ .     order.
+  //     \   |   /      The segments that contain the vertex are a run of neighbours. Those that
+  //   ---------v---    end here are removed. Those that start here are added to those that pass
+  //       /    \ .     through, which may change their order.
   bool pass_vertex() {
     below_.clear();
     EdgeId ending;
@@ -227,8 +229,8 @@ class MeetingSweep {
     return true;
   }
 
-  /// Takes what contains the vertex out of the order, and appends what does not end there to
-  /// below_. Returns the slot left of it.
+  /// Removes the segments that contain the vertex from the order, and appends those that do not end
+  /// there to below_. Returns the slot left of them.
   Slot take_run(EdgeId ending) {
     const auto side = [this](EdgeId e) {
       const Segment s = segment(e);
@@ -251,7 +253,7 @@ class MeetingSweep {
     return left;
   }
 
-  /// From left to right below the vertex; those that coincide by number.
+  /// From left to right below the vertex; coinciding ones by number.
   void sort_below() {
     if (below_.size() < 2) return;
     const Point p = point(vertex_);
@@ -270,8 +272,8 @@ class MeetingSweep {
   VertexId vertex_;
   Order order_;
   LargeArray<Slot>& slot_of_;                            // by edge
-  std::unordered_map<std::uint32_t, Slot> slot_across_;  // of edges that begin further up
-  std::vector<Crossing> crossings_;                      // a heap, those due first in front
+  std::unordered_map<std::uint32_t, Slot> slot_across_;  // of edges that begin above the slab
+  std::vector<Crossing> crossings_;                      // a heap, those due first at the front
   std::vector<EdgeId> below_;
   std::vector<Point> points_;
 };
@@ -304,7 +306,7 @@ std::optional<std::vector<Point>> find_meetings(const Boundary& boundary, std::s
     points.insert(points.end(), slab.points().begin(), slab.points().end());
   }
   if (is_over || count > most) {
-    // One that lies where slabs meet may have been counted twice.
+    // A meeting at the border of slabs may have been counted twice.
     return slabs.size() > 1 ? find_meetings(boundary, most) : std::nullopt;
   }
   std::sort(points.begin(), points.end(), is_above);

@@ -10,8 +10,8 @@
 namespace trapeze {
 namespace {
 
-/// The segment meets the cell around `centre`, which owns its upper and left side but not its lower
-/// and right one, so that the cells share no point: like the rounding of crossings.
+/// Whether the segment meets the cell around `centre`. A cell includes its upper and left side but
+/// not its lower and right one, so cells share no point; this matches the rounding of crossings.
 bool passes_cell(const Segment& s, Point centre) {
   // In half cells, so that the corners of the cell are integers; 33 bits need wide products.
   const std::int64_t x = 2 * std::int64_t{centre.x};
@@ -22,8 +22,8 @@ bool passes_cell(const Segment& s, Point centre) {
   const std::int64_t by = 2 * std::int64_t{s.second.y};
   if (std::max(ax, bx) < x - 1 || std::min(ax, bx) >= x + 1) return false;
   if (std::max(ay, by) < y - 1 || std::min(ay, by) >= y + 1) return false;
-  // The open sides are taken to lie a vanishing step further in: where a corner is on the line, the
-  // step decides on which side it is.
+  // The open sides are treated as lying infinitesimally further in: where a corner is on the line,
+  // that step decides its side.
   bool left = false;
   bool right = false;
   for (const int dx : {-1, 1}) {
@@ -38,17 +38,17 @@ bool passes_cell(const Segment& s, Point centre) {
   return left && right;
 }
 
-/// The points at which a segment may be routed, as a region of the map: cells reach half a cell
-/// beyond their centres, so a segment that passes a cell away is looked at as well.
+/// The region of points at which a segment may be routed. Cells extend half a cell beyond their
+/// centres, so a margin of one cell around the segment is included.
 class Reach {
  public:
   explicit Reach(const Segment& s) : from_(s.first), to_(s.second), box_(widened(box_of(s))) {}
 
-  /// Whether it may meet the box; exact but for the cell around it.
+  /// Whether the region may meet the box; exact except for the margin of one cell.
   bool intersects(const Box& box) const {
     if (!box_.intersects(box)) return false;
-    // The line separates the box from itself if two opposite corners, those farthest across the
-    // line, lie on one side.
+    // The line does not meet the box if two opposite corners, those farthest across the line, lie
+    // on one side of it.
     const Box wide = widened(box);
     const bool falls = (from_.x < to_.x) == (from_.y < to_.y);
     const Point a{wide.min_x, falls ? wide.max_y : wide.min_y};
@@ -80,7 +80,8 @@ std::optional<std::vector<Point>> hot_cells(const Boundary& boundary, HotCells c
   return hot;
 }
 
-/// Knows of most segments at once that no hot cell is near them: hot cells are few beside segments.
+/// Quickly rules out most segments that have no hot cell near them: hot cells are few compared with
+/// segments.
 class HotBlocks {
  public:
   HotBlocks(const std::vector<Point>& hot, const std::vector<Segment>& segments)
@@ -89,7 +90,7 @@ class HotBlocks {
   }
 
   bool may_pass_one(const Segment& segment) const {
-    // Cells reach half a cell beyond their centres.
+    // Cells extend half a cell beyond their centres.
     const Box box = box_of(segment);
     const std::int32_t x0 = (box.min_x - 1) >> shift_;
     const std::int32_t x1 = (box.max_x + 1) >> shift_;
@@ -108,7 +109,7 @@ class HotBlocks {
   static constexpr std::uint32_t kBits = std::uint32_t{1} << 20;
   static constexpr std::int64_t kMostBlocks = 64;
 
-  /// Blocks about as large as the mean segment.
+  /// Blocks are about as large as the mean segment.
   static int shift_for(const std::vector<Segment>& segments) {
     double sum = 0;
     for (const auto& [a, b] : segments) {
@@ -128,7 +129,7 @@ class HotBlocks {
   std::vector<bool> is_hot_;  // by hash
 };
 
-/// Hot cells, in an order and under a tree in which those near each other are found together.
+/// Hot cells in a tree, ordered so that cells near each other are found together.
 class HotTree {
  public:
   explicit HotTree(const std::vector<Point>& hot) : cells_(in_order(hot)), tree_(cells_) {}
@@ -161,8 +162,8 @@ void add_piece(Point a, Point b, std::uint32_t source, std::vector<Piece>& piece
   if (a != b) pieces.push_back({is_above(a, b) ? Segment{a, b} : Segment{b, a}, source});
 }
 
-/// Appends the pieces of a segment that passes the cells, which are put in order along the segment:
-/// by the distance of the centre in its direction.
+/// Appends the pieces of a segment that passes through the cells, which are first sorted along the
+/// segment: by the position of their centres in its direction.
 void add_pieces(const Segment& s, std::uint32_t source, std::vector<Point>& passed,
                 std::vector<Piece>& pieces) {
   const auto along = [&s](Point p) {
@@ -225,7 +226,7 @@ std::optional<Noding> node(const std::vector<Segment>& segments, const Boundary&
   if (!hot) return std::nullopt;
   const HotTree tree(*hot);
   const HotBlocks blocks(*hot, segments);
-  // A crossing is passed by two segments, an end of a segment by itself; rounding adds some.
+  // A crossing is passed by two segments, the end of a segment by that segment; rounding adds some.
   constexpr std::size_t kPassesOfEach = 4;
   const std::size_t most_pieces =
       kPassesOfEach * (segments.size() + most_meetings(segments.size()));

@@ -50,7 +50,7 @@ void sort_by_place(LargeArray<OwnedSegment>& segments, unsigned threads) {
   LargeArray<OwnedSegment> sorted;
   sorted.reserve(segments.size());
   for (const KeyedIndex& item : order) sorted.push_back(segments[item.index]);
-  // The few that have the same upper end.
+  // Sorts the few with the same upper end.
   for (std::size_t i = 0; i < sorted.size();) {
     const std::size_t begin = i;
     while (i < sorted.size() && order[i].key == order[begin].key) ++i;

@@ -13,13 +13,12 @@
 namespace trapeze {
 
 /// Pairs of a position along a space-filling curve and the index of a segment, sorted: segments
-/// near each other on the map are near each other in the array, and so under the same boxes of a
-/// tree.
+/// near each other on the map are near each other in the array, and so share boxes of a tree.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> order_by_place(
     const std::vector<Segment>& segments);
 
 /// A static tree of boxes (a packed R-tree): each leaf holds kFanout successive segments. The
-/// segments are to be sorted as by order_by_place() and must outlive the tree.
+/// segments must be sorted as by order_by_place() and must outlive the tree.
 class SegmentTree {
  public:
   explicit SegmentTree(const std::vector<Segment>& segments) : segments_(segments) {
@@ -48,7 +47,8 @@ class SegmentTree {
     return std::min((leaf + 1) * kFanout, segments_.size());
   }
 
-  /// Calls visit(leaf) for every leaf whose box meets the region: region.intersects(box) tells.
+  /// Calls visit(leaf) for every leaf whose box meets the region, as decided by
+  /// region.intersects(box).
   template <class Region, class Visit>
   void query(const Region& region, const Visit& visit) const {
     if (!segments_.empty()) descend(heights_.size() - 1, 0, region, visit);

@@ -1,5 +1,5 @@
-// The order from left to right of what crosses a sweep line: a linked list of slots with a treap
-// over it, which is a search tree from left to right and a heap by random priority.
+// The left-to-right order of the items that cross a sweep line: a linked list of slots with a treap
+// over it (a search tree from left to right and a heap by random priority).
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace trapeze {
 
-/// Holds its memory for reuse. Slots keep their numbers while others come and go. Thread-safety:
-/// none.
+/// Holds its memory for reuse. Slots keep their numbers while others are inserted and removed.
+/// Thread-safety: none.
 template <class Item>
 class SweepOrder {
  public:
@@ -19,7 +19,7 @@ class SweepOrder {
   static constexpr Slot kFirst = 0;
   static constexpr Slot kLast = 1;
 
-  /// Leaves the two ends only.
+  /// Removes everything except the two ends.
   void clear() {
     entries_.clear();
     free_.clear();
@@ -68,7 +68,7 @@ class SweepOrder {
     entries_[slot] = Entry{{kNoSlot, kNoSlot}, kNoSlot, random_, left, right, item};
     entries_[left].next = slot;
     entries_[right].prev = slot;
-    // Of two neighbours in order one has no child on the side between them.
+    // Of two neighbours in the order, one has no child on the side between them.
     if (root_ == kNoSlot) {
       root_ = slot;
     } else if (left != kFirst && entries_[left].child[1] == kNoSlot) {

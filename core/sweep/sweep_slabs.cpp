@@ -5,8 +5,8 @@
 namespace trapeze {
 namespace {
 
-/// An edge where it meets a row: at x / height. It is `lean` / height that x grows a row further
-/// down.
+/// An edge where it meets a row: at x / height. From one row to the next below, x grows by `lean` /
+/// height.
 struct Crossed {
   EdgeId edge;
   std::int64_t x;
@@ -27,7 +27,7 @@ bool is_left(const Crossed& a, const Crossed& b) {
 }  // namespace
 
 std::vector<VertexId> cut_into_slabs(const Boundary& boundary, std::size_t slabs) {
-  constexpr std::size_t kFewest = 8192;  // vertices that are worth a slab
+  constexpr std::size_t kFewest = 8192;  // minimum number of vertices of a slab
   const std::size_t end = boundary.vertices.size() - 1;
   const std::size_t most =
       std::clamp<std::size_t>(end / kFewest, 1, std::max<std::size_t>(slabs, 1));

@@ -33,24 +33,25 @@ bool sort_around(const Boundary& boundary, VertexId v, std::vector<EdgeId>& star
 
 }  // namespace
 
-/// The vertices [first, last), swept as if alone. What is open at the first of them has been opened
-/// above: nodes that stand for that are numbered from `first_guest` on, from left to right.
+/// The sweep over the vertices [first, last), independent of the rest. Nodes open at the first
+/// vertex were opened in an earlier slab: placeholders for them are numbered from `first_guest` on,
+/// from left to right.
 class Trapezoidation::Slab {
  public:
   explicit Slab(Trapezoidation& owner) : owner_(owner) {}
 
   void begin(VertexId first, VertexId last);
   void begin(VertexId first, VertexId last, std::vector<EdgeId> across, NodeId first_guest);
-  /// False if the boundary is not noded, or `is_failed` has become true.
+  /// False if the boundary is not noded, or if `is_failed` has become true.
   bool run(std::atomic<bool>& is_failed);
 
-  /// The edges that it began with.
+  /// The edges that cross the sweep line at its beginning.
   const std::vector<EdgeId>& across() const { return across_; }
   NodeId guest(std::size_t i) const { return NodeId(first_guest_.value + i); }
   std::size_t guests() const { return guests_; }
 
-  /// Calls visit(edge, node) for each edge that crosses the sweep line, and for the left side of
-  /// the frame, with the open node on its right.
+  /// Calls visit(edge, node) for the left side of the frame and for each edge that crosses the
+  /// sweep line, with the open node on its right.
   template <typename Visit>
   void for_each_open(const Visit& visit) const {
     for (Slot slot = Status::kFirst; slot != Status::kLast; slot = status_.next(slot)) {
@@ -70,7 +71,7 @@ class Trapezoidation::Slab {
   bool sweep_vertex(VertexId v);
   bool sweep_regular(VertexId v, EdgeId ending, EdgeId starting);
   bool sweep_general(VertexId v);
-  /// The first of the slots, which must be neighbours, whose edges end at v; none if they are not.
+  /// The first of the slots whose edges end at v, which must be neighbours; none if they are not.
   Slot first_of_run(VertexId v, std::size_t count) const;
 
   /// Closes the node right of `slot` at v and returns it.
@@ -86,7 +87,8 @@ class Trapezoidation::Slab {
   }
   /// The slot of the edge directly left of v; none if v lies on an edge.
   Slot locate(VertexId v) const;
-  /// The neighbours `left` and `right` do not meet below the sweep line, but for a common end.
+  /// Whether the neighbours `left` and `right` do not meet below the sweep line, except at a common
+  /// end.
   bool is_apart(Slot left, Slot right) const;
 
   Trapezoidation& owner_;
@@ -96,9 +98,9 @@ class Trapezoidation::Slab {
   NodeId first_guest_;
   std::size_t guests_ = 0;
   bool may_run_ = true;
-  NodeId next_node_;  // the number of the one that is opened next
-  Status status_;     // its ends are the edges of the frame
-  std::unordered_map<std::uint32_t, Slot> slot_across_;  // of the edges that it began with
+  NodeId next_node_;                                     // the number of the next node to be opened
+  Status status_;                                        // its ends are the edges of the frame
+  std::unordered_map<std::uint32_t, Slot> slot_across_;  // of the edges that cross its beginning
   // At the current vertex: edges that end there and that start there, from left to right.
   std::vector<EdgeId> ending_;
   std::vector<EdgeId> starting_;
@@ -159,7 +161,7 @@ bool Trapezoidation::sweep(unsigned threads) {
   return !is_failed && join_slabs();
 }
 
-/// With so many nodes beside those of the graph.
+/// Makes room for so many nodes in addition to those of the graph.
 void Trapezoidation::start(std::size_t guests) {
   const std::size_t count = boundary_->edges.size();
   const std::size_t vertices = boundary_->vertices.size();
@@ -167,11 +169,12 @@ void Trapezoidation::start(std::size_t guests) {
   g.vertices_ = boundary_->vertices;
   g.face_count_ = 1;
   g.corners_.clear();
-  // One is there at the beginning, and each vertex opens one more than edges that start there.
+  // One node exists at the beginning, and each vertex opens one more node than edges that start
+  // there.
   const std::size_t nodes = count + vertices - 1 + guests;
   if (nodes > g.nodes_.capacity()) {
-    g.nodes_ = {};                         // there is nothing to be kept
-    g.nodes_.reserve(nodes + nodes / 64);  // the next time there may be some more
+    g.nodes_ = {};                         // no content has to be kept
+    g.nodes_.reserve(nodes + nodes / 64);  // the next graph may have some more
   }
   g.nodes_.resize(nodes);
   g.edges_.resize(count + 2);
@@ -187,8 +190,8 @@ void Trapezoidation::start(std::size_t guests) {
   slot_of_.resize(count + 2);
 }
 
-/// What a slab began with is what the one above it has left open. Only the frame remains at the
-/// end, and the last node ends at infinity.
+/// The nodes with which a slab began continue those left open by the slab above. At the end only
+/// the frame remains, and the last node ends at infinity.
 bool Trapezoidation::join_slabs() {
   TrapezoidalGraph& g = *graph_;
   const std::size_t nodes = boundary_->edges.size() + boundary_->vertices.size() - 1;
@@ -227,7 +230,7 @@ void Trapezoidation::join(const Slab& upper, const Slab& lower) {
   });
 }
 
-/// Of each edge from what lies on the left of its beginning.
+/// For each edge, from the face on the left of its beginning.
 void Trapezoidation::name_faces(const FaceBeyond& face_beyond) {
   TrapezoidalGraph& g = *graph_;
   for (std::size_t i = 1; i + 1 < boundary_->vertices.size(); ++i) {
@@ -378,7 +381,7 @@ bool Trapezoidation::Slab::sweep_general(VertexId v) {
   }
   const Slot right = status_.next(left);
 
-  // Unless the caller gives faces, they alternate from left to right (even-odd).
+  // Unless the caller provides faces, they alternate from left to right (even-odd).
   const bool is_even_odd = owner_.is_even_odd_;
   Slot last = left;
   FaceId face = is_even_odd ? g.edges_[status_[left].edge].face[kRight] : kOutside;

@@ -1,10 +1,10 @@
 // Trapezoidation by plane sweep (paper, section 3.1), O(n log n), exact.
 //
-// The sweep goes through the vertices in sweep order and keeps the edges that cross the sweep line
-// from left to right, in a balanced tree and in a linked list. At a regular vertex one edge takes
-// the place of another in O(1); only where edges begin is the tree searched. Every two edges
-// that become neighbours are tested, so a crossing, an overlap or a vertex on an edge is always
-// found (Shamos and Hoey): the sweep either succeeds or reports that the boundary is not noded.
+// The sweep visits the vertices in sweep order and keeps the edges that cross the sweep line from
+// left to right, in a balanced tree and in a linked list. At a regular vertex one edge takes the
+// place of another in O(1); the tree is searched only where edges begin. Every two edges that
+// become neighbours are tested, so a crossing, an overlap or a vertex on an edge is always found
+// (Shamos and Hoey): the sweep either succeeds or reports that the boundary is not noded.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace trapeze {
 /// that no other edge has separate the same two faces.
 using FaceBeyond = std::function<FaceId(EdgeId edge, FaceId left)>;
 
-/// The sweep, with working memory for reuse; one call at a time.
+/// The sweep, with working memory for reuse. One call at a time.
 class Trapezoidation {
  public:
   Trapezoidation();
@@ -35,9 +35,9 @@ class Trapezoidation {
   /// noded: two edges cross or overlap, or a vertex lies on an edge.
   bool build(const Boundary& boundary, TrapezoidalGraph& graph);
 
-  /// The same with faces given by the caller; what lies to the left of all edges is kOutside. Faces
-  /// are asked for when the boundary is known to be noded, in sweep order of the edges' upper ends,
-  /// from left to right. On up to `threads` threads; the graph does not depend on their number.
+  /// The same with faces given by the caller. Left of all edges is kOutside. Faces are requested
+  /// once the boundary is known to be noded, in sweep order of the edges' upper ends, from left to
+  /// right. Runs on up to `threads` threads; the graph does not depend on their number.
   bool build(const Boundary& boundary, const FaceBeyond& face_beyond, TrapezoidalGraph& graph,
              unsigned threads = 1);
 
@@ -55,8 +55,8 @@ class Trapezoidation {
   bool is_even_odd_ = false;
   std::vector<std::unique_ptr<Slab>> slabs_;
   std::size_t used_ = 0;               // of the slabs
-  LargeArray<std::uint32_t> slot_of_;  // by edge, in the slab in which it begins
-  std::vector<NodeId> joined_;         // what stands for a node that a slab began with
+  LargeArray<std::uint32_t> slot_of_;  // by edge, in the slab where it begins
+  std::vector<NodeId> joined_;         // replaces a node that a slab began with
   std::vector<EdgeId> starting_;
 };
 

@@ -1,4 +1,4 @@
-// The reference systems that polygons are written in.
+// The reference systems in which polygons are written.
 #pragma once
 
 #include "core/grid/name_table.h"

@@ -28,21 +28,21 @@
 namespace trapeze {
 namespace {
 
-// As much as is read and adapted before it is written: enough that waiting for the last of each
-// round costs little, little enough to hold.
+// The amount read and adapted before it is written: large enough that waiting for the last item of
+// each round costs little, and small enough to hold in memory.
 constexpr FeaturePipeline::RoundLimit kRound{std::size_t{1} << 25, 16384};
 
-/// Whether a style is applied to the polygons when all of them are known.
+/// Whether a style is applied to the polygons once all of them are known.
 bool is_reshaped(const ExportOptions& options) {
   return options.smooth.radius > 0 || options.grow.width > 0;
 }
 
-/// What becomes of a polygon feature.
+/// The result for a polygon feature.
 struct Adapted {
   FeatureKey key;
   enum class Outcome { written, too_small, empty, skipped };
   Outcome outcome = Outcome::empty;
-  std::string reason;   // for skipping it
+  std::string reason;   // why it is skipped
   DrawnPolygons drawn;  // until they are reshaped
   PolygonGeometry result;
   std::size_t polygons = 0;
@@ -52,7 +52,7 @@ struct Adapted {
   std::size_t held = 0;
   bool crosses = false;
 
-  /// Ends as these polygons; false if there are none to be written.
+  /// Sets these polygons as the result; false if there are none to write.
   bool take(const Polygons& shape) {
     reason = shape.failure;
     outcome = !reason.empty() ? Outcome::skipped
@@ -100,7 +100,7 @@ class Exporter : public FeatureWorker {
     }
   }
 
-  /// What became of features since the last call, in any order.
+  /// The results since the last call, in any order.
   std::vector<Adapted> take_adapted() { return std::exchange(adapted_, {}); }
   /// The features since the last call, if they are reshaped.
   FullDetail take_full_detail() { return std::exchange(full_detail_, {}); }
@@ -117,7 +117,7 @@ class Exporter : public FeatureWorker {
     adapted.reason = reason;
   }
 
-  /// What the features of one graph have in common is counted with the first one that is written.
+  /// Values that belong to the whole graph are counted with the first feature that is written.
   void adapt_together(std::span<WaitingFeature* const> features, const Assembly& assembly) {
     const FaceFeatures& faces = assembly.outcome.faces;
     std::vector<std::uint32_t> rows;
@@ -168,7 +168,7 @@ class Exporter : public FeatureWorker {
   std::vector<Adapted> adapted_;
 };
 
-/// Has features adapted, and writes them, one round after another.
+/// Has features adapted and writes them, one round after another.
 class Export {
  public:
   Export(FeatureSource& source, PolygonFile& file, const ExportOptions& options)
@@ -179,7 +179,7 @@ class Export {
 
   ExportReport run() {
     const FeaturePipeline::Take take = [this](SourceFeature& next) { return keep(next); };
-    // Any feature may be a neighbour of any other one.
+    // Any feature may be a neighbour of any other.
     const bool are_all_held =
         options_.generalization.coverage != CoverageMode::off || is_reshaped(options_);
     const auto round = are_all_held ? FeaturePipeline::RoundLimit{} : kRound;
@@ -213,7 +213,7 @@ class Export {
     return first_row_ + static_cast<std::uint32_t>(kept_.size() - 1);
   }
 
-  /// In the order of the source.
+  /// Writes in the order of the source.
   void write_round() {
     std::vector<Adapted> round;
     for (Exporter& exporter : exporters_) {
@@ -226,8 +226,8 @@ class Export {
     kept_.clear();
   }
 
-  /// Has corners rounded, or what is narrow grown, of all that is written, and makes geometries of
-  /// it.
+  /// Rounds corners or grows narrow features in everything that is written, and makes geometries of
+  /// the result.
   void reshape(std::vector<Adapted>& round) {
     const unsigned threads = thread_count(options_.threads);
     FullDetail all;
@@ -259,7 +259,7 @@ class Export {
                          [&](std::size_t i) { make_geometries(graphs[i]); });
   }
 
-  /// Of the features of a graph.
+  /// For the features of one graph.
   void make_geometries(std::span<Adapted* const> features) const {
     std::vector<Polygons> polygons;
     for (Adapted* adapted : features) polygons.push_back(std::move(adapted->drawn.polygons));
@@ -334,7 +334,7 @@ class Export {
   const ExportOptions& options_;
   std::deque<Exporter> exporters_;
   FeaturePipeline pipeline_;
-  std::vector<Kept> kept_;       // of the round at hand
+  std::vector<Kept> kept_;       // of the current round
   std::uint32_t first_row_ = 0;  // of these
   std::vector<OrderedNote> notes_;
   ExportReport report_;

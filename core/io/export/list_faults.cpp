@@ -25,7 +25,7 @@ struct Found {
   std::unique_ptr<OGRGeometry> geometry;
 };
 
-/// Looks for faults among features whose boxes meet.
+/// Searches for faults among features whose boxes intersect.
 class FaultFinder : public FeatureWorker {
  public:
   void build_apart(const FeatureKey&, Rings&, unsigned /*threads*/) override {}
@@ -123,7 +123,7 @@ FaultReport list(FeatureSource& source, FaultFile& file, const FaultOptions& opt
   for (const FeatureTally* tally : pipeline.tallies()) {
     notes.insert(notes.end(), tally->skips.begin(), tally->skips.end());
   }
-  // Those with the same first feature come from one group, and in its order.
+  // Faults with the same first feature come from one group, in its order.
   std::ranges::stable_sort(faults, {}, &Found::order);
   sort_by_order(notes);
   for (Found& found : faults) {

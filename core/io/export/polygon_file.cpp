@@ -16,7 +16,8 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// The name itself or with a number, whichever no column has yet whatever the case, and takes it.
+/// Reserves a name: the wanted one, or that with a number, whichever no column has yet, ignoring
+/// case.
 std::string take_free_name(const std::string& wanted, std::vector<std::string>& taken) {
   std::string name = wanted;
   const auto is_taken = [&] {
@@ -27,7 +28,7 @@ std::string take_free_name(const std::string& wanted, std::vector<std::string>& 
   return name;
 }
 
-/// Whether a list such as "Integer Real String" in a driver's description has the word.
+/// Whether a list in a driver's description, such as "Integer Real String", contains the word.
 bool is_listed(GDALDriver& driver, const char* list, const char* word) {
   const char* words = driver.GetMetadataItem(list);
   return words != nullptr && CPLStringList(CSLTokenizeString(words)).FindString(word) >= 0;
@@ -47,7 +48,7 @@ OGRFieldType written_type(FieldType type) {
   return type == FieldType::real ? OFTReal : OFTString;
 }
 
-/// What AttributeReader takes over as it is.
+/// Whether AttributeReader keeps values of the type as they are.
 bool is_number_or_text(OGRFieldType type) {
   return type == OFTInteger || type == OFTInteger64 || type == OFTReal || type == OFTString;
 }
@@ -75,7 +76,7 @@ void PolygonFile::create(ExportCrs crs) {
   for (const SourceLayer& layer : source_.layers()) {
     attributes_.add_layer(*layer.layer->GetLayerDefn());
   }
-  // The source's fields keep their names; the columns that are added here give way.
+  // The source's fields keep their names; the columns added here are renamed if necessary.
   std::vector<std::string> names;
   for (const Field& field : attributes_.fields()) names.push_back(in_lower_case(field.name));
   const auto add_name = [&](const char* wanted) {
@@ -111,7 +112,7 @@ void PolygonFile::create_field(std::size_t field) {
   fields_.push_back(std::move(out));
 }
 
-/// The type of the field in all layers, if it is one and the format has it.
+/// The type of the field in all layers, if it is the same and the format supports it.
 FieldKind PolygonFile::kind_of(std::size_t field, const std::vector<int>& sources) const {
   std::vector<const OGRFieldDefn*> originals;
   for (std::size_t layer = 0; layer < sources.size(); ++layer) {

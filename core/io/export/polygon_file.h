@@ -1,4 +1,4 @@
-// A file of polygons with the attributes of their source that is being written.
+// A file of polygons, with the attributes of their source, while it is being written.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,16 @@
 
 namespace trapeze {
 
-/// Belongs to one thread. An unfinished file is removed.
+/// For one thread. An unfinished file is removed.
 class PolygonFile {
  public:
-  /// Begins the file; see export_layer() for formats, fields and errors. `source` must outlive it.
+  /// Starts the file; see export_layer() for formats, fields and errors. `source` must outlive this
+  /// object.
   PolygonFile(const std::string& path, const FeatureSource& source, ExportCrs crs);
 
   std::string driver() const { return file_.driver_name(); }
 
-  /// Writes `geometry` with the attributes of `feature`, which is of that layer of the source.
+  /// Writes `geometry` with the attributes of `feature`, which belongs to that layer of the source.
   void write(const OGRFeature& feature, std::size_t layer_index,
              std::unique_ptr<OGRGeometry> geometry);
 
@@ -32,8 +33,8 @@ class PolygonFile {
  private:
   /// How a field of the source is written.
   struct OutField {
-    int index = 0;           // in the file
-    bool is_copied = false;  // the value of the source as it is, and not as AttributeReader has it
+    int index = 0;             // in the file
+    bool is_copied = false;    // the source's value is copied as is, instead of AttributeReader's
     std::vector<int> sources;  // by layer of the source, the field's index there, or -1
   };
 

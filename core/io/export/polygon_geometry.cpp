@@ -15,11 +15,11 @@
 namespace trapeze {
 namespace {
 
-// GEOS looks at every hole of a polygon together with its shell: minutes for ten thousands.
+// GEOS compares every hole of a polygon with its shell: that takes minutes for tens of thousands.
 constexpr std::size_t kMaxHolesToCheck = 2000;
-// How far an edge may run beside its place on the Web Mercator map, in cells: tried in turn.
+// Maximum deviation of an edge from its course on the Web Mercator map, in cells; tried in turn.
 constexpr std::array kDeviations = {4096.0, 512.0, 64.0, 8.0, 1.0, 0.125, 0.015625};
-// No polygon is worth more vertices than this.
+// No polygon gets more vertices than this.
 constexpr std::size_t kMaxVertices = std::size_t{1} << 22;
 constexpr int kMaxHalvings = 20;
 
@@ -37,7 +37,8 @@ Position middle_of(Position a, Position b) {
   return {(a.x + b.x) / 2, (a.y + b.y) / 2};
 }
 
-/// How far the edge drawn straight in degrees passes from its middle on the map, in cells.
+/// The distance, in cells on the map, between the edge drawn straight in degrees and the edge's
+/// middle.
 double deviation(Position a, Position b) {
   const Position low = degrees_of(a);
   const Position high = degrees_of(b);
@@ -46,7 +47,7 @@ double deviation(Position a, Position b) {
   return length == 0 ? 0 : std::abs(straight.y - middle_of(a, b).y) * std::abs(b.x - a.x) / length;
 }
 
-/// Appends what comes after `a` up to and without `b`.
+/// Appends the points between `a` and `b`, without the ends.
 void subdivide(Position a, Position b, double limit, int halvings, PositionRing& cells) {
   if (halvings == 0 || deviation(a, b) <= limit) return;
   const Position middle = middle_of(a, b);
@@ -55,7 +56,7 @@ void subdivide(Position a, Position b, double limit, int halvings, PositionRing&
   subdivide(middle, b, limit, halvings - 1, cells);
 }
 
-// The same vertices whatever the direction of an edge: the middle of it does not know.
+// The vertices do not depend on the direction of an edge, because its middle does not.
 PositionRing subdivided(std::span<const Point> ring, double limit) {
   PositionRing cells;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -117,7 +118,7 @@ std::size_t vertex_count(const OGRPolygon& polygon) {
   return count;
 }
 
-/// Whether it can be told if it is valid.
+/// Whether the validity of the polygon can be checked.
 bool can_be_checked(const OneOf& which) {
   return which.end() - which.begin() <= kMaxHolesToCheck + 1 && OGRGeometryFactory::haveGEOS();
 }
@@ -158,7 +159,8 @@ std::unique_ptr<OGRPolygon> polygon_in_degrees(const OneOf& which, PolygonGeomet
   return plain;
 }
 
-/// A polygon, or a multipolygon of several: make(which) of each. Null if one is.
+/// A polygon, or a multipolygon if there are several: make(which) for each. Null if any result is
+/// null.
 template <typename Make>
 std::unique_ptr<OGRGeometry> join_parts(const Polygons& polygons, const Make& make) {
   if (polygons.size() == 1) return make(OneOf{polygons, 0});
@@ -194,7 +196,7 @@ bool is_any_invalid(const std::vector<PolygonGeometry>& geometries) {
                      [](const PolygonGeometry& geometry) { return geometry.is_invalid; });
 }
 
-/// All with the same limit; none if one would have too many vertices.
+/// All with the same limit; empty if one would have too many vertices.
 std::vector<PolygonGeometry> finer_geometries(std::span<const Polygons> neighbours, double limit) {
   std::vector<PolygonGeometry> finer;
   for (const Polygons& polygons : neighbours) {

@@ -1,4 +1,4 @@
-// From polygons on the grid to geometries as other programs read them.
+// Converts polygons on the grid to geometries for other programs.
 #pragma once
 
 #include <cstddef>
@@ -14,30 +14,30 @@
 
 namespace trapeze {
 
-/// A geometry, and what had to be done to keep it valid.
+/// A geometry, with the measures taken to keep it valid.
 struct PolygonGeometry {
   std::unique_ptr<OGRGeometry> geometry;  // a polygon, or a multipolygon of several
-  std::size_t subdivided = 0;             // polygons that got further vertices
+  std::size_t subdivided = 0;             // polygons that received additional vertices
   std::size_t unchecked = 0;  // polygons too large to be checked, or GDAL was built without GEOS
-  bool is_invalid = false;    // further vertices did not help
+  bool is_invalid = false;    // additional vertices did not help
 };
 
-/// The polygons in metres or degrees.
+/// Converts the polygons to metres or degrees. `polygons` is not empty.
 ///
-/// In metres they are what is drawn, scaled. Edges are straight on the Web Mercator map, and in
-/// degrees a long one would run elsewhere, perhaps through the polygon's own boundary: polygons
-/// that are not valid in degrees get vertices along their long edges until they are. `polygons` is
-/// not empty.
+/// In metres they are exactly as drawn, scaled. Edges are straight on the Web Mercator map; in
+/// degrees a long edge would take another course, possibly through the polygon's own boundary.
+/// Polygons that are not valid in degrees therefore receive vertices along their long edges until
+/// they are.
 ///
-/// Thread-safety: any thread.
+/// Thread-safety: may be called from any thread.
 PolygonGeometry geometry_of(const Polygons& polygons, ExportCrs crs);
 
-/// The same of polygons that share borders, each of which may be empty and then has no geometry: if
-/// one of them gets vertices along its edges, all of them do, and their borders stay in common.
+/// The same for polygons that share borders. Each may be empty and then has no geometry. If one of
+/// them receives vertices along its edges, all of them do, so their borders stay identical.
 std::vector<PolygonGeometry> geometries_of_neighbours(std::span<const Polygons> neighbours,
                                                       ExportCrs crs);
 
-/// With x (east, longitude) first. Throws std::runtime_error if PROJ lacks its database.
+/// With x (east, longitude) first. Throws std::runtime_error if PROJ's database is missing.
 OGRSpatialReference reference_of(ExportCrs crs);
 
 }  // namespace trapeze

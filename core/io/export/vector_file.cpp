@@ -35,7 +35,7 @@ fs::path folder_of(const std::string& path) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-/// In the folder of the file, so that the file can be moved to its place in one step.
+/// In the folder of the file, so that the file can be renamed to its place in one step.
 Unfinished make_folder_beside(const std::string& path) {
   try {
     return Unfinished::folder_beside(path);
@@ -51,7 +51,7 @@ const VectorFile::Format& VectorFile::format_of(const std::string& path) {
       {{".fgb", "FlatGeobuf", true}, {".gpkg", "GPKG", true}, {".geojson", "GeoJSON", false}}};
   const std::string extension = fs::path(path).extension().string();
   const auto* found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& format) {
-    return EQUAL(format.extension, extension.c_str());  // whatever the case
+    return EQUAL(format.extension, extension.c_str());  // ignoring case
   });
   if (found != kFormats.end()) return *found;
   fail_to_write(path,
@@ -82,7 +82,7 @@ VectorFile::VectorFile(const std::string& path)
       unfinished_((fs::path(folder_.path()) / fs::path(path).filename()).string()) {}
 
 VectorFile::~VectorFile() {
-  const GdalMessages unheard;  // of closing what is thrown away
+  const GdalMessages unheard;  // of closing a discarded file
   dataset_.reset();
 }
 
@@ -97,7 +97,7 @@ void VectorFile::create_layer(ExportCrs crs, const std::string& fid, const std::
     options.SetNameValue("FID", fid.c_str());
     options.SetNameValue("GEOMETRY_NAME", geometry.c_str());
   } else if (std::string_view(format_.driver) == "GeoJSON") {
-    options.SetNameValue("COORDINATE_PRECISION", "15");  // all that a double has
+    options.SetNameValue("COORDINATE_PRECISION", "15");  // the full precision of a double
   }
   OGRSpatialReference reference = reference_of(crs);
   const std::string name = fs::path(path_).stem().string();
@@ -105,7 +105,7 @@ void VectorFile::create_layer(ExportCrs crs, const std::string& fid, const std::
                                  format_.has_one_geometry_type ? wkbMultiPolygon : wkbUnknown,
                                  options.List());
   require(layer_ != nullptr, messages);
-  // One transaction, where there are such: a million of them would take hours.
+  // One transaction, if the format supports them: a million of them would take hours.
   if (dataset_->TestCapability(ODsCTransactions) != 0) {
     require(dataset_->StartTransaction() == OGRERR_NONE, messages);
   }
@@ -138,7 +138,7 @@ void VectorFile::write(OGRFeature& feature, std::unique_ptr<OGRGeometry> geometr
   ++written_;
 }
 
-// Not every driver notices that what it writes does not arrive (GeoJSON's does not), so the file is
+// Not every driver notices when its output does not arrive (GeoJSON's does not), so the file is
 // read again.
 void VectorFile::finish() {
   const GdalMessages messages;
@@ -157,7 +157,7 @@ void VectorFile::finish() {
   if (error) fail(error.message());
 }
 
-/// Features that can be read in the closed file.
+/// The number of features that can be read from the closed file.
 std::size_t VectorFile::count_written() const {
   const ReadingSettings settings;
   const GdalMessages messages;

@@ -1,5 +1,5 @@
-// A file of polygons in a format of GDAL's that is being written: in a folder of its own until it
-// is complete.
+// A file of polygons in one of GDAL's formats while it is being written: in a temporary folder
+// until it is complete.
 #pragma once
 
 #include <cstddef>
@@ -19,31 +19,32 @@ struct FieldKind {
   OGRFieldSubType subtype = OFSTNone;
 };
 
-/// FlatGeobuf (.fgb), GeoPackage (.gpkg) or GeoJSON (.geojson), with one layer, which has the name
-/// of the file. All members throw std::runtime_error that names the path. Belongs to one thread. An
-/// unfinished file is removed.
+/// FlatGeobuf (.fgb), GeoPackage (.gpkg) or GeoJSON (.geojson) with one layer, named after the
+/// file. All members throw std::runtime_error that names the path. For one thread. An unfinished
+/// file is removed.
 class VectorFile {
  public:
-  /// Begins the file. `path` is as check_path() wants it.
+  /// Starts the file. `path` has passed check_path().
   explicit VectorFile(const std::string& path);
   ~VectorFile();
   VectorFile(const VectorFile&) = delete;
   VectorFile& operator=(const VectorFile&) = delete;
 
-  /// Throws std::runtime_error if there is no such format, or no place for the file.
+  /// Throws std::runtime_error if the format is not supported, or if the file cannot be placed
+  /// there.
   static void check_path(const std::string& path, const std::string& source, bool overwrite);
 
-  /// To be called once, before the others: `fid` and `geometry` name the columns of these where the
-  /// format has such.
+  /// Must be called once, before the other members. `fid` and `geometry` name the respective
+  /// columns in formats that have them.
   void create_layer(ExportCrs crs, const std::string& fid, const std::string& geometry);
   /// The index of the new field.
   int add_field(const std::string& name, FieldKind kind);
 
   std::string driver_name() const;
-  /// Until the file is finished.
+  /// Valid until the file is finished.
   GDALDriver& driver() const { return *dataset_->GetDriver(); }
   OGRFeatureUniquePtr new_feature() const;
-  /// In formats whose layers have one type of geometry all are multipolygons.
+  /// In formats whose layers have one type of geometry, all features are multipolygons.
   void write(OGRFeature& feature, std::unique_ptr<OGRGeometry> geometry);
 
   /// Completes the file, reads it again to verify that it is complete, and renames it.

@@ -15,14 +15,14 @@
 namespace trapeze {
 namespace {
 
-constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // what one write takes for sure
+constexpr std::size_t kBytesAtOnce = std::size_t{1} << 30;  // accepted by a single write
 
 [[noreturn]] void fail(const std::string& path) {
   throw std::runtime_error("cannot write " + path + ": " + std::generic_category().message(errno));
 }
 
-/// So that the name outlives a power cut, too. Not every file system can, and the file is there
-/// already: failing is no failure.
+/// Makes the name survive a power failure. Not every file system supports this, and the file
+/// already exists, so failure is ignored.
 void sync_folder_of(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -36,7 +36,7 @@ void sync_folder_of(const std::string& path) {
 AtomicFile::AtomicFile(const std::string& path)
     : path_(path),
       temporary_(Unfinished::file_beside(path)),
-      // Read-only: to write into a file that is mapped would change what is being served.
+      // Read-only: writing to a mapped file would change what is being served.
       descriptor_(open(temporary_.path().c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0444)) {
   if (descriptor_ < 0) fail(path_);
 }

@@ -11,9 +11,9 @@
 
 namespace trapeze {
 
-/// A file that is written piece by piece. It is new, read-only, and beside `path`, see
-/// unfinished.h; until it is finished `path` stays as it was. All methods throw std::runtime_error
-/// that names the path and says why. One thread at a time.
+/// A new, read-only file beside `path` that is written piece by piece, see unfinished.h. Until it
+/// is finished, `path` stays unchanged. All methods throw std::runtime_error that names the path
+/// and the reason. One thread at a time.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path);
@@ -21,11 +21,12 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// After what was written before.
+  /// Appends to the bytes written before.
   void write(std::span<const std::byte> bytes);
-  /// Over what was written at that place; it does not reach beyond the end.
+  /// Overwrites bytes already written at that place; must not extend beyond the end.
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// Waits until all is on the disk, and gives it the name `path`, in place of a file that had it.
+  /// Waits until everything is on disk and renames the file to `path`, replacing a file of that
+  /// name.
   void finish();
 
  private:
@@ -34,15 +35,14 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-/// Waits until the file or folder is on the disk, and gives it the name `path`, in place of a file
-/// or an empty folder that had it. Throws std::runtime_error that names the path and says why.
+/// Waits until the file or folder is on disk and renames it to `path`, replacing a file or an empty
+/// folder of that name. Throws std::runtime_error that names the path and the reason.
 void give_name_durably(const Unfinished& unfinished, const std::string& path);
 
 /// Writes the pieces one after another into a new, read-only file beside `path`, waits until they
-/// are on the disk, and only then gives it the name `path`, in place of a file that had it.
-/// Whatever happens before, `path` stays as it was and nothing is left beside it (see
-/// unfinished.h). Throws
-/// std::runtime_error that names the path and says why.
+/// are on disk, and only then renames it to `path`, replacing a file of that name. If anything
+/// fails before, `path` stays unchanged and nothing is left beside it (see unfinished.h). Throws
+/// std::runtime_error that names the path and the reason.
 void write_atomically(const std::string& path,
                       const std::vector<std::span<const std::byte>>& pieces);
 

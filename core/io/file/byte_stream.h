@@ -1,5 +1,5 @@
-// Numbers and texts one after another in memory, for the small parts of a file; in the byte order
-// of the machine.
+// Numbers and texts serialized one after another in memory, for the small parts of a file, in the
+// byte order of the machine.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Throws std::invalid_argument if fewer bytes remain than are asked for.
+/// Throws std::invalid_argument if fewer bytes remain than requested.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

@@ -1,5 +1,5 @@
-// A fast 64-bit checksum (XXH3) against accidental damage; it is no protection against
-// intent.
+// A fast 64-bit checksum (XXH3) against accidental damage; it gives no protection against
+// deliberate changes.
 #pragma once
 
 #include <cstddef>

@@ -33,8 +33,8 @@ std::int64_t modified_of(const struct stat& status) {
 
 }  // namespace
 
-/// Knows what is mapped. Reading what a file has no more raises SIGBUS; where that happens within a
-/// mapping, the page is replaced by zeros and the reader goes on.
+/// Registers mappings. Reading a part that a file no longer has raises SIGBUS. If that happens
+/// within a registered mapping, the page is replaced by zeros and the reader continues.
 class MappingGuard {
  public:
   static void add(std::span<const std::byte> bytes) {
@@ -47,7 +47,7 @@ class MappingGuard {
       slot.begin = begin_of(bytes);
       return;
     }
-    // More files than slots: the rest is mapped without a guard.
+    // More files than slots: the others are mapped without a guard.
   }
   static void remove(std::span<const std::byte> bytes) {
     for (Slot& slot : slots()) {
@@ -58,13 +58,13 @@ class MappingGuard {
 
  private:
   static constexpr std::size_t kMostFiles = 4096;
-  /// The addresses of a mapping, and not the file: another thread may be destroying that one while
-  /// the handler looks for its own.
+  /// The addresses of a mapping instead of the file object: another thread may be destroying that
+  /// while the handler searches for its own.
   struct Slot {
     std::atomic<std::uintptr_t> begin = 0;  // 0: free
     std::atomic<std::uintptr_t> end = 0;
   };
-  static constexpr std::uintptr_t kTaken = 1;  // the begin of a slot whose end is being written
+  static constexpr std::uintptr_t kTaken = 1;  // begin of a slot whose end is being written
   using Slots = std::array<Slot, kMostFiles>;
   static_assert(std::atomic<std::uintptr_t>::is_always_lock_free);
 
@@ -77,7 +77,7 @@ class MappingGuard {
   }
 
   static void catch_signal() {
-    slots();  // made before the handler may ask for them, here and below
+    slots();  // created before the handler may need them, here and below
     page_size();
     struct sigaction action {};
     action.sa_sigaction = on_signal;
@@ -91,7 +91,7 @@ class MappingGuard {
     return size;
   }
 
-  // Calls nothing but system calls. A file that is read is mapped, so it stays in its slot.
+  // Makes only system calls. A file that is being read is mapped, so it stays in its slot.
   static void on_signal(int, siginfo_t* info, void*) {
     const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
     for (const Slot& slot : slots()) {
@@ -105,7 +105,8 @@ class MappingGuard {
       errno = error;
       if (zeros != MAP_FAILED) return;
     }
-    // Somebody else's: it strikes again, and ends the program as it would have.
+    // Not in a mapping of ours: the signal is raised again and ends the program as it otherwise
+    // would.
     signal(SIGBUS, SIG_DFL);
   }
 };
@@ -145,7 +146,7 @@ void MappedFile::release_pages() const {
   madvise(const_cast<std::byte*>(bytes_.data()), bytes_.size(), MADV_DONTNEED);
 }
 
-// The descriptor stays with the file that is mapped, whatever its name means by now.
+// The descriptor refers to the mapped file, whatever its name refers to by now.
 bool MappedFile::is_whole() const {
   struct stat status {};
   return fstat(file_, &status) == 0 && static_cast<std::size_t>(status.st_size) == bytes_.size() &&

@@ -1,4 +1,4 @@
-// A file as memory, read-only and shared with every other process that maps it.
+// A read-only, memory-mapped file, shared with every other process that maps it.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,18 @@
 
 namespace trapeze {
 
-/// Must not be written to while it is mapped; replacing it (by rename) or removing it does no harm.
-/// If it is written to nevertheless, is_whole() is false; bytes that it has no more read as zeros.
-/// Thread-safety: any number of threads may read.
+/// The file must not be written to while it is mapped; replacing it (by rename) or removing it is
+/// harmless. If it is written to nevertheless, is_whole() is false, and bytes that no longer exist
+/// read as zeros. Thread-safety: any number of threads may read.
 class MappedFile {
  public:
-  /// When its pages become resident.
+  /// When pages become resident.
   enum class Pages {
-    at_once,    // all of it is about to be read
-    as_needed,  // each when it is read
+    at_once,    // immediately: all of it is about to be read
+    as_needed,  // each page when it is read
   };
 
-  /// Throws std::runtime_error that names the path if it is no regular file or cannot be read.
+  /// Throws std::runtime_error that names the path if it is not a regular file or cannot be read.
   explicit MappedFile(const std::string& path, Pages pages = Pages::at_once);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
@@ -27,9 +27,10 @@ class MappedFile {
 
   /// Begins at a page boundary.
   std::span<const std::byte> bytes() const { return bytes_; }
-  /// Whether the file still has the size and the time of its last change that it had.
+  /// Whether the file still has its original size and modification time.
   bool is_whole() const;
-  /// Its pages need not be resident until they are read again. Any thread may read meanwhile.
+  /// Allows the system to drop resident pages until they are read again. Other threads may read
+  /// meanwhile.
   void release_pages() const;
 
  private:

@@ -54,7 +54,7 @@ PreparedHeader read_header(std::span<const std::byte> file) {
   return header;
 }
 
-/// Cuts bytes off the front of a file.
+/// Takes bytes off the front of a file.
 class Cutter {
  public:
   explicit Cutter(std::span<const std::byte> rest) : rest_(rest) {}
@@ -116,7 +116,7 @@ std::string name_of(SectionKind kind) {
 }
 
 bool is_prepared_file(const std::string& path) {
-  // Not of a pipe, which would give its beginning to the first who asks.
+  // Not for a pipe, which would lose its beginning to this check.
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
   std::array<char, kPreparedMagic.size()> begin{};
@@ -175,7 +175,7 @@ void SectionReader::read_directory(std::span<const std::byte> file) {
   if (!rest.is_at_end()) fail("is damaged: there is more than its directory says");
 }
 
-/// The first `count` of them.
+/// Checks the first `count` sections.
 void SectionReader::check_sections(std::size_t count) const {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < count; ++i) bytes += sections_[i].bytes.size();

@@ -1,11 +1,11 @@
-// The container that a prepared layer is stored in: arrays, one after another, each with a
+// The container in which a prepared layer is stored: arrays one after another, each with a
 // checksum, so that the file can be mapped and used as it is.
 //
 //   header, directory, padding | section, padding | section, padding | ...
 //
-// Every section begins at the next multiple of 64 bytes after the previous one: its place follows
-// from the counts before it and is not stored. Padding is zero and is checked, so that no byte can
-// change unnoticed. Numbers have the byte order of the machine that wrote them.
+// Every section begins at the next multiple of 64 bytes after the previous one: its position
+// follows from the counts before it and is not stored. Padding is zero and is checked, so no byte
+// can change unnoticed. Numbers have the byte order of the machine that wrote them.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@
 
 namespace trapeze {
 
-/// To be incremented when header, directory, the sections or the description in them change.
+/// Must be incremented when the header, the directory, the sections or their description change.
 constexpr std::uint32_t kPreparedVersion = 9;
 
-/// As in PNG, bytes that a text conversion would change.
+/// As in PNG: bytes that a text conversion would change.
 constexpr std::array<std::uint8_t, 8> kPreparedMagic = {0x89, 'T', 'R', 'P', 'Z', '\r', '\n', 0x1a};
 constexpr std::uint32_t kByteOrderMark = 0x01020304;
 constexpr std::size_t kSectionAlignment = 64;
@@ -32,7 +32,7 @@ struct PreparedHeader {
   std::uint32_t byte_order = kByteOrderMark;
   std::uint32_t version = kPreparedVersion;
   std::uint64_t file_size = 0;
-  std::uint64_t fingerprint = 0;  // build_fingerprint of the options it was prepared with
+  std::uint64_t fingerprint = 0;  // build_fingerprint of the options with which it was prepared
   std::uint64_t section_count = 0;
   std::uint64_t directory_checksum = 0;
   std::uint64_t unused = 0;
@@ -40,7 +40,7 @@ struct PreparedHeader {
 };
 static_assert(sizeof(PreparedHeader) == kSectionAlignment);
 
-/// In the order in which they are stored; those of a column, once for each.
+/// In storage order; the sections of a column occur once for each column.
 enum class SectionKind : std::uint32_t {
   description = 1,
   vertices,
@@ -82,14 +82,14 @@ struct DirectoryEntry {
   std::uint64_t checksum = 0;
 };
 
-/// The file is not a prepared one, is damaged, or is of another version. The message does not
+/// The file is not a prepared file, is damaged, or is of another version. The message does not
 /// contain its name.
 class PreparedFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// It is not damaged, as far as can be told, but no file of this version or byte order.
+/// The file is of another version or byte order; it shows no sign of damage.
 class OtherFormatError : public PreparedFileError {
  public:
   using PreparedFileError::PreparedFileError;
@@ -98,8 +98,8 @@ class OtherFormatError : public PreparedFileError {
 /// Whether `path` is a file that begins like a prepared file. Never throws.
 bool is_prepared_file(const std::string& path);
 
-/// Whether items of that type have no bytes that say nothing. Types with floats need a word of
-/// their own.
+/// Whether every byte of an item of that type is significant. Types with floats need a
+/// specialization.
 template <typename T>
 inline constexpr bool kIsStorable =
     std::has_unique_object_representations_v<T> || std::is_same_v<T, std::byte>;
@@ -123,23 +123,24 @@ class SectionWriter {
   std::vector<std::span<const std::byte>> bytes_;
 };
 
-/// Reads the sections of a file in their order. The file is not trusted: no section that is
-/// returned reaches beyond its end. Throws PreparedFileError.
+/// Reads the sections of a file in order. The file is not trusted: no returned section extends
+/// beyond its end. Throws PreparedFileError.
 class SectionReader {
  public:
   /// Which sections are checked.
   enum class Checked {
     all,
-    first,  // and no other is to be taken
+    first,  // only the first one, and no other may be taken
   };
 
-  /// Checks header, directory and, on all cores, the checksum of every section that is to be
-  /// checked. `file` begins at a multiple of 64 bytes and must outlive the sections taken from it.
+  /// Checks the header, the directory and, on all cores, the checksum of every section that is to
+  /// be checked. `file` begins at a multiple of 64 bytes and must outlive the sections taken from
+  /// it.
   explicit SectionReader(std::span<const std::byte> file, Checked checked = Checked::all);
 
   std::uint64_t fingerprint() const { return header_.fingerprint; }
 
-  /// The next section, which must be of this kind.
+  /// Returns the next section, which must be of this kind.
   template <typename T>
   std::span<const T> take(SectionKind kind) {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kSectionAlignment);
@@ -152,7 +153,7 @@ class SectionReader {
  private:
   struct Section {
     DirectoryEntry entry;
-    std::span<const std::byte> bytes;    // of its items
+    std::span<const std::byte> bytes;    // of the items
     std::span<const std::byte> padding;  // up to the next section
   };
 

@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that this process is writing. Never destroyed: the process may be ended at any time.
+/// Everything that this process is writing. Never destroyed, because the process may end at any
+/// time.
 struct Register {
   std::mutex mutex;
   std::set<std::string> paths;
@@ -28,7 +29,7 @@ Register& all_unfinished() {
   return all;
 }
 
-/// The process in a name that is `prefix` and a number; 0 if it is none.
+/// The process id in a name that consists of `prefix` and a number; 0 for any other name.
 pid_t process_in(std::string_view name, std::string_view prefix) {
   if (!name.starts_with(prefix)) return 0;
   name.remove_prefix(prefix.size());
@@ -41,7 +42,7 @@ bool is_gone(pid_t process) {
   return process == getpid() || (kill(process, 0) != 0 && errno == ESRCH);
 }
 
-/// What has this process's id was left by another one that had it before.
+/// A leftover with this process's id was left by an earlier process with the same id.
 void remove_left_over(const fs::path& prefix) {
   const fs::path folder = prefix.has_parent_path() ? prefix.parent_path() : fs::path(".");
   const std::string name = prefix.filename().string();
@@ -60,7 +61,7 @@ std::string name_for_this_process(const fs::path& prefix) {
   return prefix.string() + std::to_string(getpid());
 }
 
-/// Whoever writes into a folder may do so until the end.
+/// Another thread may keep writing into the folder until the end, so removal is repeated.
 void remove_for_sure(const std::string& path) {
   constexpr int kMaxAttempts = 100;
   std::error_code error;
@@ -72,7 +73,7 @@ void remove_for_sure(const std::string& path) {
 
 }  // namespace
 
-// Under the lock, so that no folder is made that remove_unfinished() does not know of.
+// Under the lock, so that remove_unfinished() knows of every folder that is made.
 Unfinished::Unfinished(std::string path, Kind kind) : path_(std::move(path)) {
   const std::lock_guard lock(all_unfinished().mutex);
   if (kind == Kind::folder) fs::create_directory(path_);
@@ -103,7 +104,7 @@ void Unfinished::give_name(const std::string& from, const std::string& to, std::
 }
 
 void remove_unfinished() {
-  all_unfinished().mutex.lock();  // for good, so that nothing is written after this
+  all_unfinished().mutex.lock();  // never unlocked, so that nothing is written after this
   for (const std::string& path : all_unfinished().paths) remove_for_sure(path);
 }
 

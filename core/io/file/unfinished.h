@@ -1,4 +1,4 @@
-// Files and folders that are being written and have not got their final name: nothing of them is
+// Files and folders that are being written and do not have their final name yet: nothing of them is
 // left behind, however the program ends.
 #pragma once
 
@@ -7,16 +7,16 @@
 
 namespace trapeze {
 
-/// A name beside an output for what is being written, with the id of the process in it. What a
-/// process that was killed left of the same output is removed, if no process has its id any more.
-/// The destructor removes what has the name, a folder with all that is in it.
+/// A temporary name beside an output, containing the process id. Removes leftovers of a killed
+/// process for the same output, if no process has that id any more. The destructor removes whatever
+/// has the name: the file, or the folder with its contents.
 ///
-/// Thread-safety: different ones may be used by different threads.
+/// Thread-safety: different objects may be used by different threads.
 class Unfinished {
  public:
-  /// OUTPUT.tmp.PID; the file is not made yet.
+  /// OUTPUT.tmp.PID; the file is not created yet.
   static Unfinished file_beside(const std::string& output);
-  /// .OUTPUT.tmp.PID, a new and empty folder. Throws std::system_error if it cannot be made.
+  /// .OUTPUT.tmp.PID, a new and empty folder. Throws std::system_error if it cannot be created.
   static Unfinished folder_beside(const std::string& output);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
@@ -24,7 +24,8 @@ class Unfinished {
 
   const std::string& path() const { return path_; }
 
-  /// Gives `from`, which is this or lies in it, the name `to`, in place of what had it.
+  /// Renames `from`, which is this file or folder or lies in it, to `to`, replacing anything of
+  /// that name.
   static void give_name(const std::string& from, const std::string& to, std::error_code& error);
 
  private:
@@ -34,8 +35,8 @@ class Unfinished {
   const std::string path_;
 };
 
-/// Removes all that is unfinished in this process; what is begun, or given a name, after that waits
-/// for ever. For who ends the process at once.
+/// Removes everything unfinished in this process. Starting or renaming unfinished files blocks
+/// forever after that. For callers that are about to end the process.
 void remove_unfinished();
 
 }  // namespace trapeze

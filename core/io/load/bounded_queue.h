@@ -1,5 +1,5 @@
-// A queue between one thread that makes things and many that use them up, which makes the maker
-// wait rather than grow without bound.
+// A queue between one producer thread and many consumers that makes the producer wait instead of
+// growing without bound.
 #pragma once
 
 #include <condition_variable>
@@ -27,7 +27,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item; nothing once the queue is closed and used up.
+  /// Waits for an item. None once the queue is closed and empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     has_items_.wait(lock, [this] { return is_closed_ || !items_.empty(); });
@@ -38,7 +38,7 @@ class BoundedQueue {
     return item;
   }
 
-  /// Nothing more goes in; what is in still comes out.
+  /// Accepts no more items; items already in the queue can still be taken.
   void close() {
     const std::lock_guard lock(mutex_);
     is_closed_ = true;
@@ -46,7 +46,7 @@ class BoundedQueue {
     has_items_.notify_all();
   }
 
-  /// Nothing more goes in, and what is in is dropped.
+  /// Accepts no more items and drops those in the queue.
   void abandon() {
     std::deque<T> dropped;
     const std::lock_guard lock(mutex_);

@@ -17,7 +17,7 @@ std::string percent_text(double share) {
   return text;
 }
 
-// Of a length in cells, in metres at the equator.
+// Formats a length in cells in metres at the equator.
 std::string metres_text(double cells) {
   const double metres = cells / cells_from_ground(1, 0);
   char text[32];

@@ -1,4 +1,4 @@
-// Builds the graphs of a layer's features, and counts what became of each.
+// Builds the graphs of a layer's features and counts the outcomes.
 #pragma once
 
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace trapeze {
 
-/// Belongs to one thread at a time. Gets features that stand by themselves in ascending order.
+/// One thread at a time. Features built by themselves must arrive in ascending order.
 class FeatureBuilder : public FeatureWorker {
  public:
-  /// Takes over from `earlier`, if it is not null; see LayerBuilder.
+  /// Takes over from `earlier`, if not null; see LayerBuilder.
   FeatureBuilder(const LayerOptions& generalization, EarlierLayer* earlier)
       : builder_(generalization, &share_, earlier) {}
 
   void build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) override;
-  /// Builds one graph of the features, but for those that have to be built apart (see assemble()).
+  /// Builds one graph of the features, except those that have to be built apart (see assemble()).
   void build_together(std::span<WaitingFeature* const> features, unsigned threads) override;
 
   const FeatureTally& tally() const { return tally_; }
@@ -26,7 +26,7 @@ class FeatureBuilder : public FeatureWorker {
   LayerBuilder take_builder() { return std::move(builder_); }
 
  private:
-  /// If what was added last is not simplified to the end.
+  /// Adds a remark if the last unit was not simplified up to the last level.
   void remark_on_detail(const FeatureKey& feature);
   void count(std::span<WaitingFeature* const> features, const Assembly& assembly);
 

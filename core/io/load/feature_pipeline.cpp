@@ -17,17 +17,17 @@
 namespace trapeze {
 namespace {
 
-// Large enough that handing over costs nothing, small enough that the end comes evenly; a polygon
-// of more than that is a batch of its own.
+// Large enough that passing on a batch costs nothing, small enough that all threads end at about
+// the same time. A larger polygon is a batch of its own.
 constexpr std::size_t kBatchBytes = std::size_t{1} << 20;
 constexpr std::size_t kBatchFeatures = 2048;
 constexpr std::size_t kWaitingBatchesPerLane = 4;
 constexpr unsigned kMaxThreads = 256;
 
 constexpr std::chrono::milliseconds kProgressInterval{50};
-constexpr double kLeastShare = 1e-3;  // of a source, from which the rest is guessed
+constexpr double kLeastShare = 1e-3;  // of a source; from then on the rest is extrapolated
 
-// What the stages take for a vertex, measured on land use, buildings, counties and countries.
+// The cost of the stages per vertex, measured on land use, buildings, counties and countries.
 constexpr double kReadCost = 1;
 constexpr double kCloseGapsCost = 15;
 constexpr double kGroupCost = 3;
@@ -41,7 +41,7 @@ double work_of(std::span<WaitingFeature* const> task) {
   return vertices;
 }
 
-/// The groups of features, and all others each by itself.
+/// The groups of features, and each other feature by itself.
 std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& waiting,
                                                    const LayerOptions& options, unsigned threads,
                                                    std::span<const std::uint32_t> known) {
@@ -59,7 +59,7 @@ std::vector<std::vector<WaitingFeature*>> tasks_of(std::vector<WaitingFeature>& 
       is_grouped[i] = true;
     }
   }
-  // Those that take long come first, so that no thread is left alone with one.
+  // Large tasks come first, so that no thread is left alone with one.
   std::stable_sort(tasks.begin(), tasks.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   for (std::size_t i = 0; i < waiting.size(); ++i) {
@@ -92,7 +92,7 @@ unsigned thread_count(unsigned wanted) {
   return std::clamp(wanted != 0 ? wanted : std::thread::hardware_concurrency(), 1u, kMaxThreads);
 }
 
-/// One of the threads that bring features to the grid, and its worker.
+/// One of the threads that project features to the grid, with its worker.
 class FeaturePipeline::Lane {
  public:
   Lane(const FeatureSource& source, const LayerOptions& options, FeatureWorker& worker,
@@ -131,7 +131,7 @@ class FeaturePipeline::Lane {
     for (WaitingFeature* feature : task) feature->rings = feature->drawn = Rings();
   }
 
-  /// In the unit of what begin() got. Any thread may ask.
+  /// In the unit of begin(). May be called from any thread.
   double work_done() const { return done_ + at_hand_ * worker_.share().get(); }
 
   std::vector<WaitingFeature> take_waiting() { return std::exchange(waiting_, {}); }
@@ -162,7 +162,7 @@ class FeaturePipeline::Lane {
   std::atomic<double> done_ = 0;
 };
 
-/// The lanes at work on batches, each on a thread of its own.
+/// The lanes processing batches, each on its own thread.
 class FeaturePipeline::Pool {
  public:
   explicit Pool(const std::vector<std::unique_ptr<Lane>>& lanes)
@@ -172,7 +172,7 @@ class FeaturePipeline::Pool {
         running_.push_back(std::async(std::launch::async, [this, &lane] { work(*lane); }));
       }
     } catch (...) {
-      queue_.abandon();  // else those that have been started would wait for work
+      queue_.abandon();  // otherwise threads already started would wait for work
       throw;
     }
   }
@@ -180,10 +180,10 @@ class FeaturePipeline::Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  /// False if a lane has failed: there is no use in reading on.
+  /// False if a lane has failed: there is no point in reading on.
   bool add(Batch batch) { return queue_.push(std::move(batch)); }
 
-  /// Nothing more is added: the lanes end when all is done.
+  /// Nothing more is added: the lanes end when everything is done.
   std::vector<std::future<void>>& close() {
     queue_.close();
     return running_;
@@ -202,7 +202,7 @@ class FeaturePipeline::Pool {
   }
 
   BoundedQueue<Batch> queue_;
-  std::vector<std::future<void>> running_;  // waits for them when it is destroyed
+  std::vector<std::future<void>> running_;  // its destructor waits for them
 };
 
 FeaturePipeline::FeaturePipeline(FeatureSource& source, const LayerOptions& options,
@@ -317,8 +317,8 @@ std::vector<std::uint32_t> FeaturePipeline::known_groups(
   return earlier_->known_groups(digests, options_.close_gaps == 0);
 }
 
-/// Builds all features that wait, with those with which they share borders. What comes of it does
-/// not depend on the number of lanes.
+/// Builds all waiting features, each with those with which it shares borders. The result does not
+/// depend on the number of lanes.
 void FeaturePipeline::build_waiting() {
   std::vector<WaitingFeature> waiting = take_waiting();
   if (options_.close_gaps > 0) {
@@ -332,23 +332,24 @@ void FeaturePipeline::build_waiting() {
   for (const Task& task : tasks) work_read_ += work_of(task);
   is_grouped_ = true;
   show_progress();
-  // What would keep one thread busy when all others have nothing left to do is done by all of them.
+  // A task that would keep one thread busy after all others have finished is processed by all of
+  // them.
   const double much = work_read_ / (2 * threads);
   const auto is_large = [&](const Task& task) { return threads > 1 && work_of(task) > much; };
   const auto threads_for = [&](const Task& task) { return is_large(task) ? threads : 1; };
   if (options_.merge > 0) {
-    // Of the work on blocks, much is done by one thread however many there are.
+    // Merging into blocks is mostly work of one thread, however many there are.
     build(tasks, lanes_.size(), threads_for);
     return;
   }
   const auto is_large_group = [&](const Task& task) { return task.size() > 1 && is_large(task); };
   const auto others = std::stable_partition(tasks.begin(), tasks.end(), is_large_group);
   build({tasks.begin(), others}, 1, threads_for);
-  std::stable_partition(others, tasks.end(), is_large);  // come first
+  std::stable_partition(others, tasks.end(), is_large);  // large ones come first
   build({others, tasks.end()}, lanes_.size(), threads_for);
 }
 
-/// Each task on one of the first lanes, which may use so many threads for it.
+/// Runs each task on one of the first lanes, which may use so many threads for it.
 void FeaturePipeline::build(std::span<const Task> tasks, std::size_t lanes,
                             const std::function<unsigned(const Task&)>& threads_for) {
   std::atomic<std::size_t> next = 0;
@@ -369,7 +370,7 @@ void FeaturePipeline::build(std::span<const Task> tasks, std::size_t lanes,
   }
 }
 
-/// Rethrows what stopped one.
+/// Rethrows the exception of a lane that failed.
 void FeaturePipeline::wait_for(std::vector<std::future<void>>& running) {
   for (std::future<void>& lane : running) {
     while (lane.wait_for(kProgressInterval) == std::future_status::timeout) show_progress();
@@ -377,7 +378,7 @@ void FeaturePipeline::wait_for(std::vector<std::future<void>>& running) {
   }
 }
 
-/// What is guessed may fall, what is shown does not.
+/// The estimate may decrease; the reported progress does not.
 void FeaturePipeline::show_progress() {
   if (!progress_) return;
   const double now = share();
@@ -385,14 +386,14 @@ void FeaturePipeline::show_progress() {
   progress_(now < 0 ? now : shown_);
 }
 
-/// Of the time that is to be expected, by what stages take for a vertex.
+/// The fraction of the expected time, from the costs of the stages per vertex.
 double FeaturePipeline::share() const {
   const double read = is_all_read_ ? 1 : source_.progress();
   if (read < 0) return -1;
   const bool is_coverage = options_.coverage != CoverageMode::off;
   double built = 0;
   for (const auto& lane : lanes_) built += lane->work_done();
-  // While reading goes on, as much is to be expected of each feature to come.
+  // While reading continues, the features to come are expected to cost as much on average.
   const double work = work_read_ / std::max(read, kLeastShare);
   const double build_share = work > 0 ? std::min(1.0, built / work) : 0;
   double done = kReadCost * read + kBuildCost * build_share;

@@ -1,6 +1,6 @@
-// The way of features from a source to whoever makes something of them: they are read on one
-// thread, brought to the grid on all cores, gaps between them closed, those that share borders
-// grouped, and every group built on one of all cores.
+// Passes features from a source to the workers that process them: features are read on one thread
+// and projected to the grid on all cores, gaps between them are closed, those that share borders
+// are grouped, and every group is built on one of the cores.
 #pragma once
 
 #include <chrono>
@@ -25,60 +25,60 @@
 
 namespace trapeze {
 
-/// A feature that waits for the others, with which it may share borders.
+/// A feature that waits for others with which it may share borders.
 struct WaitingFeature {
   FeatureKey key;
-  Rings rings;       // clean, not empty
-  Rings drawn = {};  // as they were before gaps were closed; empty if that did not change them
-  std::uint64_t merge_class = 0;  // see MergeClasses; 0 of all if there are no classes
+  Rings rings;                    // clean, not empty
+  Rings drawn = {};               // before gaps were closed; empty if that did not change them
+  std::uint64_t merge_class = 0;  // see MergeClasses; always 0 if there are no classes
 
-  /// What is to be drawn where no border is shared.
+  /// The rings to draw if no border is shared.
   Rings& rings_apart() { return drawn.empty() ? rings : drawn; }
 };
 
 /// The classes of features, by position; empty if there are none.
 std::vector<std::uint64_t> classes_of(std::span<WaitingFeature* const> features);
 
-/// Makes something of features. Each is used by one thread at a time.
+/// Processes features. Each worker is used by one thread at a time.
 class FeatureWorker {
  public:
   virtual ~FeatureWorker() = default;
 
-  /// Takes a feature by itself; may use so many threads. `rings` may be used as scratch memory.
+  /// Processes a single feature on up to `threads` threads. `rings` may be used as scratch memory.
   virtual void build_apart(const FeatureKey& feature, Rings& rings, unsigned threads) = 0;
-  /// Takes two or more that share borders, in ascending order of rows; may use so many threads.
+  /// Processes two or more features that share borders, in ascending order of rows, on up to
+  /// `threads` threads.
   virtual void build_together(std::span<WaitingFeature* const> features, unsigned threads) = 0;
 
-  /// How far it is with what it took last; begun anew by who gives it something.
+  /// Progress with the current unit; restarted by whoever passes it one.
   WorkShare& share() { return share_; }
 
  protected:
   WorkShare share_;
 };
 
-/// 0: one a core.
+/// 0: one per core.
 unsigned thread_count(unsigned wanted);
 
 class FeaturePipeline {
  public:
-  /// Takes over the attributes of a polygon feature, whose geometry has been taken away, and says
-  /// which row it has; called on the thread that called run().
+  /// Takes over the attributes of a polygon feature, whose geometry has been removed, and returns
+  /// its row. Called on the thread that called run().
   using Take = std::function<std::uint32_t(SourceFeature&)>;
 
-  /// How much one round takes in.
+  /// The maximum input of one round.
   struct RoundLimit {
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
     std::size_t features = std::numeric_limits<std::size_t>::max();
   };
 
-  /// There is a thread for each worker; those that would wait for another help it. `source` and the
-  /// workers must outlive the pipeline. `progress` is as in LoadOptions, and may be empty: it is
-  /// called now and then with the share of the expected time that has gone, as far as it is spent
-  /// here.
-  /// Throws SourceError if the source lacks the attribute by which features are merged.
-  /// Of `earlier`, if it is not null, is taken which features share borders: it was built with the
-  /// same options, and must outlive the pipeline. Features come on the grid, null being that of Web
-  /// Mercator.
+  /// Each worker has a thread; threads that would wait for another one help it. `source` and the
+  /// workers must outlive the pipeline. `progress` is as in LoadOptions and may be empty: it is
+  /// called from time to time with the elapsed fraction of the expected time, as far as it is spent
+  /// here. `earlier`, if not null, supplies which features share borders: it must have been built
+  /// with the same options and must outlive the pipeline. Features are projected to `grid`, null
+  /// being that of Web Mercator. Throws SourceError if the source lacks the attribute by which
+  /// features are merged.
   FeaturePipeline(FeatureSource& source, const LayerOptions& options,
                   const std::vector<FeatureWorker*>& workers, std::function<void(double)> progress,
                   const EarlierLayer* earlier = nullptr,
@@ -86,17 +86,17 @@ class FeaturePipeline {
   ~FeaturePipeline();
 
   /// Reads features until the limit is reached or the source has no more, and has all of them
-  /// built; false if there is nothing more to read. Only features of one round meet each other:
-  /// where they may share borders, there is to be one round. Which worker gets what is left to
-  /// chance. Throws what reading, a worker, `take` or `progress` throws, among it SourceError if
-  /// the whole source cannot be understood.
+  /// built. Returns false if there is nothing more to read. Only features of one round are
+  /// considered together: if they may share borders, there must be only one round. The assignment
+  /// to workers is arbitrary. Throws what reading, a worker, `take` or `progress` throws, including
+  /// SourceError if the source as a whole cannot be interpreted.
   bool run(const Take& take, const RoundLimit& limit);
 
-  /// Features of the source that have been read.
+  /// Number of features read from the source.
   std::size_t features() const { return features_; }
   /// When the last feature was read.
   std::chrono::steady_clock::time_point read_until() const { return read_until_; }
-  /// What was found before a worker got to see it.
+  /// Findings from before the features reached a worker.
   std::vector<const FeatureTally*> tallies() const;
 
  private:
@@ -111,7 +111,7 @@ class FeaturePipeline {
     std::uint64_t merge_class = 0;
   };
   using Batch = std::vector<Job>;
-  /// Features that are built together, or one by itself.
+  /// Features that are built together, or a single one.
   using Task = std::vector<WaitingFeature*>;
 
   bool read(const Take& take, const RoundLimit& limit, Pool& pool);
@@ -136,15 +136,16 @@ class FeaturePipeline {
   std::size_t features_ = 0;
   std::chrono::steady_clock::time_point read_until_;
 
-  // What is to be handed over next.
+  // The next items to hand over.
   Batch batch_;
   std::size_t batch_bytes_ = 0;
 
-  // For the progress.
+  // For progress.
   bool is_all_read_ = false;
   bool are_gaps_closed_ = false;
   bool is_grouped_ = false;
-  double work_read_ = 0;  // what lanes are to do with what has been read; their unit
+  double work_read_ = 0;  // estimated work of the lanes for the features read so far, in the lanes'
+                          // unit
   double shown_ = 0;
 };
 

@@ -1,5 +1,4 @@
-// What became of the features of a source, counted by each thread for itself and added up at the
-// end.
+// Outcomes of the features of a source, counted separately by each thread and added up at the end.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +12,18 @@ namespace trapeze {
 
 /// A feature of a source.
 struct FeatureKey {
-  std::size_t order = 0;  // counts the features of the source
-  std::uint32_t row = 0;  // counts its polygon features, in the same order
+  std::size_t order = 0;  // index among the features of the source
+  std::uint32_t row = 0;  // index among its polygon features, in the same order
   std::int64_t id = 0;
 };
 
-/// A note and the feature it is about, to be brought into the order of the source.
+/// A note with the position of its feature, for sorting into the order of the source.
 struct OrderedNote {
   std::size_t order = 0;
   FeatureNote note;
 };
 
-/// Sums, which do not depend on who counted what.
+/// Sums that do not depend on how features were distributed over threads.
 struct FeatureTally {
   std::size_t loaded = 0;
   std::size_t other_geometry = 0;
@@ -38,7 +37,8 @@ struct FeatureTally {
   std::size_t repaired = 0;
   CoverageCounts coverage;
   std::vector<OrderedNote> skips;
-  // On features that were not skipped: the first kMaxRemarks in the order of the source, and some.
+  // On features that were not skipped: the first kMaxRemarks in the order of the source, and
+  // possibly some more.
   std::vector<OrderedNote> remarks;
 
   static constexpr std::size_t kMaxRemarks = 100;

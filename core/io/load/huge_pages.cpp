@@ -8,7 +8,7 @@
 #include "core/layer/layer_arrays.h"
 
 #ifndef MADV_COLLAPSE
-#define MADV_COLLAPSE 25  // of Linux 6.1; glibc has it since 2.37
+#define MADV_COLLAPSE 25  // since Linux 6.1; glibc defines it since 2.37
 #endif
 
 namespace trapeze {

@@ -21,7 +21,7 @@
 namespace trapeze {
 namespace {
 
-// Of the time; the rest is for joining what the threads have built.
+// Fraction of the time; the rest is for joining what the threads have built.
 constexpr double kPipelineShare = 0.78;
 
 using Clock = std::chrono::steady_clock;
@@ -30,7 +30,7 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// The table of a layer while the features come in.
+/// The table of a layer, filled while features arrive.
 class TableReader {
  public:
   TableReader(const FeatureSource& source, const SourceSelection& selection)
@@ -65,7 +65,7 @@ void add_sums(const FeatureTally& tally, LoadReport& report) {
   for (const auto count : kCoverageCounts) report.coverage.*count += tally.coverage.*count;
 }
 
-// Every tally kept its first remarks, so the first ones of all are among them.
+// Every tally kept its first remarks, so the first ones overall are among them.
 std::vector<FeatureNote> join_notes(const std::vector<const FeatureTally*>& tallies) {
   std::vector<OrderedNote> remarks;
   std::vector<OrderedNote> notes;
@@ -121,7 +121,7 @@ bool can_take_over(const LoadOptions& options) {
          arrays_of(*options.earlier).options == options.generalization;
 }
 
-/// Throws SourceError if there are other features than were divided.
+/// Throws SourceError if the features differ from those that were divided.
 void keep_part(FeatureSource& source, const LoadOptions& options) {
   const auto is_wanted = [division = options.division, part = options.part](std::size_t order) {
     if (!division->knows(order)) throw SourceError("has changed since it was divided into parts");

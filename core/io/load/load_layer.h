@@ -1,4 +1,4 @@
-// Reads the polygons of any vector source that GDAL understands into a layer, on all cores.
+// Reads the polygons of any vector source that GDAL supports into a layer, on all cores.
 #pragma once
 
 #include <cstddef>
@@ -23,51 +23,53 @@ class PreparedParts;
 class SourceDivision;
 
 struct LoadOptions {
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
   LayerOptions generalization = {};
   SourceSelection selection = {};
   /// The reference system on whose grid the layer is built, see find_target_grid(); empty: Web
   /// Mercator.
   std::string grid = {};
-  /// A layer, on the same grid, of which to take over what is built of the same rings, or null: the
-  /// result is the same and is there sooner. Nothing is taken over of one that was built with other
-  /// options. It was built by the same program: see build_fingerprint().
+  /// A layer on the same grid, built by the same program (see build_fingerprint()), from which
+  /// content built of the same rings is taken over, or null. The result is the same but is ready
+  /// sooner. Nothing is taken over from a layer that was built with other options.
   std::shared_ptr<const Layer> earlier = {};
-  /// Into which the source is divided, with the same selection and options; null: it is read whole.
+  /// The division of the source, made with the same selection and options; null: the source is read
+  /// whole.
   std::shared_ptr<const SourceDivision> division = {};
-  std::uint32_t part = 1;  // the one of its parts that is read
-  /// Called from the thread that called load_layer now and then, with about the share of the time
-  /// that has gone, reading and building alike: in [0, 1] and never falling, or < 0 while unknown;
-  /// at the end with 1. What it throws ends the loading.
+  std::uint32_t part = 1;  // the part that is read, if there is a division
+  /// Called from time to time, on the thread that called load_layer, with the approximate fraction
+  /// of the time elapsed, reading and building together: in [0, 1] and never decreasing, or < 0
+  /// while unknown; 1 at the end. An exception thrown by it aborts the loading.
   std::function<void(double)> progress = {};
 };
 
 struct LoadedLayer {
   std::unique_ptr<Layer> layer;
   LoadReport report;
-  std::shared_ptr<const MappedFile> file = {};  // that a prepared layer looks at
-  std::optional<std::uint64_t> revision = {};   // of a prepared layer: under which it was saved
+  std::shared_ptr<const MappedFile> file = {};  // viewed by a prepared layer
+  std::optional<std::uint64_t> revision = {};   // of a prepared layer: the revision under which it
+                                                // was saved
   std::optional<PartNumber> part = {};          // of a part of a layer
-  /// Of a layer in several prepared parts: these. `layer` has their fields and bounds, and no
-  /// polygon.
+  /// For a layer in several prepared parts: the parts. `layer` then has their fields and bounds but
+  /// no polygons.
   std::shared_ptr<const PreparedParts> parts = {};
-  /// Of a whole prepared layer: where labels go, of all parts (see LabelAnchors), in memory that
-  /// the layer keeps. Empty of others, of which that has to be found.
+  /// For a whole prepared layer: the label anchors of all parts (see LabelAnchors), in memory that
+  /// the layer keeps. Empty for other layers, for which they have to be computed.
   std::span<const LabelAnchor> label_anchors = {};
 };
 
 /// Opens `path` read-only with one of the allowed vector drivers and reads all polygons of all its
-/// layers (of OpenStreetMap: its areas), each in its own reference system; without one, coordinates
-/// are taken for degrees if they can be. What lies beyond the 180th meridian comes back in on the
-/// other side; what lies beyond the Web Mercator square towards the poles is cut off.
+/// layers (from OpenStreetMap: its areas), each in its own reference system. Without one,
+/// coordinates are interpreted as degrees if possible. Geometry beyond the 180th meridian reappears
+/// on the other side; geometry beyond the Web Mercator square towards the poles is cut off.
 ///
-/// Features are in the order of the source whatever the number of threads, one row of the table for
-/// each feature that has polygons, drawn or not. The result does not depend on the threads. Throws
-/// std::runtime_error, naming the source, if it cannot be opened, has no layer, has not what is
-/// selected, breaks off, or cannot be brought to Web Mercator; bad features never throw, they are
-/// reported.
+/// Features are in the order of the source, with one row of the table for each feature that has
+/// polygons, drawn or not. The result does not depend on the number of threads. Throws
+/// std::runtime_error that names the source if it cannot be opened, has no layer, lacks the
+/// selected content, breaks off, or cannot be projected to Web Mercator. Bad features never throw;
+/// they are reported.
 ///
-/// Thread-safety: may be called from several threads at once.
+/// Thread-safety: may be called from several threads at the same time.
 LoadedLayer load_layer(const std::string& path, const LoadOptions& options = {});
 
 }  // namespace trapeze

@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::size_t kFeaturesBetweenShows = 4096;
 
-/// What is measured of the features of a source, in its order.
+/// Measures of the features of a source, in its order.
 struct Measures {
-  std::vector<std::uint32_t> vertices;  // by feature; 0 of what is not drawn
+  std::vector<std::uint32_t> vertices;  // by feature; 0 if it is not drawn
   std::vector<std::uint32_t> places;    // by feature: along the Hilbert curve
   std::vector<Box> boxes;
   std::vector<std::uint32_t> owners;  // by box: the feature
@@ -38,10 +38,10 @@ std::uint64_t word_of(std::int32_t x, std::int32_t y) {
   return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
 }
 
-/// Wide enough that two that would be closed to each other meet.
+/// Widened so that the boxes of two features that gap closing may connect intersect.
 Box widened_for_gaps(const Box& box, double metres) {
   if (metres == 0) return box;
-  // The scale of the map grows towards the poles.
+  // The map scale grows towards the poles.
   const double y =
       std::max(std::abs(static_cast<double>(box.min_y)), std::abs(static_cast<double>(box.max_y)));
   const auto cells = static_cast<std::int64_t>(std::ceil(cells_from_ground(metres, y))) + 1;
@@ -89,19 +89,19 @@ class Measuring {
     digester_.add(word_of(all.min_x, all.min_y));
     digester_.add(word_of(all.max_x, all.max_y));
     digester_.add(feature.rings.points.size());
-    // With coverage on, features are grouped by the boxes around the whole of them.
+    // With coverage on, features are grouped by their whole bounding boxes.
     if (options_.coverage == CoverageMode::on) return add(all, owner);
     const std::size_t first = measures_.boxes.size();
     for (std::size_t r = 0; r < feature.rings.size(); ++r) {
       const Box box = widened(box_of(feature.rings[r]));
-      // A hole mostly follows its shell.
+      // A hole usually follows its shell.
       const bool is_within = measures_.boxes.size() > first && holds(measures_.boxes.back(), box);
       if (!is_within) add_as_is(box, owner);
     }
   }
 
   void add(const Box& box, std::uint32_t owner) { add_as_is(widened(box), owner); }
-  /// So that it meets those of others that may change it.
+  /// Widened so that it intersects those of others that may affect it.
   Box widened(const Box& box) const {
     return options_.merge > 0 ? widened_for_blocks(box)
                               : widened_for_gaps(box, options_.close_gaps);
@@ -119,14 +119,14 @@ class Measuring {
   Digester digester_;
 };
 
-/// Features that hang together, by the first of them.
+/// Connected features, represented by the first of them.
 struct Group {
-  std::uint32_t place = 0;  // of the first
+  std::uint32_t place = 0;  // of the first one
   std::uint32_t first = 0;
   std::uint64_t vertices = 0;
 };
 
-/// Those that have vertices, along the curve.
+/// The groups that have vertices, in order along the curve.
 std::vector<Group> groups_of(const Measures& measures, DisjointSets& sets) {
   std::vector<std::uint64_t> vertices(sets.size());
   for (std::uint32_t i = 0; i < sets.size(); ++i) vertices[sets.find(i)] += measures.vertices[i];
@@ -164,7 +164,7 @@ std::shared_ptr<const SourceDivision> SourceDivision::of(
   division->part_of_.assign(measures.vertices.size(), 0);
   std::uint64_t before = 0;
   for (const Group& group : groups) {
-    // The part in which the middle of its vertices lies.
+    // The part that contains the middle of the group's vertices.
     const auto part = static_cast<std::uint64_t>(static_cast<Int128>(before + group.vertices / 2) *
                                                  count / std::max<std::uint64_t>(all, 1));
     division->part_of_[group.first] =

@@ -17,9 +17,9 @@
 namespace trapeze {
 namespace {
 
-// To be raised when another polygon or attribute is read from the same source, when what was read
-// is given another revision, or when layers change that are unlike the probe, as those with much
-// dust.
+// Must be incremented when different polygons or attributes are read from the same source, when the
+// same content gets another revision, or when a change affects only layers that are unlike the
+// probe, such as those with much dust.
 constexpr std::uint64_t kReadingVersion = 6;
 
 constexpr int kShapes = 12;
@@ -28,7 +28,7 @@ constexpr int kVertices = 9;
 /// The same on every machine, unlike the distributions of the standard library.
 class Random {
  public:
-  /// At least -range, less than range.
+  /// From -range up to, but not including, range.
   std::int32_t next(std::int32_t range) {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return static_cast<std::int32_t>((state_ >> 33) % (2u * static_cast<std::uint32_t>(range))) -
@@ -39,8 +39,8 @@ class Random {
   std::uint64_t state_ = 1;
 };
 
-/// Rings of any kind, from a few cells to a thousand kilometres, most of which cross themselves:
-/// operators, noding, blocked vertices, holes and dust all have a part in them.
+/// Rings of any kind, from a few cells to a thousand kilometres, most of which cross themselves, so
+/// that operators, noding, blocked vertices, holes and dust are all involved.
 void draw_shape(Random& random, int shape, Rings& rings) {
   const std::int32_t size = 4 << (2 * shape);
   const Point middle{random.next(1 << 20), random.next(1 << 20)};
@@ -51,7 +51,7 @@ void draw_shape(Random& random, int shape, Rings& rings) {
 }
 
 /// The same kind of rings as features of one coverage: borders between all of them, junctions, and
-/// regions of all sizes that are to go.
+/// small regions of all sizes that will be removed.
 void add_coverage(Random& random, double gap, FeatureTable& features, LayerBuilder& builder) {
   std::vector<Rings> rings(kShapes);
   std::vector<std::uint32_t> rows;
@@ -83,7 +83,7 @@ std::unique_ptr<Layer> build_probe(LayerOptions options) {
   return LayerBuilder::join(builders, std::move(features));
 }
 
-/// Where places of the world come to lie on the grid.
+/// Where places of the world lie on the grid.
 std::array<std::int64_t, 4> probe_projection() {
   const GridPosition place = grid_from_lonlat({114.06, 22.54});
   const GridPosition metres = grid_from_metres(1'000'000, -1'000'000);

@@ -1,4 +1,4 @@
-// Whether two programs make the same layer of the same source.
+// Whether two programs make the same layer from the same source.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace trapeze {
 
-/// A number that is the same wherever layers are built alike: with these options, on the same grid,
-/// with the same tolerances, by the same method. It is the checksum of a small layer that is built
-/// for the purpose (in about a millisecond), so that no change to the method can be forgotten; what
-/// is read from a source, and under which revision it is saved, is counted by kReadingVersion.
-/// Equal on every machine.
+/// A number that is equal wherever layers are built alike: with these options, on the same grid,
+/// with the same tolerances, by the same method. It is the checksum of a small layer built for this
+/// purpose (in about a millisecond), so no change to the method can be forgotten. Changes in how
+/// sources are read, and in the revision under which a layer is saved, are covered by
+/// kReadingVersion. Equal on every machine.
 std::uint64_t build_fingerprint(const LayerOptions& options);
 
 }  // namespace trapeze

@@ -14,7 +14,8 @@ namespace {
 constexpr int kTilePixels = 256;
 constexpr double kPixelsOfTolerance = 4;  // the usual tolerance is a quarter of a pixel
 
-/// How many boxes a tile meets in the mean that meets any; 0 if there are too many tiles to tell.
+/// The mean number of boxes intersected by a tile that intersects any; 0 if there are too many
+/// tiles to compute it.
 double boxes_of_tile(std::span<const Box> boxes, int zoom) {
   constexpr std::size_t kMostTiles = std::size_t{1} << 20;
   const std::int64_t side = TileId{zoom, 0, 0}.side();

@@ -13,7 +13,7 @@
 namespace trapeze {
 namespace {
 
-/// Warns of what is served by itself because a shell has put all files in place of their pattern.
+/// Warns if a single part is served because a shell has expanded the pattern to all file names.
 LoadedLayer open_single(const std::string& path, const PreparedDemands& demands) {
   LoadedLayer loaded = open_prepared_layer(path, demands);
   if (!loaded.part) return loaded;
@@ -57,19 +57,19 @@ LayerOptions layer_options(const OpenOptions& options) {
   return layer;
 }
 
-/// In words, that gaps are to be closed where no borders are shared; empty if not.
+/// A message that gaps would be closed where no borders are shared; empty if that is not the case.
 std::string find_idle_gaps(const std::string& path, const LayerOptions& layer) {
   if (layer.close_gaps == 0 || layer.coverage != CoverageMode::off) return {};
   return name_of_source(path) + ": gaps can be closed only where coverage is auto or on";
 }
 
-/// The same of blocks.
+/// The same for blocks.
 std::string find_idle_merge(const std::string& path, const LayerOptions& layer) {
   if (layer.merge == 0 || layer.coverage != CoverageMode::off) return {};
   return name_of_source(path) + ": polygons become blocks only where coverage is auto or on";
 }
 
-/// That there are classes of what becomes no block.
+/// A message that there are merge classes without merging.
 std::string find_idle_classes(const std::string& path, const LayerOptions& layer) {
   if (layer.merge_by.empty() || layer.merge > 0) return {};
   return name_of_source(path) + ": polygons become blocks by \"" + layer.merge_by +
@@ -88,7 +88,7 @@ OpenPart part_of(SelectionPart part) {
   return OpenPart::file;
 }
 
-/// Throws what is wrong with a source.
+/// Throws if something is wrong with a source.
 void examine_source(const std::string& path, const OpenOptions& options,
                     std::vector<OpenFinding>& findings) {
   const std::string name = name_of_source(path);

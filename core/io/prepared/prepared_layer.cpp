@@ -35,15 +35,15 @@ namespace {
 
 constexpr const char* kPrepareAgain = "; run `trapeze prepare` again";
 
-/// The file is whole, but no layer as it would be built now.
+/// The file is undamaged, but the layer would be built differently now.
 class UnfitError : public PreparedFileError {
  public:
   using PreparedFileError::PreparedFileError;
 };
 
-/// The small parts of a file: what is not an array.
+/// The small parts of a file, which are not arrays.
 struct Description {
-  LayerArrays numbers;  // all but the arrays
+  LayerArrays numbers;  // everything except the arrays
   std::uint64_t revision = 0;
   SourceStamp source;
   LoadReport report;
@@ -51,7 +51,7 @@ struct Description {
   LevelCounts counts;  // of a part
 };
 
-// Writing and reading name the same parts in the same order; keep them side by side.
+// Writing and reading list the same parts in the same order; keep them side by side.
 
 void write_stamp(const SourceStamp& stamp, ByteWriter& out) {
   out.add_text(stamp.path);
@@ -118,15 +118,15 @@ void write_fields(const std::vector<Field>& fields, ByteWriter& out) {
   }
 }
 
-// In the byte of the coverage: that there are blocks, and their distance follows.
+// In the byte of the coverage mode: there are blocks, and their distance follows.
 constexpr std::uint8_t kBlocksBit = 0x80;
-// That they are of classes, and the attribute follows that.
+// The blocks are restricted to classes, and the attribute follows.
 constexpr std::uint8_t kClassesBit = 0x40;
-// That there are overlaps that were not found.
+// There are overlaps that were not found.
 constexpr std::uint8_t kMoreOverlapsBit = 0x20;
 constexpr std::uint8_t kCoverageBits = kBlocksBit | kClassesBit | kMoreOverlapsBit;
 
-/// A value of an enumeration whose last is `last`.
+/// A value of an enumeration whose last value is `last`.
 template <typename Enum>
 Enum enum_of(std::uint8_t number, Enum last) {
   if (number > static_cast<std::uint8_t>(last)) {
@@ -197,7 +197,7 @@ LayerArrays read_numbers(ByteReader& in) {
   return numbers;
 }
 
-/// Calls visit(number) for every number that says how much there is of a part.
+/// Calls visit(number) for every count of a part.
 template <typename Counts, typename Visit>
 void for_each_count_by_level(Counts& counts, const Visit& visit) {
   for (auto* of_level :
@@ -292,7 +292,7 @@ void add_arrays(const LayerArrays& a, SectionWriter& out) {
   }
 }
 
-/// None of a part of a layer, as labels are of all of it.
+/// Empty for a part of a layer, because labels are placed for the whole layer.
 LabelAnchors label_anchors_of(const LoadedLayer& loaded, const EarlierPrepared& earlier) {
   if (loaded.part) return {std::span<const LabelAnchor>(), LabelParts::all};
   const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
@@ -381,7 +381,7 @@ void check_options(const LayerOptions& options, const PreparedDemands& demands) 
   }
 }
 
-/// Of how layers are built, and on which grid.
+/// Fingerprint of how layers are built, and on which grid.
 std::uint64_t fingerprint_on(const std::string& grid, const LayerOptions& options) {
   const std::uint64_t fingerprint = build_fingerprint(options);
   if (grid.empty()) return fingerprint;
@@ -450,7 +450,7 @@ PreparedSummary summary_of(Description&& description, const SectionReader& secti
   return summary;
 }
 
-/// Calls open() and puts what it throws in words for whoever runs the server.
+/// Calls open() and converts its exceptions to messages for the operator of the server.
 template <typename Open>
 auto opened(const std::string& path, const Open& open) {
   try {

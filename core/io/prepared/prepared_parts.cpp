@@ -17,9 +17,9 @@ namespace {
 
 using Part = std::shared_ptr<const PreparedPart>;
 
-/// Whether the name fits the pattern from these places on.
+/// Whether the name matches the pattern.
 bool fits(std::string_view pattern, std::string_view name) {
-  // Where the last `*` was met, and how much of the name it stands for by now.
+  // Position of the last `*`, and the end of the part of the name that it matches so far.
   std::size_t p = 0;
   std::size_t n = 0;
   std::optional<std::size_t> star;
@@ -42,7 +42,7 @@ bool fits(std::string_view pattern, std::string_view name) {
   return p == pattern.size();
 }
 
-/// "2, 5 and 7", of the first few.
+/// "2, 5 and 7", limited to the first few.
 std::string listed(const std::vector<std::uint32_t>& numbers) {
   constexpr std::size_t kMost = 10;
   std::string words;
@@ -68,7 +68,7 @@ std::string part_words(const PartNumber& number) {
   throw std::runtime_error(path + ": " + words);
 }
 
-/// Throws if they are not of one division, prepared alike.
+/// Throws if they are not from one division and prepared alike.
 void check_alike(const Part& first, const Part& other) {
   const PartNumber& a = first->number();
   const PartNumber& b = other->number();
@@ -92,7 +92,7 @@ void check_alike(const Part& first, const Part& other) {
   }
 }
 
-/// In the order of their numbers; throws if one is missing or there twice.
+/// In order of number; throws if one is missing or occurs twice.
 std::vector<Part> in_order(std::vector<Part> parts) {
   std::ranges::stable_sort(parts, {}, [](const Part& part) { return part->number().number; });
   const std::uint32_t count = parts.front()->number().count;
@@ -195,7 +195,7 @@ void add_report(const LoadReport& part, LoadReport& sum) {
                    part.notes.begin() + static_cast<std::ptrdiff_t>(more));
 }
 
-/// A layer of these fields and bounds, without a polygon.
+/// A layer with these fields and bounds, without polygons.
 std::unique_ptr<Layer> frame_of(const std::vector<Part>& parts) {
   LayerArrays arrays;
   arrays.fields = parts.front()->summary().fields;
@@ -274,7 +274,7 @@ bool is_pattern_of_files(const std::string& path) {
   if (std::filesystem::path(path).filename().string().find_first_of("*?") == std::string::npos) {
     return false;
   }
-  // A database, or something in an archive, is no file.
+  // A database, or a path in an archive, is not a file.
   const std::size_t colon = path.find(':');
   if (colon != std::string::npos && colon < path.find('/')) return false;
   if (path.starts_with("/vsi")) return false;

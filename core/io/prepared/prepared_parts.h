@@ -1,9 +1,9 @@
-// A layer that was prepared in several parts, each a file of its own, and perhaps an overview of
+// A layer that was prepared in several parts, each in its own file, possibly with an overview of
 // them all for low zooms.
 //
-// When the layer is opened, only the beginnings of the files are looked at: which parts there are,
-// where they lie, and how much there is in them. A part is mapped, and checked, when somebody wants
-// to see something of it; what is resident then is what was looked at.
+// When the layer is opened, only the beginnings of the files are read: the list of parts, their
+// extents and their sizes. A part is mapped and checked when it is first needed; only pages that
+// are read then stay resident.
 #pragma once
 
 #include <atomic>
@@ -30,45 +30,45 @@ class PreparedPart {
   const PreparedSummary& summary() const { return summary_; }
   const PartNumber& number() const { return *summary_.part; }
 
-  /// Mapped and checked when it is asked for first, which takes about 0.4 ms a megabyte. Null if it
-  /// cannot be: then is_damaged().
+  /// Mapped and checked on the first call, which takes about 0.4 ms per megabyte. Null if that
+  /// fails: then is_damaged() is true.
   std::shared_ptr<const Layer> layer() const;
-  /// Null if nobody has asked for it so far.
+  /// Null if layer() has not been called so far.
   std::shared_ptr<const Layer> layer_if_open() const;
-  /// Whether its file could not be opened when somebody asked for it, or was written into since.
+  /// Whether its file could not be opened when it was needed, or has been written to since.
   bool is_damaged() const;
-  /// What was wrong when it was opened; empty if nothing was.
+  /// The problem found when it was opened; empty if there was none.
   std::string problem() const;
 
  private:
   const std::string path_;
   const PreparedSummary summary_;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   mutable std::shared_ptr<const Layer> layer_;
   mutable std::shared_ptr<const MappedFile> file_;
   mutable std::string problem_;
   mutable std::atomic<bool> has_failed_ = false;
 };
 
-/// Immutable but for parts that are opened. Thread-safety: any number of threads may read.
+/// Immutable except that parts are opened. Thread-safety: any number of threads may read.
 class PreparedParts {
  public:
-  /// `parts` by their numbers; `overview` may be null.
+  /// `parts` in order of number; `overview` may be null.
   PreparedParts(std::vector<std::shared_ptr<const PreparedPart>> parts,
                 std::shared_ptr<const PreparedPart> overview);
 
   const std::vector<std::shared_ptr<const PreparedPart>>& parts() const { return parts_; }
   const std::shared_ptr<const PreparedPart>& overview() const { return overview_; }
 
-  /// Changes when any part or the overview does, and only then.
+  /// Changes if and only if any part or the overview changes.
   std::uint64_t revision() const { return revision_; }
   LayerSize size() const { return size_; }
-  /// Of all files, in bytes.
+  /// Total size of all files, in bytes.
   std::uint64_t file_size() const { return file_size_; }
-  /// Whether none is damaged, as far as can be told of those that were looked at.
+  /// Whether no part is known to be damaged; only parts that have been opened are checked.
   bool is_whole() const;
-  /// The same within the last twentieth of a second, for who asks often: hundreds of files are
-  /// looked at.
+  /// The same, but up to a twentieth of a second old, for frequent calls: hundreds of files may
+  /// have to be checked.
   bool was_whole_lately() const;
 
  private:
@@ -81,25 +81,25 @@ class PreparedParts {
   mutable std::atomic<bool> was_whole_ = true;
 };
 
-/// Whether it is the name of several files: it has a `*` or a `?` in its last part, and there is no
-/// file of that very name.
+/// Whether it is a file name pattern: its last component contains a `*` or a `?`, and no file has
+/// that very name.
 bool is_pattern_of_files(const std::string& path);
-/// The regular files of a folder that have such a name, in which `*` stands for any characters and
-/// `?` for any one, in order. Throws std::runtime_error that names it if there is none.
+/// The regular files in the folder that match the pattern, in which `*` matches any characters and
+/// `?` any single one, in order. Throws std::runtime_error that names the pattern if there is none.
 std::vector<std::string> files_of_pattern(const std::string& pattern);
 
-/// A digest of the revisions of parts, in their order.
+/// A digest of the revisions of the parts, in order.
 std::uint64_t revision_of_parts(const std::vector<std::shared_ptr<const PreparedPart>>& parts);
 
-/// The parts that these files are. Those that `earlier` has, if it is not null, are taken from
-/// there if they are the same. Throws std::runtime_error, in words that name the files, if one is
-/// no part, was prepared otherwise than demanded, than another one, or from another state of the
-/// source; if a part is missing, or there twice; if an overview was made of other parts.
+/// Opens the parts in these files. Parts that are unchanged in `earlier`, if not null, are taken
+/// from there. Throws std::runtime_error that names the files if one is not a part, or was prepared
+/// otherwise than demanded, otherwise than another one, or from another state of the source; if a
+/// part is missing or occurs twice; or if an overview was made from other parts.
 LoadedLayer open_prepared_parts(const std::vector<std::string>& files,
                                 const PreparedDemands& demands,
                                 const PreparedParts* earlier = nullptr);
 
-/// The same, without an overview, for making one.
+/// The same without an overview, for creating one.
 std::vector<std::shared_ptr<const PreparedPart>> find_prepared_parts(
     const std::vector<std::string>& files, const PreparedDemands& demands);
 

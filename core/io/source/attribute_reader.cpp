@@ -40,7 +40,7 @@ std::string shortest(Number number) {
   return std::string(text.data(), end);
 }
 
-// GDAL counts time zones in quarters of an hour from 100, which is UTC; 0 and 1 are none.
+// GDAL counts time zones in quarters of an hour from 100, which is UTC; 0 and 1 mean none.
 std::string time_zone(int flag) {
   if (flag < 2) return {};
   if (flag == 100) return "Z";
@@ -76,7 +76,7 @@ bool is_list(OGRFieldType type) {
          type == OFTStringList;
 }
 
-// A value that is no text already, in words that lose nothing.
+// A value that is not text, formatted without loss.
 std::string in_words(const OGRFeature& feature, int index, OGRFieldType type) {
   if (type == OFTInteger || type == OFTInteger64) {
     return shortest(feature.GetFieldAsInteger64(index));

@@ -14,30 +14,30 @@
 
 namespace trapeze {
 
-/// Fields are joined by name, in the order in which they first occur; a field that is of different
-/// types in different layers becomes text. Whole numbers, reals and text are kept as they are;
-/// dates become ISO 8601 text, lists JSON, binary hexadecimal. Text that is no UTF-8 is taken for
-/// ISO 8859-1.
+/// Fields are joined by name, in the order in which they first occur. A field that has different
+/// types in different layers becomes text. Integers, reals and text are kept as they are; dates
+/// become ISO 8601 text, lists JSON, binary data hexadecimal text. Text that is not UTF-8 is
+/// interpreted as ISO 8859-1.
 class AttributeReader {
  public:
-  /// `kept` are the names of the fields that are kept; unset: all.
+  /// `kept` are the names of the fields to keep; unset: all.
   explicit AttributeReader(std::optional<std::vector<std::string>> kept = {})
       : kept_(std::move(kept)) {}
 
-  /// Adds the fields of the next layer, before the first row is read; layers count from 0.
+  /// Adds the fields of the next layer; must precede reading the first row. Layers are numbered
+  /// from 0.
   void add_layer(const OGRFeatureDefn& definition);
 
   const std::vector<Field>& fields() const { return fields_; }
-  /// Of the names to be kept, the numbers of those that no layer has.
+  /// The positions, among the names to be kept, of names that no layer has.
   std::vector<std::size_t> missing() const;
 
   static constexpr std::size_t kNotKept = static_cast<std::size_t>(-1);
   /// For each field of a layer, its number in fields(), or kNotKept.
   const std::vector<std::size_t>& fields_of(std::size_t layer) const { return field_of_[layer]; }
 
-  /// The values of one feature of a layer, one for each of fields(), null where the layer lacks
-  /// the field. They are views of memory of the feature and of this reader, valid until the next
-  /// call.
+  /// The values of one feature of a layer, one for each of fields(), null where the layer lacks the
+  /// field. They are views of memory of the feature and of this reader, valid until the next call.
   const std::vector<Value>& read(const OGRFeature& feature, std::size_t layer);
 
  private:
@@ -50,7 +50,7 @@ class AttributeReader {
   std::optional<std::vector<std::string>> kept_;
   std::vector<Field> fields_;
   std::unordered_map<std::string, std::size_t> numbers_;  // of fields_, by name
-  std::vector<std::vector<std::size_t>> field_of_;        // by layer, by index in the layer
+  std::vector<std::vector<std::size_t>> field_of_;        // by layer, then by index in the layer
   std::vector<Value> values_;
   std::vector<std::string> texts_;  // by field: text made for the current row
 };

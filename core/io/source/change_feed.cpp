@@ -57,7 +57,7 @@ std::vector<std::int64_t> ChangeFeed::ask() {
   const std::unique_ptr<OGRLayer, decltype(release)> rows(
       source.ExecuteSQL(with_number(query_, since_).c_str(), nullptr, nullptr), release);
   require(rows != nullptr, "cannot be asked what has changed: " + messages.text());
-  // A column that is known to be the one of ids may be told apart.
+  // GDAL may report a column that it recognizes as the id separately.
   OGRFeatureDefn& columns = *rows->GetLayerDefn();
   const bool has_id_apart = columns.GetFieldCount() == 1 && *rows->GetFIDColumn() != '\0';
   const auto is_integer = [&columns](int field) {

@@ -1,6 +1,6 @@
-// Asks a database which features have changed.
+// Queries a database for the features that have changed.
 //
-// Belongs to one thread at a time.
+// One thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,22 @@ namespace trapeze {
 
 class ChangeFeed {
  public:
-  /// What stands in a query for the greatest number that has been seen.
+  /// The placeholder in a query for the greatest number seen so far.
   static constexpr const char* kSince = "{since}";
 
-  /// `query` is SQL, written by the operator, whose rows are a number, which grows, and the id of a
-  /// feature that has changed, appeared or gone: of those with a number greater than kSince. Notes
-  /// the greatest number that there is by now, and throws std::runtime_error, naming the source, if
-  /// it cannot be asked or answers something else.
+  /// `query` is SQL written by the operator. Its rows are a number, which grows, and the id of a
+  /// feature that was changed, added or removed, for all numbers greater than kSince. The
+  /// constructor notes the greatest present number. Throws std::runtime_error that names the source
+  /// if the query fails or returns anything else.
   ChangeFeed(std::string path, std::string query);
   ~ChangeFeed();
   ChangeFeed(ChangeFeed&&) noexcept;
 
-  /// The ids of features that have changed since it was asked last, each once, in ascending order.
-  /// Throws as the constructor does; then nothing is lost: the next call asks for the same again,
-  /// in a connection of its own.
+  /// The ids of features changed since the last call, each once, in ascending order. Throws like
+  /// the constructor; then nothing is lost: the next call repeats the query on a new connection.
   std::vector<std::int64_t> take();
 
-  /// What it has taken since then is told again.
+  /// A position to return to: what take() returns after it can be returned again.
   struct Mark {
     std::int64_t since = 0;
   };
@@ -43,7 +42,7 @@ class ChangeFeed {
 
   std::string path_;
   std::string query_;
-  std::unique_ptr<Connection> connection_;  // null: there is none
+  std::unique_ptr<Connection> connection_;  // null: not connected
   std::int64_t since_ = 0;
 };
 

@@ -19,11 +19,11 @@ double across(Position p) {
   return axis == Axis::x ? p.y : p.x;
 }
 
-// Where ab meets the line; the ends are ordered first so that ba gives the same bits.
+// The intersection of ab with the line; the ends are ordered first so that ba yields the same bits.
 template <Axis axis>
 Position cut(Position a, Position b, double line) {
   if (along<axis>(b) < along<axis>(a)) std::swap(a, b);
-  // The halves keep the difference of two huge numbers finite.
+  // Halving keeps the difference of two huge numbers finite.
   const double run = 0.5 * along<axis>(b) - 0.5 * along<axis>(a);
   const double share = (0.5 * line - 0.5 * along<axis>(a)) / run;
   const double value = across<axis>(a) * (1 - share) + across<axis>(b) * share;

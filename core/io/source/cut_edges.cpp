@@ -11,7 +11,7 @@ namespace trapeze {
 namespace {
 
 constexpr int kMostHalvings = 20;
-constexpr double kSeen = 0.75;  // of how far a curve is, at the points that are looked at
+constexpr double kSeen = 0.75;  // fraction of the deviation that is visible at the examined points
 constexpr std::array<double, 3> kParts = {1.0 / 3, 0.5, 2.0 / 3};
 constexpr double kMetresPerDegree = 111'320;  // of latitude, and of longitude at the equator
 

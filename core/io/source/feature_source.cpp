@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::string_view kOsmAreas = "multipolygons";
 
-// Of a layer. GDAL's GeoJSON driver compares the names of all for each value of a feature: 40,000
-// take seconds a feature. Databases hold up to 2,000.
+// Per layer. GDAL's GeoJSON driver compares all names for each value of a feature: with 40,000, a
+// feature takes seconds. Databases support up to 2,000.
 constexpr int kMostAttributes = 4096;
 
 // Number of the first geometry field that can hold polygons, or -1.
@@ -31,17 +31,18 @@ int polygon_field(OGRFeatureDefn& definition) {
   return -1;
 }
 
-/// As databases know it, whatever is in it.
+/// Quotes the name as databases do, whatever characters it contains.
 std::string quoted_name(const std::string& name) {
   std::string quoted = "\"";
   for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 
-// A feature by its place takes so many times as long as the next one, at most.
+// Random access to a feature takes at most so many times as long as sequential access.
 constexpr std::size_t kCostByPlace = 8;
 
-/// Whether layers of this driver take any condition, and fail with it when they are read.
+/// Whether layers of this driver accept any condition, and fail because of it only when they are
+/// read.
 bool is_asked_when_read(std::string_view driver) {
   return driver == "GPKG" || driver == "SQLite" || driver == "PostgreSQL";
 }
@@ -68,7 +69,7 @@ std::string FeatureSource::driver() const {
   return dataset_->GetDriverName();
 }
 
-/// What is not there.
+/// Returns what the source lacks.
 std::vector<SelectionProblem> FeatureSource::select(const SourceSelection& selection) {
   if (selection.layer.empty()) {
     find_layers();
@@ -93,7 +94,7 @@ void FeatureSource::select_ids(const SourceSelection& selection) {
   has_condition_ = true;
   ids_ = selection.ids;
   condition_ = selection.where;
-  stored_.assign(1, -1);  // there may be any number of them
+  stored_.assign(1, -1);  // the number is unknown
 }
 
 void FeatureSource::find_layers() {
@@ -107,7 +108,7 @@ void FeatureSource::find_layers() {
   }
 }
 
-/// What is wrong with the name; empty if nothing is.
+/// The problem with the name; empty if there is none.
 std::string FeatureSource::find_only_layer(const std::string& name) {
   OGRLayer* layer = dataset_->GetLayerByName(name.c_str());
   if (layer == nullptr) {
@@ -131,7 +132,7 @@ void FeatureSource::add_layer(OGRLayer& layer, int geometry_field) {
   layers_.push_back({&layer, geometry_field, SourceCrs::describe(reference)});
 }
 
-/// Before there is a condition, which the count would go by.
+/// Must be called before a condition is set, because it would affect the count.
 void FeatureSource::count_stored() {
   const bool is_told = tells_feature_count(driver());
   for (const SourceLayer& layer : layers_) {
@@ -140,7 +141,7 @@ void FeatureSource::count_stored() {
   }
 }
 
-/// Why a layer cannot be asked; empty if all can.
+/// The reason why a layer cannot be queried; empty if all can.
 std::string FeatureSource::apply_condition(const std::string& where) {
   if (where.empty()) return {};
   has_condition_ = true;
@@ -183,7 +184,7 @@ void FeatureSource::expect(OGRLayer& layer) {
 
 std::vector<std::string> FeatureSource::warnings() const {
   std::vector<std::string> warnings;
-  if (driver() == "TopoJSON") return warnings;  // in which coordinates are degrees, if they can be
+  if (driver() == "TopoJSON") return warnings;  // its coordinates are degrees, if possible
   for (const SourceLayer& layer : layers_) {
     if (layer.crs.kind != SourceCrs::Kind::assumed_degrees) continue;
     const std::string which =
@@ -197,7 +198,7 @@ std::vector<std::string> FeatureSource::warnings() const {
   return warnings;
 }
 
-/// Whether there is a .prj beside a Shapefile; GDAL does not tell of one that it does not
+/// Whether there is a .prj beside a Shapefile; GDAL does not report one that it does not
 /// understand.
 bool FeatureSource::has_unknown_prj() const {
   if (driver() != "ESRI Shapefile") return false;
@@ -208,7 +209,7 @@ bool FeatureSource::has_unknown_prj() const {
 
 void FeatureSource::check_reference_systems() const {
   for (const SourceLayer& layer : layers_) {
-    const RingReader reader(layer.crs, {});  // throws if there is no way from it
+    const RingReader reader(layer.crs, {});  // throws if it cannot be projected
     OGREnvelope extent;
     if (layer.crs.kind != SourceCrs::Kind::assumed_degrees ||
         layer.layer->GetExtent(layer.geometry_field, &extent, FALSE) != OGRERR_NONE) {
@@ -227,8 +228,8 @@ void FeatureSource::keep_only(std::function<bool(std::size_t order)> is_wanted, 
       knows_places() && about < static_cast<std::size_t>(stored_.front()) / kCostByPlace;
 }
 
-/// Whether the features of its only layer are numbered as they are stored, and an index tells where
-/// each of them is.
+/// Whether the features of the only layer are numbered as they are stored, and an index has the
+/// position of each.
 bool FeatureSource::knows_places() const {
   return driver() == "FlatGeobuf" && layers_.size() == 1 && !has_condition_ &&
          stored_.front() > 0 && layers_.front().layer->TestCapability(OLCRandomRead) != 0;
@@ -251,7 +252,7 @@ bool FeatureSource::read_next(SourceFeature& next) {
     ++read_;
     next.failure = messages_.has_failure() ? messages_.text() : std::string();
   }
-  // One stream fails as a whole, though it may still give features from before that.
+  // An interleaved stream fails as a whole, though it may still return features from before that.
   if (messages_.has_failure() && (next.feature == nullptr || is_interleaved_)) {
     throw SourceError("breaks off after " + std::to_string(read_) +
                       " features: " + messages_.text());
@@ -259,7 +260,7 @@ bool FeatureSource::read_next(SourceFeature& next) {
   return next.feature != nullptr;
 }
 
-/// The next that is wanted. What has been passed over counts as read.
+/// The next wanted feature. Features that were passed over count as read.
 OGRFeatureUniquePtr FeatureSource::next_by_place(SourceFeature& next) {
   const auto count = static_cast<std::size_t>(stored_.front());
   while (read_ < count && !is_wanted_(read_)) ++read_;
@@ -283,7 +284,7 @@ OGRFeatureUniquePtr FeatureSource::next_by_id(SourceFeature& next) {
   return std::move(by_id_[read_]);
 }
 
-/// In as many requests as their text is long: a database takes a condition of so many bytes.
+/// In several queries, because a database limits the length of a condition.
 void FeatureSource::read_by_id(OGRLayer& layer) {
   constexpr std::size_t kAtOnce = 1000;
   const std::string column = layer.GetFIDColumn();
@@ -322,7 +323,7 @@ OGRFeatureUniquePtr FeatureSource::next_of_layers(SourceFeature& next) {
   return nullptr;
 }
 
-/// A format may end anywhere without GDAL noticing, such as a FlatGeobuf between two features.
+/// A format may end anywhere without GDAL noticing, for example a FlatGeobuf between two features.
 void FeatureSource::check_all_was_read() {
   OGRLayer& layer = *layers_[current_layer_].layer;
   const GIntBig stored = stored_[current_layer_];

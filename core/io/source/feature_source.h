@@ -1,6 +1,6 @@
 // Reads the features of all layers of a source one after another.
 //
-// Belongs to one thread, as GDAL's handles do.
+// One thread only, like GDAL's handles.
 #pragma once
 
 #include <cstddef>
@@ -29,17 +29,18 @@ struct SourceLayer {
 
 struct SourceFeature {
   OGRFeatureUniquePtr feature;
-  const SourceLayer* layer = nullptr;  // null: of a layer that cannot hold polygons
+  const SourceLayer* layer = nullptr;  // null: the feature is from a layer that cannot hold
+                                       // polygons
   std::size_t layer_index = 0;         // in layers()
-  std::string failure;                 // what GDAL complained about while reading it
+  std::string failure;                 // GDAL's error while reading it, if any
 };
 
 class FeatureSource {
  public:
-  /// Throws std::runtime_error, naming the source, if it cannot be opened or is known to be cut
-  /// off, or has thousands of attributes; SelectionError, with all that is wrong, if it lacks what
-  /// is selected. A database is asked for the first feature for which the condition holds, to learn
-  /// whether it understands it.
+  /// Throws std::runtime_error that names the source if it cannot be opened, is known to be
+  /// truncated, or has thousands of attributes. Throws SelectionError with all problems if the
+  /// source lacks selected content. A database is queried for the first feature that meets the
+  /// condition, to check whether it understands the condition.
   explicit FeatureSource(const std::string& path, const SourceSelection& selection = {});
 
   std::string driver() const;
@@ -47,24 +48,26 @@ class FeatureSource {
   /// The number of features in layers that cannot hold polygons; next() skips them.
   std::size_t passed_over() const { return passed_over_; }
 
-  /// What may be wrong with it, in words without its name: a layer whose coordinates are taken for
-  /// degrees, for it names no reference system that is known, and its format has no usual one.
+  /// Possible problems, in words without the name of the source: a layer whose coordinates are
+  /// interpreted as degrees because it has no known reference system and its format has no usual
+  /// one.
   std::vector<std::string> warnings() const;
-  /// Throws SourceError, before anything is read, if it is known that a layer cannot be brought to
-  /// Web Mercator: by its reference system, or by the extent that it says to have if it names none.
+  /// Throws SourceError, before anything is read, if it is known that a layer cannot be projected
+  /// to Web Mercator: because of its reference system or, if it has none, because of its declared
+  /// extent.
   void check_reference_systems() const;
 
   /// Reads the next feature; false at the end. Throws SourceError if the source breaks off, or if
-  /// fewer features of a layer can be read than it says it has.
+  /// fewer features of a layer can be read than it declares.
   bool next(SourceFeature& next);
 
-  /// From here on, next() passes over features for which that is false, without looking at them;
-  /// `order` counts those that it would give otherwise, from 0. Where about so few are wanted that
-  /// it is worth it, and the format knows where each of them is, no others are read: then it is not
-  /// noticed if others cannot be.
+  /// From here on, next() skips features for which is_wanted is false, without examining them.
+  /// `order` numbers, from 0, the features that it would otherwise return. If `about` so few are
+  /// wanted that it is worthwhile, and the format has random access to features, the others are not
+  /// read at all; unreadable ones among them then go unnoticed.
   void keep_only(std::function<bool(std::size_t order)> is_wanted, std::size_t about);
 
-  /// Share of the features that have been read, 0 to 1, or < 0 if unknown.
+  /// Fraction of the features read, 0 to 1, or < 0 if unknown.
   double progress() const;
 
  private:
@@ -91,22 +94,24 @@ class FeatureSource {
 
   ReadingSettings settings_;
   GDALDatasetUniquePtr dataset_;
-  // The layers of an OSM file are mixed in one stream, which can only be read in its own order.
+  // The layers of an OSM file are interleaved in one stream, which can only be read in its own
+  // order.
   bool is_interleaved_ = false;
   std::vector<SourceLayer> layers_;
   std::size_t passed_over_ = 0;
   GdalMessages messages_;
 
   bool has_condition_ = false;
-  std::vector<GIntBig> stored_;  // by layer: the features it says it has, < 0 if it does not say
+  std::vector<GIntBig> stored_;  // by layer: the declared number of features, < 0 if not declared
 
-  // If only features of certain ids are read: these, and what was found of them, in order.
+  // If only features with certain ids are read: these ids and the features found for them, in
+  // order.
   std::optional<std::vector<std::int64_t>> ids_;
-  std::string condition_;  // on the others, in SQL; empty: none
+  std::string condition_;  // with ids: the condition that applies as well, in SQL; empty: none
   std::vector<OGRFeatureUniquePtr> by_id_;
 
-  std::function<bool(std::size_t)> is_wanted_;  // empty: all are
-  bool reads_by_place_ = false;                 // only those are read at all
+  std::function<bool(std::size_t)> is_wanted_;  // empty: all are wanted
+  bool reads_by_place_ = false;                 // only wanted features are read at all
 
   std::size_t current_layer_ = 0;
   std::size_t read_ = 0;

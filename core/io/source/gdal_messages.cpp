@@ -6,7 +6,8 @@
 namespace trapeze {
 namespace {
 
-/// GDAL's parser writes the condition below its words, and a '^' below what it did not understand.
+/// GDAL's parser prints the condition below its message, and a '^' below the part that it did not
+/// understand.
 std::string in_one_line(std::string_view message) {
   std::string line;
   for (const char c : message) {
@@ -24,7 +25,7 @@ std::string in_one_line(std::string_view message) {
 
 GdalMessages::GdalMessages() {
   CPLPushErrorHandlerEx(&GdalMessages::keep, this);
-  // Debug output is asked for through CPL_DEBUG and stays GDAL's own affair.
+  // Debug output is enabled through CPL_DEBUG and is left to GDAL.
   CPLSetCurrentErrorHandlerCatchDebug(FALSE);
 }
 

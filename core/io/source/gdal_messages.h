@@ -1,4 +1,4 @@
-// GDAL's messages of this thread, caught instead of printed.
+// Collects the GDAL messages of the current thread instead of printing them.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace trapeze {
 
-/// While it lives, GDAL's errors and warnings of the thread that made it are collected here and go
-/// nowhere else. Must be destroyed on the same thread; the latest one made catches.
+/// While an object exists, errors and warnings of GDAL on its thread are collected in it and go
+/// nowhere else. Must be destroyed on the same thread. With several objects, the latest one
+/// collects.
 class GdalMessages {
  public:
   GdalMessages();
@@ -16,10 +17,11 @@ class GdalMessages {
   GdalMessages(const GdalMessages&) = delete;
   GdalMessages& operator=(const GdalMessages&) = delete;
 
-  /// Forgets all messages so far.
+  /// Discards all messages so far.
   void clear() { state_ = {}; }
   bool has_failure() const { return state_.failed; }
-  /// The first error; if there is none, the first warning; empty if there was neither. In one line.
+  /// The first error or, if there is none, the first warning; empty if there is neither. In one
+  /// line.
   const std::string& text() const {
     return state_.failed ? state_.first_failure : state_.first_warning;
   }

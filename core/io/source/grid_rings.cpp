@@ -12,14 +12,15 @@ namespace {
 
 constexpr ClipWindow kGrid = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
                               static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
-constexpr double kSeamStep = 1.0 / 256;  // degrees: between these a meridian is straight
+constexpr double kSeamStep = 1.0 / 256;  // degrees: between cuts at these intervals a meridian
+                                         // counts as straight
 constexpr double kOnSeam = 1e-9;         // degrees
 
 bool is_on_seam(Position p) {
   return std::abs(std::abs(p.x) - 180) <= kOnSeam;
 }
 
-/// Cuts edges along the antimeridian at latitudes that are the same for all.
+/// Cuts edges along the antimeridian at fixed latitudes, the same for all rings.
 PositionRing cut_along_seam(const PositionRing& ring) {
   PositionRing cut;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -55,7 +56,8 @@ bool GridRings::project(const PositionRing& ring, std::vector<PositionRing>& mad
   const double least = west->x;
   const double most = east->x;
   for (const double shift : {0.0, -360.0, 360.0}) {
-    // All the way round, what is beyond 180 degrees is where it is without a turn.
+    // If the grid goes around the world, anything beyond 180 degrees is already in place without a
+    // shift.
     const bool is_seen = grid_->goes_around()
                              ? shift == 0
                              : least + shift < grid_->east && most + shift > grid_->west;

@@ -1,6 +1,6 @@
-// Rings of longitudes and latitudes on the grid of a reference system.
+// Projects rings of longitudes and latitudes to the grid of a reference system.
 //
-// Belongs to one thread.
+// One thread only.
 #pragma once
 
 #include <memory>
@@ -14,18 +14,17 @@ namespace trapeze {
 
 class GridRings {
  public:
-  /// How far an edge may be from where it is drawn, on the ground: a quarter of a cell of Web
-  /// Mercator at the equator, or of the grid if that has larger ones.
+  /// Maximum deviation of an edge from its drawn position, on the ground: a quarter of a cell of
+  /// Web Mercator at the equator, or of the grid if its cells are larger.
   static constexpr double kMostOffMetres = 40'075'016.68 / (1u << 31) / 4;
 
   explicit GridRings(std::shared_ptr<const TargetGrid> grid);
 
   const TargetGrid& grid() const { return *grid_; }
 
-  /// The parts of a ring in degrees that the grid shows, in cells and within it: edges are those of
-  /// straight lines in degrees. A ring along the antimeridian is cut at the same places whichever
-  /// side it is on, so that what lies on both sides meets. Replaces `made`. False if a part has no
-  /// place on the plane.
+  /// Replaces `made` by the parts of a ring in degrees that the grid shows, in cells and within the
+  /// grid. Edges are straight lines in degrees. A ring along the antimeridian is cut at the same
+  /// places on either side of it, so areas on both sides meet. False if a part cannot be projected.
   bool project(const PositionRing& ring, std::vector<PositionRing>& made);
 
  private:

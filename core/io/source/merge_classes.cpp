@@ -11,7 +11,7 @@
 namespace trapeze {
 namespace {
 
-/// The names of attributes in words, of many the first ones.
+/// The names of attributes in words; only the first ones if there are many.
 std::string names_of(const FeatureSource& source) {
   constexpr std::size_t kMostNames = 32;
   AttributeReader all;

@@ -1,6 +1,6 @@
-// The classes of the features of a source, where only those of one class become one block.
+// The classes of the features of a source when only features of the same class become one block.
 //
-// Belongs to the thread of the source.
+// For use on the thread of the source.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace trapeze {
 
 class MergeClasses {
  public:
-  /// By the values of an attribute; empty: all are of one class. Throws SourceError if no layer of
-  /// the source has it.
+  /// Classes by the values of an attribute; empty: all features are of one class. Throws
+  /// SourceError if no layer of the source has the attribute.
   MergeClasses(const FeatureSource& source, const std::string& attribute);
 
-  /// Equal for equal values, in this source and in any other one; those without a value are of one
-  /// class. The feature may have lost its geometry.
+  /// Equal for equal values, in this source and in any other; features without a value are of one
+  /// class. The geometry of the feature may have been removed.
   std::uint64_t class_of(const SourceFeature& feature);
 
  private:

@@ -22,8 +22,8 @@
 namespace trapeze {
 namespace {
 
-// Drivers that read polygons from one named source and nothing else. Not VRT: such a file can name
-// any other file, URL or database.
+// Drivers that read polygons from one named source and nothing else. VRT is excluded: such a file
+// can name any other file, URL or database.
 constexpr std::array kAllowedDrivers = {
     "FlatGeobuf", "GPKG", "GeoJSON", "GeoJSONSeq", "TopoJSON",    "ESRI Shapefile", "OSM",
     "GML",        "KML",  "LIBKML",  "SQLite",     "OpenFileGDB", "PostgreSQL",     "Parquet"};
@@ -49,7 +49,7 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
                              [text](std::string_view prefix) { return text.starts_with(prefix); });
 }
 
-// Files kept in a cloud, for whose credentials GDAL asks the cloud.
+// Files in a cloud, whose service GDAL asks for credentials.
 bool is_in_cloud(std::string_view path) {
   return starts_with_any(path, {"/vsis3", "/vsigs", "/vsiaz", "/vsiadls", "/vsioss", "/vsiswift"});
 }
@@ -60,10 +60,10 @@ std::atomic<bool>& may_ask_cloud() {
   return may_ask;
 }
 
-/// In the place of GDAL's own downloads, such as of the reference system that a GeoJSON links to.
+/// Replaces GDAL's own downloads, such as that of the reference system to which a GeoJSON links.
 CPLHTTPResult* refuse_download(const char* url, CSLConstList, GDALProgressFunc, void*,
                                CPLHTTPFetchWriteFunc, void*, void*) {
-  if (may_ask_cloud()) return nullptr;  // GDAL downloads it
+  if (may_ask_cloud()) return nullptr;  // let GDAL download it
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
   result->nStatus = 1;
   result->pszErrBuf = CPLStrdup("nothing is fetched that a file refers to");
@@ -91,7 +91,7 @@ bool is_in_archive_or_remote(std::string_view path) {
   return starts_with_any(path, {"/vsi"});
 }
 
-// A folder is a source only if it is a File Geodatabase. (Drivers that take a folder for a set of
+// A folder is a source only if it is a File Geodatabase. (Drivers that accept a folder as a set of
 // layers would read files that nobody named.)
 void check_folder(const std::string& path) {
   const char* const only_geodatabase[] = {"OpenFileGDB", nullptr};
@@ -114,8 +114,8 @@ void check_contents(const std::string& path) {
   if (is_prepared_file(path)) fail(path, "is a prepared layer; name its source");
 }
 
-// Distinguishes a name that is not there from one that is there and cannot be looked at, such as a
-// loop of links, or from which nothing may ever come.
+// Distinguishes a name that does not exist from one that exists but cannot be accessed, such as a
+// loop of links, or from which no data may ever arrive.
 void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path, error);
@@ -137,7 +137,7 @@ void check_readable(const std::string& path) {
   check_contents(path);
 }
 
-// Why an existing, readable file could not be opened with an allowed driver.
+// Explains why an existing, readable file could not be opened with an allowed driver.
 [[noreturn]] void explain_refusal(const std::string& path, const std::string& message) {
   GDALDriverH any =
       GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_RASTER, nullptr, nullptr);

@@ -14,7 +14,7 @@ namespace {
 constexpr ClipWindow kWorld = {static_cast<double>(kGridMin), static_cast<double>(kGridMin),
                                static_cast<double>(kGridMax), static_cast<double>(kGridMax)};
 
-// What lies farther from the prime meridian is not brought back into the world.
+// Geometry farther from the prime meridian is not moved back into the world.
 constexpr double kMostLongitude = 540;
 
 bool is_collection(OGRwkbGeometryType flat) {
@@ -29,8 +29,8 @@ bool is_polygon(OGRwkbGeometryType flat) {
   return OGR_GT_IsSubClassOf(flat, wkbCurvePolygon) != 0;
 }
 
-// Positive if the ring runs counterclockwise on a map with north up. Relative to the first vertex,
-// so that large coordinates do not drown small rings.
+// Positive if the ring runs counterclockwise on a map with north up. Computed relative to the first
+// vertex, so that small rings at large coordinates keep their precision.
 double twice_area(std::span<const double> x, std::span<const double> y) {
   double sum = 0;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
@@ -40,7 +40,7 @@ double twice_area(std::span<const double> x, std::span<const double> y) {
 }
 
 bool are_finite(std::span<const double> values) {
-  // Zero times anything finite is zero; infinities and NaN turn the sum into NaN.
+  // Zero times any finite number is zero; infinities and NaN turn the sum into NaN.
   double sum = 0;
   for (const double value : values) sum += value * 0.0;
   return sum == 0;
@@ -51,11 +51,13 @@ bool are_within(std::span<const double> values, double limit) {
                      [limit](double value) { return std::abs(value) <= limit; });
 }
 
-constexpr double kNearSeam = 2e-5;      // degrees: two metres, to which sources round 180
-constexpr double kLeastSeamCut = 0.01;  // degrees: a kilometre; what is shorter may be a house
+constexpr double kNearSeam = 2e-5;      // degrees: two metres, the precision to which sources round
+                                        // 180
+constexpr double kLeastSeamCut = 0.01;  // degrees: a kilometre; shorter edges may belong to a
+                                        // building
 
-// Sources cut at 180 degrees what goes on beyond, and have it rounded at times: 179.99999. Edges
-// that run along the cut are laid on it, so that both sides of it meet and it is known for a cut.
+// Sources cut geometry that continues beyond 180 degrees, sometimes with rounding: 179.99999. Edges
+// along the cut are moved onto it, so that both sides meet and it is recognized as a cut.
 void lay_cuts_on_seam(PositionRing& ring) {
   const auto is_near = [](Position p) { return std::abs(std::abs(p.x) - 180) <= kNearSeam; };
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -208,8 +210,8 @@ void RingReader::check_coordinates(FeatureRings& feature) const {
   }
 }
 
-// Of what lies outside of the world: whether the source means metres and says that it means
-// degrees.
+// For coordinates outside the world: whether the source declares degrees although it contains
+// metres.
 void RingReader::check_degrees(FeatureRings& feature) const {
   const bool is_said =
       crs_.kind == SourceCrs::Kind::degrees || crs_.kind == SourceCrs::Kind::geographic;
@@ -229,7 +231,7 @@ void RingReader::to_lonlat(FeatureRings& feature) {
     return;
   }
   if (crs_.degrees_per_unit == 0) return;
-  // A datum moves a point by metres: a longitude that moved by half a turn was wrapped.
+  // A datum shift moves a point by metres: a longitude that moved by half a turn was wrapped.
   for (std::size_t i = 0; i < x_.size(); ++i) {
     x_[i] += 360 * std::nearbyint((source_x_[i] * crs_.degrees_per_unit - x_[i]) / 360);
   }
@@ -248,8 +250,8 @@ bool RingReader::map_to_lonlat(std::vector<double>& x, std::vector<double>& y) {
   return true;
 }
 
-// Where edges are straight on a plane, they are curves in degrees. What cannot be cut is left as it
-// is, to be told of where all of it is brought to degrees.
+// Edges that are straight on a plane are curves in degrees. A ring that cannot be cut is left
+// unchanged, and is reported when all of it is transformed to degrees.
 void RingReader::cut_source_edges(FeatureRings& feature) {
   const bool is_plane =
       crs_.kind == SourceCrs::Kind::projected || crs_.kind == SourceCrs::Kind::web_mercator;
@@ -288,7 +290,7 @@ void RingReader::append_on_grid(FeatureRings& feature) {
 }
 
 void RingReader::append_ring(std::size_t begin, std::size_t end, FeatureRings& feature) {
-  // The closing vertex repeats the first one; a ring that lacks it is closed all the same.
+  // The closing vertex repeats the first one; a ring without it is closed too.
   if (end - begin > 1 && x_[begin] == x_[end - 1] && y_[begin] == y_[end - 1]) --end;
   ring_.clear();
   for (std::size_t i = begin; i < end; ++i) ring_.push_back({x_[i], y_[i]});
@@ -338,7 +340,7 @@ void RingReader::project_ring() {
   }
 }
 
-// Before the projection, which takes the poles to infinity.
+// Before the projection, which maps the poles to infinity.
 void RingReader::clip_latitude() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   clip_ring(ring_, {-kInfinity, -kMaxLatitude, kInfinity, kMaxLatitude}, scratch_);

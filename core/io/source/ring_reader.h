@@ -1,4 +1,4 @@
-// From the geometry of a feature, as GDAL gives it, to rings on the grid.
+// Converts the geometry of a feature, as GDAL returns it, to rings on the grid.
 #pragma once
 
 #include <cstddef>
@@ -16,40 +16,41 @@
 
 namespace trapeze {
 
-/// The rings of one feature on the grid, and what they came from.
+/// The rings of one feature on the grid, with figures about their source.
 struct FeatureRings {
   Rings rings;  // clipped to the world; may be empty
-  // The parts of a multipolygon: part i is rings part_ends[i - 1] .. part_ends[i] - 1. Formats that
-  // store rings alone do not say which belong together: none.
+  // The parts of a multipolygon: part i is rings part_ends[i - 1] .. part_ends[i] - 1. Empty for
+  // formats that store plain rings without specifying which belong together.
   std::vector<std::uint32_t> part_ends;
   std::size_t polygons = 0;      // in the source
   std::size_t source_rings = 0;  // in the source
-  std::size_t vertices = 0;      // in the source, closing ones included
+  std::size_t vertices = 0;      // in the source, including closing ones
   std::string failure;           // why the feature cannot be drawn; empty if it can
-  bool has_wrong_units = false;  // no CRS is given and a coordinate is no degree
+  bool has_wrong_units = false;  // no CRS is given, and a coordinate cannot be degrees
 
   void clear();
 };
 
-/// Whether a geometry of this type can hold polygons, itself or its parts.
+/// Whether a geometry of this type can be, or contain, a polygon.
 bool can_hold_polygons(OGRwkbGeometryType type);
-/// Whether it does: it is a polygon or a surface of polygons, or a collection with one in it.
+/// Whether it does: it is a polygon, a surface of polygons, or a collection that contains one.
 bool has_polygons(const OGRGeometry& geometry);
 
-/// Turns geometries of one CRS into rings: curves are linearised, collections taken apart, points
-/// and lines and the third dimension ignored; positions are projected, clipped to the Web Mercator
-/// square, and snapped to the nearest cell, without consecutive duplicates. What lies beyond the
-/// 180th meridian comes back in on the other side, and edges of a kilometre and more that run
-/// within two metres of it are on it. Rings are neither sorted nor validated.
+/// Converts geometries of one CRS to rings. Curves are linearized and collections split; points,
+/// lines and the third dimension are ignored. Positions are projected, clipped to the Web Mercator
+/// square, and snapped to the nearest cell, without consecutive duplicates. Geometry beyond the
+/// 180th meridian reappears on the other side, and edges of a kilometre or more that run within two
+/// metres of it are moved onto it. Rings are neither sorted nor validated.
 ///
-/// On the grid of another system, rings are clipped to what that shows, and edges, which are
-/// straight in the source, are cut so finely that they stay where they are: see GridRings.
+/// On the grid of another system, rings are clipped to the extent that it shows. Edges, which are
+/// straight in the source, are cut so finely that they stay in place: see GridRings.
 ///
-/// Belongs to the thread that made it.
+/// Use only on the thread that created it.
 class RingReader {
  public:
   struct Options {
-    bool shells_are_clockwise = false;  // count clockwise rings as polygons, not OGR's polygons
+    bool shells_are_clockwise = false;  // count clockwise rings as polygons instead of OGR's
+                                        // polygons
     std::shared_ptr<const TargetGrid> grid = {};  // null: Web Mercator
   };
 
@@ -80,20 +81,21 @@ class RingReader {
   std::unique_ptr<LonLatTransform> transform_;  // for the kinds that need one
   std::unique_ptr<GridRings> grid_;             // null: Web Mercator
 
-  // Of the current feature, ring after ring: coordinates of the source, then degrees or metres.
+  // Of the current feature, ring after ring: first in coordinates of the source, then in degrees or
+  // metres.
   std::vector<double> x_;
   std::vector<double> y_;
   std::vector<std::size_t> ends_;
-  std::vector<std::size_t> part_ends_;  // rings, in the same way
-  // Before they were transformed, if they were.
+  std::vector<std::size_t> part_ends_;  // in rings, cumulative
+  // Coordinates before the transformation, if there was one.
   std::vector<double> source_x_;
   std::vector<double> source_y_;
-  // Of the current ring: degrees, then cells.
+  // The current ring: in degrees, then in cells.
   PositionRing ring_;
-  PositionRing on_plane_;  // of the source
+  PositionRing on_plane_;  // the ring on the plane of the source
   PositionRing clipped_;
   PositionRing scratch_;
-  std::vector<PositionRing> parts_;  // of it on the grid of another system
+  std::vector<PositionRing> parts_;  // parts of the ring on the grid of another system
 };
 
 }  // namespace trapeze

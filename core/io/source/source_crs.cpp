@@ -29,7 +29,7 @@ bool is_named(const OGRSpatialReference& reference, std::string_view authority,
   return name != nullptr && number != nullptr && name == authority && number == code;
 }
 
-// Compares with the official definition, because files often lack the number.
+// Compares with the official definition, because files often lack the EPSG code.
 bool equals_epsg(const OGRSpatialReference& reference, int code) {
   OGRSpatialReference other;
   if (other.importFromEPSG(code) != OGRERR_NONE) return false;
@@ -59,7 +59,7 @@ SourceCrs::Kind kind_of(const OGRSpatialReference& reference) {
   return is_web_mercator(reference) ? SourceCrs::Kind::web_mercator : SourceCrs::Kind::projected;
 }
 
-/// What a GeoPackage, and what GDAL makes of one, has for coordinates in degrees of no known kind.
+/// What a GeoPackage has, and what GDAL makes of it, for coordinates in degrees of an unknown CRS.
 bool is_undefined(const OGRSpatialReference& reference) {
   const char* name = reference.GetName();
   return name != nullptr && reference.IsGeographic() &&

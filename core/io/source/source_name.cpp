@@ -19,14 +19,15 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-/// Where the value of an assignment begins whose name ends at `at`; the end if it is none.
+/// Where the value of an assignment begins whose name ends at `at`; the end of the text if it is no
+/// assignment.
 std::size_t begin_of_value(std::string_view text, std::size_t at) {
   const std::size_t sign = std::min(text.find_first_not_of(kSpaces, at), text.size());
   if (sign == text.size() || text[sign] != '=') return text.size();
   return std::min(text.find_first_not_of(kSpaces, sign + 1), text.size());
 }
 
-/// A quote that is not closed reaches to the end.
+/// An unclosed quote extends to the end.
 std::size_t end_of_value(std::string_view text, std::size_t begin) {
   if (text[begin] != '\'') {
     return std::min(text.find_first_of(kEndsOfValue, begin), text.size());
@@ -38,7 +39,7 @@ std::size_t end_of_value(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Of a connection string, or of the query of a URL.
+/// For a connection string, or the query of a URL.
 std::string without_assigned_passwords(std::string_view text) {
   const std::string lower = lower_case(text);
   std::string masked;
@@ -54,7 +55,7 @@ std::string without_assigned_passwords(std::string_view text) {
   return masked.append(text.substr(done));
 }
 
-/// Of URLs: what stands between a user and a host.
+/// For URLs: between a user and a host.
 std::string without_user_passwords(std::string_view text) {
   std::string masked;
   std::size_t done = 0;

@@ -5,8 +5,8 @@
 
 namespace trapeze {
 
-/// The path of a source without the password that a connection string or a URL may hold.
-/// Thread-safety: any thread.
+/// The path of a source without the password that a connection string or a URL may contain.
+/// Thread-safety: may be called from any thread.
 std::string name_of_source(const std::string& path);
 
 }  // namespace trapeze

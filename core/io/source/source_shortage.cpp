@@ -17,15 +17,17 @@ namespace trapeze {
 namespace {
 
 constexpr std::uint64_t kShapeHeader = 100;  // bytes before the first record of .shp and .shx
-constexpr std::uint64_t kIndexRecord = 8;    // bytes of one of .shx: offset and length in words
-constexpr std::uint64_t kRecordHeader = 8;   // bytes of a record of .shp before what is counted
-constexpr std::size_t kIndexBlock = 8192;    // records of .shx that are read at once
+constexpr std::uint64_t kIndexRecord = 8;    // bytes of a record of .shx: offset and length in
+                                             // words
+constexpr std::uint64_t kRecordHeader = 8;   // bytes of a record of .shp that its length does not
+                                             // include
+constexpr std::size_t kIndexBlock = 8192;    // records of .shx read in one block
 
 struct CloseFile {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-/// A file as GDAL finds it, which may lie in an archive.
+/// A file accessed through GDAL; it may lie in an archive.
 class SourceFile {
  public:
   explicit SourceFile(const std::string& path) : file_(VSIFOpenL(path.c_str(), "rb")) {}
@@ -35,7 +37,7 @@ class SourceFile {
     VSIFSeekL(file_.get(), 0, SEEK_END);
     return VSIFTellL(file_.get());
   }
-  /// As many bytes as there are.
+  /// Reads as many of the bytes as exist.
   std::vector<std::uint8_t> read(std::uint64_t offset, std::size_t bytes) {
     std::vector<std::uint8_t> read(bytes);
     VSIFSeekL(file_.get(), offset, SEEK_SET);
@@ -64,7 +66,7 @@ std::string of_all(std::uint64_t part, std::uint64_t all, const std::string& wha
   return std::to_string(part) + " of its " + std::to_string(all) + " " + what;
 }
 
-/// How many of the records that a .shx lists end beyond so many bytes.
+/// How many of the records listed in a .shx extend beyond so many bytes.
 std::uint64_t records_beyond(SourceFile& index, std::uint64_t records, std::uint64_t size) {
   std::uint64_t beyond = 0;
   for (std::uint64_t first = 0; first < records; first += kIndexBlock) {
@@ -79,7 +81,7 @@ std::uint64_t records_beyond(SourceFile& index, std::uint64_t records, std::uint
   return beyond;
 }
 
-/// The records of a .shx; it is whole, or GDAL would not have opened it.
+/// The number of records of a .shx. The file is complete, or GDAL would not have opened it.
 std::uint64_t records_of(SourceFile& index) {
   const std::vector<std::uint8_t> header = index.read(0, kShapeHeader);
   if (header.size() < kShapeHeader) return 0;
@@ -92,14 +94,14 @@ struct TableSize {
   std::uint64_t row_bytes = 0;
   std::uint64_t header_bytes = 0;
 
-  /// Of a file of so many bytes.
+  /// The number of rows in a file of so many bytes.
   std::uint64_t rows_in(std::uint64_t bytes) const {
     if (bytes <= header_bytes || row_bytes == 0) return 0;
     return std::min((bytes - header_bytes) / row_bytes, rows);
   }
 };
 
-/// Nothing if the file is too short to say.
+/// None if the file is too short to contain this.
 std::optional<TableSize> size_of_table(SourceFile& table) {
   constexpr std::size_t kFixedHeader = 32;
   const std::vector<std::uint8_t> header = table.read(0, kFixedHeader);
@@ -124,8 +126,8 @@ std::string shortage_of_table(const std::string& path, std::optional<std::uint64
   return {};
 }
 
-/// The file beside the shapes that ends so, in small or capital letters; empty if there is none.
-/// GDAL does not list one that it could not open.
+/// The file beside the shapes with that ending, in lower or upper case; empty if there is none.
+/// GDAL does not list a file that it could not open.
 std::string beside(const std::string& shapes, const std::array<const char*, 2>& endings) {
   for (const char* ending : endings) {
     std::string path = CPLResetExtension(shapes.c_str(), ending);
@@ -160,7 +162,7 @@ std::string shortage_of_shapefiles(GDALDataset& dataset) {
   return {};
 }
 
-/// SQLite takes what is missing of its last page for zeros.
+/// SQLite reads the missing part of its last page as zeros.
 std::string shortage_of_database(const std::string& path) {
   constexpr std::string_view kBegin("SQLite format 3\0", 16);
   SourceFile file(path);
@@ -183,7 +185,7 @@ std::string shortage_of_files(GDALDataset& dataset) {
   return {};
 }
 
-// A Shapefile is not among them: it counts rows that are marked as deleted, which are not read.
+// Shapefile is not among them: it counts rows marked as deleted, which are not read.
 bool tells_feature_count(const std::string& driver) {
   constexpr std::array<std::string_view, 5> kDrivers = {"FlatGeobuf", "GPKG", "SQLite",
                                                         "OpenFileGDB", "Parquet"};

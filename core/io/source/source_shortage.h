@@ -1,8 +1,7 @@
-// Finds files that lack a part of what they say they hold, where GDAL does not: it takes a record
-// that lies beyond the end of its file for one bad feature, and a table that cannot be opened for
-// none at all.
+// Detects files that lack a part of their declared content where GDAL does not: GDAL treats a
+// record beyond the end of its file as one bad feature, and ignores a table that cannot be opened.
 //
-// Thread-safety: any thread; the dataset is used by one thread at a time.
+// Thread-safety: may be called from any thread; the dataset is used by one thread at a time.
 #pragma once
 
 #include <string>
@@ -11,16 +10,17 @@
 
 namespace trapeze {
 
-/// In words, what the files of a dataset lack: of a Shapefile, shapes or rows, by the numbers in
-/// its .shx and .dbf; of an SQLite database, such as a GeoPackage, the end of its last page. Empty
-/// if nothing is known to be lacking. Reads headers and the .shx only.
+/// What the files of a dataset lack, in words: for a Shapefile, shapes or rows, according to its
+/// .shx and .dbf; for an SQLite database, such as a GeoPackage, the end of its last page. Empty if
+/// nothing is known to be missing. Reads only headers and the .shx.
 std::string shortage_of_files(GDALDataset& dataset);
 
-/// Whether sources of this driver say how many features a layer has, as many as can be read of it.
+/// Whether the feature count that sources of this driver declare for a layer equals the number that
+/// can be read.
 bool tells_feature_count(const std::string& driver);
 
-/// How many features of a layer can be read, whatever condition was set: which is gone afterwards,
-/// as are its ignored fields, and reading begins anew.
+/// How many features of a layer can be read without any condition. Removes the condition and the
+/// ignored fields that were set, and restarts reading.
 GIntBig count_readable(OGRLayer& layer);
 
 }  // namespace trapeze

@@ -19,7 +19,7 @@ struct FileState {
   std::int64_t modified;
 };
 
-/// Nothing if there is no such file, or it cannot be looked at.
+/// None if there is no such file, or it cannot be accessed.
 std::optional<FileState> state_of(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
@@ -36,7 +36,7 @@ std::string without_end_slash(std::string path) {
   return path;
 }
 
-/// What a source is called that is no file here; a connection string may hold a password.
+/// A description of a source that is no local file; a connection string may contain a password.
 std::string kind_of_remote(const std::string& path) {
   return path.starts_with("/vsi") ? path : "a database";
 }
@@ -88,7 +88,7 @@ std::string change_since(const SourceStamp& stamp, const std::string& path) {
   const std::filesystem::path now = without_end_slash(path);
   const std::string stem = std::filesystem::path(stamp.path).stem().string();
   for (const FileStamp& file : stamp.files) {
-    // Files that belong together differ in what comes after the stem.
+    // Files that belong together differ in the part after the stem.
     const bool has_stem = file.name.starts_with(stem + ".");
     const std::string name =
         has_stem ? now.stem().string() + file.name.substr(stem.size()) : file.name;

@@ -16,10 +16,10 @@
 namespace trapeze {
 namespace {
 
-constexpr int kSamples = 64;        // of the area, in both directions
+constexpr int kSamples = 64;        // across the area, in both directions
 constexpr double kMostAround = 30;  // degrees
-constexpr double kRoom = 1.001;     // of the square, so that nothing lies on its edge
-constexpr double kMostGrowth = 16;  // of the square, by what lies around the area of use
+constexpr double kRoom = 1.001;     // factor for the square, so that nothing lies on its edge
+constexpr double kMostGrowth = 16;  // of the square, because of the margin around the area of use
 
 struct Area {
   double west = 0;
@@ -60,7 +60,7 @@ Area with_margin(const Area& area, double share) {
   return around;
 }
 
-/// The sides of the area on the plane; nothing if a part of it has no place there.
+/// Computes the extent of the area on the plane; false if a part of it cannot be projected.
 bool project(const Area& area, OGRCoordinateTransformation& forward, Area& sides) {
   std::vector<double> x;
   std::vector<double> y;
@@ -89,7 +89,7 @@ double side_of(const Area& sides) {
   return std::max(sides.east - sides.west, sides.north - sides.south);
 }
 
-/// Around a pole, eastings too grow towards the north, or the south.
+/// Around a pole, eastings too may grow towards the north or the south.
 bool is_northing_first(const OGRSpatialReference& reference) {
   OGRAxisOrientation orientation = OAO_Other;
   const char* name = reference.GetAxis(nullptr, 0, &orientation);

@@ -10,19 +10,19 @@ namespace {
 
 constexpr double kTurn = 360;
 
-// An edge that is longer on the plane, or whose ends are farther apart, is followed. No plane in
-// use shows three quarters of a parallel within this length, but next to a pole.
+// An edge is followed if it is longer on the plane, or if its ends are farther apart. No plane in
+// use shows three quarters of a parallel within this length, except near a pole.
 constexpr double kLongMetres = 1e6;
 constexpr double kFarDegrees = 90;
-// Ends so near to each other are on two sides of a cut through the plane.
+// Ends this near to each other are on two sides of a cut through the plane.
 constexpr double kShortMetres = 0.01;
 
-// The edges of a ring are cut in so many places at most, and in as many more for each vertex. Once
-// around the world takes 40, and next to a pole some 30 more; far from where a system is used its
-// longitudes may come in no order.
+// The edges of a ring are cut in at most so many places in total, plus so many per vertex. Once
+// around the world takes 40 cuts, and near a pole some 30 more. Far from the area where a system is
+// used, its longitudes may come in no order.
 constexpr std::size_t kMostCuts = 2000;
 constexpr std::size_t kMostCutsOfVertex = 2;
-// Nearer to a pole, longitudes do not say where a point is.
+// Nearer to a pole, longitudes do not determine where a point is.
 constexpr double kPoleLatitude = 89.9999;
 
 struct Vertex {
@@ -38,8 +38,8 @@ double shorter_way(const Vertex& from, const Vertex& to) {
   return step;
 }
 
-// How far east the edge leads on the plane; nothing if that cannot be told with so many cuts, which
-// are used up.
+// How far east the edge leads on the plane; none if that cannot be determined with so many cuts,
+// which are deducted.
 std::optional<double> way_on_plane(const Vertex& from, const Vertex& to, const SourcePlane& plane,
                                    std::size_t& cuts) {
   const double step = shorter_way(from, to);
@@ -62,8 +62,8 @@ std::optional<double> way_on_plane(const Vertex& from, const Vertex& to, const S
   return *before + *after;
 }
 
-// What has to be added to the longitude of `to` so that it is as far from that of `from` as the
-// edge leads: turns of the world.
+// The turns of the world to be added to the longitude of `to` so that it differs from that of
+// `from` as the edge leads.
 double turns_of_edge(const Vertex& from, const Vertex& to, const SourcePlane& plane,
                      std::size_t& cuts) {
   const double way = way_on_plane(from, to, plane, cuts).value_or(shorter_way(from, to));
