@@ -19,7 +19,7 @@ const WAYS_IN_WORDS = [["quantiles", "quantiles"], ["equal", "equal steps"],
   ["natural", "natural breaks"]];
 const COUNTS = [3, 4, 5, 6, 7, 8, 9];
 const USUAL_COUNT = 5;
-const FROM = [["view", "what is in view"], ["all", "all of the layer"]];
+const FROM = [["view", "the current view"], ["all", "the whole layer"]];
 
 export class ClassEditor {
   /**

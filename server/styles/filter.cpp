@@ -398,7 +398,7 @@ class Parser {
   }
 
   std::string property() {
-    if (token_.kind != TokenKind::name) fail("a property");
+    if (token_.kind != TokenKind::name) fail("an attribute");
     std::string name = std::move(token_.text);
     advance();
     return name;

@@ -82,12 +82,12 @@ test("what is suggested is of the view, or of all of the layer", async () => {
   const in_view = await names();
   assert.ok(in_view.includes("column 4") && !in_view.includes("column 12"), String(in_view));
   await form.getByLabel("Colour by").selectOption("number");
-  await form.getByLabel("From").selectOption("all of the layer");
+  await form.getByLabel("From").selectOption("the whole layer");
   await parameter(page, "breaks", "10,60,140,250");
   await page.evaluate(() => (location.hash = "#9/45/14.5&on=columns"));
   await page.waitForFunction(() => document.querySelector("img.leaflet-tile[src*='/9/27']"));
   await form.getByLabel("Colour by").selectOption("half");
-  await form.getByLabel("From").selectOption("what is in view");
+  await form.getByLabel("From").selectOption("the current view");
   await form.getByRole("button", { name: "Suggest from map" }).click();
   await page.waitForFunction(() => /columns\.classes=east:[0-9a-f]{6},\*:/.test(location.hash));
   assert_nothing_went_wrong(server, seen);

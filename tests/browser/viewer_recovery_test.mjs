@@ -210,7 +210,7 @@ test("tiles refused for a while (429) are told and come later, not sooner than w
   const { page, seen, status } = await open("#5/46/10");
   let is_refusing = true;
   await page.route("**/tiles/**", (route) => (is_refusing
-    ? route.fulfill({ status: 429, headers: { "Retry-After": "2" }, json: { detail: "Ask again." } })
+    ? route.fulfill({ status: 429, headers: { "Retry-After": "2" }, json: { detail: "Try again." } })
     : route.continue()));
   await pan(page);
   await status.getByText("Too many requests for the server.").waitFor();

@@ -37,7 +37,7 @@ PreparedHeader read_header(std::span<const std::byte> file) {
   PreparedHeader header;
   if (file.size() < sizeof header) fail("is cut off");
   std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kPreparedMagic) fail("is no prepared file");
+  if (header.magic != kPreparedMagic) fail("is not a prepared file");
   if (header.byte_order != kByteOrderMark) {
     throw OtherFormatError("was prepared on a machine of another byte order");
   }

@@ -179,7 +179,7 @@ TEST(CoverageGroups, TooManyOverEachOtherStayApartInWords) {
   for (const CoverageMode mode : {CoverageMode::on, CoverageMode::automatic}) {
     const Assembly assembly = features.assembly(mode);
     EXPECT_FALSE(assembly.outcome.built);
-    EXPECT_EQ(assembly.outcome.failure, "too many of them lie over each other");
+    EXPECT_EQ(assembly.outcome.failure, "too many of them overlap");
     EXPECT_EQ(assembly.apart.size(), texts.size());
   }
 }
@@ -189,7 +189,7 @@ TEST(CoverageGroups, TooManyWithinEachOtherStayApartInWords) {
   std::vector<std::string> texts;
   for (int i = 1; i <= 4200; ++i) texts.push_back(rectangle(-i, -i, 2 * i, 2 * i));
   const Assembly assembly = Features(texts).assembly(CoverageMode::on);
-  EXPECT_EQ(assembly.outcome.failure, "too many of them lie over each other");
+  EXPECT_EQ(assembly.outcome.failure, "too many of them overlap");
   EXPECT_EQ(assembly.apart.size(), texts.size());
 }
 

@@ -360,7 +360,7 @@ TEST(ProgramTest, AFontThatCannotBeUsedIsAWarningOfConfigCheckAndDoesNotKeepFrom
   serve.send_signal(SIGTERM);
   EXPECT_EQ(serve.wait(), 0);
   EXPECT_THAT(serve.output(), AllOf(HasSubstr("/nowhere/a.ttf is not there"),
-                                    HasSubstr("there is no font: legends show no text")));
+                                    HasSubstr("there is no font, so legends and labels show no text")));
   std::filesystem::remove(path);
   std::filesystem::remove(font);
 }
@@ -439,7 +439,7 @@ TEST_F(ConfigCheckTest, WhatItFindsKeepsTheServerFromStarting) {
       {"file = \"nosuch.fgb\"", ":3:8: ", "layer.a.file: "},
       {"file = \"nosuch.fgb\"", ":3:8: ", "nosuch.fgb: no such file"},
       {"file = \".\"", ":3:8: ", "is a folder"},
-      {"file = \"words.txt\"", ":3:8: ", "holds no vector data"},
+      {"file = \"words.txt\"", ":3:8: ", "contains no vector data"},
       {"file = \"cut.gpkg\"", ":3:8: ", "cut.gpkg: "},
       {"file = \"/vsizip/nosuch.zip/a.shp\"", ":3:8: ", "no such file"},
       {"file = \"map.gpkg\"\nsource_layer = \"roads\"", ":4:16: ", "layer.a.source_layer: "},
@@ -456,7 +456,7 @@ TEST_F(ConfigCheckTest, WhatItFindsKeepsTheServerFromStarting) {
       {"file = \"map.geojson\"\nmerge = 4\nmerge_by = \"colour\"",
        ":5:12: ", "has no attribute \"colour\" to merge by; it has: "},
       {"prepared = \"nosuch.trapeze\"", ":3:12: ", "layer.a.prepared: "},
-      {"prepared = \"words.txt\"", ":3:12: ", "holds no vector data"},
+      {"prepared = \"words.txt\"", ":3:12: ", "contains no vector data"},
       {"prepared = \"changed.trapeze\"", ":3:12: ", "is older than its source: "},
       {"file = \"west.geojson\"\nprepared = \"other.trapeze\"", ":4:12: ", "has format 99"},
       {"prepared = \"map.trapeze\"\nweights = \"effective-area\"",
@@ -546,7 +546,7 @@ TEST_F(ConfigCheckTest, WarnsOfWhatTheServerWarnsOfAndStartsWith) {
         "[[layer]]\nname = \"a\"\nfile = \"plain.gml\"\n");
   const std::string words = file("plain.gml") +
                             ": names no coordinate reference system, so its "
-                            "coordinates are taken for degrees on WGS 84";
+                            "coordinates are assumed to be degrees on WGS 84";
   const auto [status, says] = check();
   EXPECT_EQ(status, 0);
   EXPECT_THAT(says, HasSubstr(file("trapeze.toml") + ":7:8: warning: layer.a.file: " + words));
@@ -857,17 +857,17 @@ TEST(ProgramTest, PreparesAgainWithWhatHasNotChanged) {
     EXPECT_EQ(program.wait(), status);
     return program.output();
   };
-  EXPECT_THAT(prepare({"--reuse", "nosuch"}, 1), HasSubstr("nosuch: there is no such file"));
+  EXPECT_THAT(prepare({"--reuse", "nosuch"}, 1), HasSubstr("nosuch: no such file"));
   EXPECT_THAT(prepare({"--reuse", folder}, 0),
-              HasSubstr("nothing is taken over: " + folder + "/rings.trapeze is not there"));
+              HasSubstr("nothing is reused: " + folder + "/rings.trapeze is not there"));
   const std::string file = folder + "/rings.trapeze";
   const std::string anew = read_file(file);
   EXPECT_THAT(prepare({"--reuse", folder}, 0),
-              HasSubstr("1 of 1 features are as they were and taken over from " + file));
+              HasSubstr("1 of 1 features are unchanged and reused from " + file));
   EXPECT_EQ(read_file(file), anew);
   EXPECT_THAT(prepare({"--reuse", file, "--weights", "effective-area"}, 0),
-              HasSubstr("nothing is taken over: " + file + " was prepared with the weights"));
-  EXPECT_THAT(prepare({"--reuse", fixture("rings.geojson")}, 1), HasSubstr("is no prepared file"));
+              HasSubstr("nothing is reused: " + file + " was prepared with the weights"));
+  EXPECT_THAT(prepare({"--reuse", fixture("rings.geojson")}, 1), HasSubstr("not a prepared file"));
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   std::filesystem::resize_file(file, 1000);
   EXPECT_THAT(prepare({"--reuse", file}, 1), HasSubstr(file + ": is damaged"));
@@ -964,9 +964,9 @@ TEST(ProgramTest, HelpTellsTheDefaultsOfSettings) {
   const std::string port = std::to_string(defaults.port);
   EXPECT_THAT(
       program.output(),
-      AllOf(::testing::ContainsRegex("--port N +The port.*If not set: " + port),
-            ::testing::ContainsRegex("--address IP +The.*If not set: " + defaults.address),
-            ::testing::ContainsRegex("--renderer NAME .*\"software\"[.] If not set: auto")));
+      AllOf(::testing::ContainsRegex("--port N +The port.*Default: " + port),
+            ::testing::ContainsRegex("--address IP +The.*Default: " + defaults.address),
+            ::testing::ContainsRegex("--renderer NAME .*\"software\"[.] Default: auto")));
 }
 
 }  // namespace

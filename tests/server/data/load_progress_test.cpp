@@ -35,10 +35,10 @@ TEST_F(StallWatchTest, WarnsOnceOfWhatDoesNotGetOn) {
   watch.look();
   EXPECT_EQ(
       log(),
-      "slow.gpkg: loading has not got on for 0 s: a step takes long, or the source does not "
-      "answer\n"
-      "PG:dbname=maps password=***: loading has not got on for 0 s: a step takes long, or the "
-      "source does not answer\n");
+      "slow.gpkg: no progress in loading for 0 s: a step takes long, or the source does not "
+      "respond\n"
+      "PG:dbname=maps password=***: no progress in loading for 0 s: a step takes long, or the "
+      "source does not respond\n");
 }
 
 TEST_F(StallWatchTest, SaysNothingOfWhatGetsOnOrIsDone) {

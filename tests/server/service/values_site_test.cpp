@@ -249,7 +249,7 @@ TEST_F(ValuesSiteTest, HasFewerClassesWhereThereAreFewerValuesAndSaysSo) {
   Json layer = json("/legend/columns.json?" + query)["layers"][0];
   EXPECT_EQ(layer["classification"]["classes"], 1);
   EXPECT_THAT(layer["classification"]["note"].get<std::string>(),
-              HasSubstr("1 classes in place of 5"));
+              HasSubstr("1 classes instead of 5"));
   EXPECT_EQ(layer["entries"].size(), 2u);
   EXPECT_EQ(layer["entries"][0]["label"], "7");
   EXPECT_EQ(colour(query, 0), colour(query, 1));
@@ -359,11 +359,11 @@ TEST_F(ValuesSiteTest, RefusesHostileTables) {
 TEST_F(ValuesSiteTest, RefusesStylesThatDoNotFit) {
   const std::string id = id_of("key,v\nC0,1\n");
   const std::string tile = "/tiles/columns/0/0/0.png?";
-  EXPECT_THAT(words(tile + "values=" + id, 400), HasSubstr("say by join"));
+  EXPECT_THAT(words(tile + "values=" + id, 400), HasSubstr("set join to"));
   EXPECT_THAT(words(tile + "values=" + id + "&join=nosuch", 400), HasSubstr("code, number"));
   EXPECT_THAT(words(tile + "join=code", 400), HasSubstr("values"));
   EXPECT_THAT(words(tile + "values=nosuch&join=code", 404), HasSubstr("people"));
-  EXPECT_THAT(words(tile + "color-by=value&breaks=1&ramp=Reds", 400), HasSubstr("no property"));
+  EXPECT_THAT(words(tile + "color-by=value&breaks=1&ramp=Reds", 400), HasSubstr("no attribute"));
   EXPECT_THAT(words(tile + "color-by=number&breaks=quantile:99&ramp=Reds", 400),
               HasSubstr("2 to 32"));
   EXPECT_THAT(words(tile + "color-by=code&breaks=quantile:3&ramp=Reds", 400), HasSubstr("text"));

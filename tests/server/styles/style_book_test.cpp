@@ -203,7 +203,7 @@ TEST(StyleDocumentTest, NothingIsLeftOutInSilence) {
            {R"({"layers": {"a b": {"fill": "red"}}})", "cannot name a layer"},
            {R"({"layers": {"a": 1}})", "needs an object"},
            {R"({"ids": 18446744073709551615})", "ids takes 1 to"},
-           {R"({"color-by": "a\u0001"})", "color-by takes the name of a property"},
+           {R"({"color-by": "a\u0001"})", "color-by takes the name of an attribute"},
            {R"({"classes": {"a\nb": "red"}})", "classes takes 1 to"},
            {R"({"filter": "a = 'b\t'"})", "at byte 7 there is a control character"},
            {R"({"water.background": "red"})", "for one layer"},

@@ -432,7 +432,7 @@ TEST(ExportLayerTest, OutputsThatCannotBeAreRefusedByName) {
       {folder.file("out.shp"), "must end in .fgb"},
       {folder.file("out"), "must end in .fgb"},
       {folder.file("none/out.fgb"), "there is no folder"},
-      {folder.file("folder.gpkg"), "no plain file"},
+      {folder.file("folder.gpkg"), "other than a regular file"},
       {source, "the source itself"}};
   std::filesystem::create_directory(folder.file("folder.gpkg"));
   ExportOptions options;

@@ -311,7 +311,7 @@ TEST_F(LoadLayerTest, AssumesDegreesWhereNoReferenceSystemIsGiven) {
   expect_area(*loaded.layer, 0, rectangle(1, 1, 2, 2));
   EXPECT_THAT(loaded.report.warnings,
               ElementsAre(HasSubstr("names no coordinate reference system, so its coordinates are "
-                                    "taken for degrees on WGS 84")));
+                                    "assumed to be degrees on WGS 84")));
 }
 
 TEST_F(LoadLayerTest, WarnsOfEachLayerThatNamesNoReferenceSystem) {
@@ -375,7 +375,7 @@ TEST_F(LoadLayerTest, RefusesAReferenceSystemThatLeadsNowhere) {
                  .features = {{"POLYGON((1 1,2 1,2 2,1 2,1 1))"}}}});
   EXPECT_THAT(failure_of(path),
               AllOf(StartsWith(path + ": "),
-                    HasSubstr("reference system \"site plan\" cannot be brought to WGS 84")));
+                    HasSubstr("reference system \"site plan\" cannot be transformed to WGS 84")));
 }
 
 TEST_F(LoadLayerTest, SkipsFeaturesWithNumbersThatAreNoneAndSaysWhich) {
@@ -581,7 +581,7 @@ TEST_F(LoadLayerTest, TooManyOverEachOtherAreBuiltApartAndItIsSaid) {
   EXPECT_EQ(report.coverage.apart, 6000u);
   ASSERT_EQ(report.notes.size(), 1u);
   EXPECT_EQ(report.notes[0].reason,
-            "built apart from 5999 neighbours: too many of them lie over each other");
+            "built apart from 5999 neighbours: too many of them overlap");
 }
 
 TEST_F(LoadLayerTest, NeighboursAreBuiltTogetherWhateverTheThreads) {

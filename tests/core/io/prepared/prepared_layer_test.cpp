@@ -364,7 +364,7 @@ TEST_F(PreparedLayerTest, OfAnotherVersionIsRefused) {
             HasSubstr("reads " + std::to_string(kPreparedVersion))));
   prepare(kMixed, path("built.trapeze"));
   change_header(path("built.trapeze"), [](PreparedHeader& header) { ++header.fingerprint; });
-  EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers otherwise"));
+  EXPECT_THAT(failure_of(path("built.trapeze")), HasSubstr("builds layers differently"));
   prepare(kMixed, path("order.trapeze"));
   change_header(path("order.trapeze"), [](PreparedHeader& h) { h.byte_order = 0x04030201; });
   EXPECT_THAT(failure_of(path("order.trapeze")), HasSubstr("byte order"));
@@ -630,7 +630,7 @@ TEST_F(PreparedLayerTest, NothingIsTakenOverFromWhatWasBuiltOtherwise) {
   EXPECT_THAT(unfit([](LayerOptions& o) { o.close_gaps = 3; }), HasSubstr("gaps closed up to 2 m"));
   EXPECT_THAT(unfit([](LayerOptions& o) { o.merge = 4; }), HasSubstr("blocks"));
   change_header(prepared_, [](PreparedHeader& header) { ++header.fingerprint; });
-  EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("builds layers otherwise"));
+  EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("builds layers differently"));
   change_header(prepared_, [](PreparedHeader& header) { ++header.version; });
   EXPECT_THAT(unfit([](LayerOptions&) {}), HasSubstr("has format"));
   // A layer in memory that was built otherwise is passed over, too.
@@ -649,7 +649,7 @@ TEST_F(PreparedLayerTest, TakingOverFromWhatIsNoPreparedFileIsRefused) {
     return "was opened";
   };
   EXPECT_THAT(failure(path("nosuch.trapeze")), HasSubstr("nosuch.trapeze"));
-  EXPECT_THAT(failure(kMixed), AllOf(StartsWith(kMixed), HasSubstr("is no prepared file")));
+  EXPECT_THAT(failure(kMixed), AllOf(StartsWith(kMixed), HasSubstr("is not a prepared file")));
   prepare(kMixed, prepared_);
   std::string bytes = read_file(prepared_);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -675,7 +675,7 @@ TEST_F(PreparedLayerTest, CutOffWhileItIsTakenOverFromNothingIsReadBeyond) {
           save_prepared_layer(path("again.trapeze"), after, kRevision, stamp_source(kMixed), {},
                               earlier);
         },
-        ThrowsMessage<std::runtime_error>(AllOf(StartsWith(prepared_), HasSubstr("written into"))));
+        ThrowsMessage<std::runtime_error>(AllOf(StartsWith(prepared_), HasSubstr("modified"))));
     EXPECT_FALSE(std::filesystem::exists(path("again.trapeze")));
     std::vector<LayerBuilder> builders;
     builders.emplace_back(LayerOptions(), nullptr, &noted);

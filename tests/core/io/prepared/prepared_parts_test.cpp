@@ -106,7 +106,7 @@ TEST(PreparedPartsTest, OneThatIsCutOffOrReplacedIsDamagedWhenItIsLookedAt) {
   EXPECT_EQ(parts[0]->layer(), nullptr);
   EXPECT_THAT(parts[0]->problem(), AllOf(HasSubstr(files[0]), HasSubstr("damaged")));
   EXPECT_EQ(parts[1]->layer(), nullptr);
-  EXPECT_THAT(parts[1]->problem(), HasSubstr("another file by now"));
+  EXPECT_THAT(parts[1]->problem(), HasSubstr("has been replaced"));
   EXPECT_NE(parts[2]->layer(), nullptr);
   EXPECT_TRUE(parts[0]->is_damaged());
   EXPECT_FALSE(parts[2]->is_damaged());
@@ -155,7 +155,7 @@ TEST(PreparedPartsTest, RefusesWhatDoesNotBelongTogether) {
   const std::string whole = folder.file("whole.trapeze");
   save_prepared_layer(whole, load_layer(source), 1, stamp_source(source));
   EXPECT_THAT(failure_of({files[0], files[1], files[2], whole}), HasSubstr("is a whole layer"));
-  EXPECT_THAT(failure_of({source}), HasSubstr("is no prepared file"));
+  EXPECT_THAT(failure_of({source}), HasSubstr("is not a prepared file"));
 }
 
 TEST(PreparedPartsTest, RefusesAnOverviewOfOtherParts) {

@@ -90,9 +90,9 @@ TEST_F(ChangeFeedTest, SaysWhatIsWrongWithAQuery) {
   EXPECT_THAT(failure_of("SELECT number, id FROM nowhere WHERE number > {since}"),
               HasSubstr("nowhere"));
   EXPECT_THAT(failure_of("SELECT number FROM changes WHERE number > {since}"),
-              HasSubstr("two columns of integers"));
+              HasSubstr("two integer columns"));
   EXPECT_THAT(failure_of("SELECT number, 'x' FROM changes WHERE number > {since}"),
-              HasSubstr("two columns of integers"));
+              HasSubstr("two integer columns"));
 }
 
 TEST_F(ChangeFeedTest, AsksAgainAfterAFailure) {
