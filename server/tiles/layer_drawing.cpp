@@ -597,8 +597,7 @@ Box LayerDrawing::least_around(const Box& box) const {
 void LayerDrawing::add_places(const Layer::Selection& selection, const FeatureClasses* classes,
                               DrawingTools& tools) {
   const bool is_kept = paint_->small == SmallPolygons::keep;
-  // A mote may reach into the next pixel, and a small polygon that is drawn larger into the next
-  // picture.
+  // A mote may reach into the next pixel, and an enlarged small polygon into the next picture.
   Layer::Selection around = selection;
   around.box = with_margin(selection.box, 2 * least_side_ * view_.longer_side());
   if (classes == nullptr && is_kept) {

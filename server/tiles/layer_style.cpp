@@ -30,7 +30,7 @@ constexpr std::array<Rgba, 8> kPalette = {{{0x7f, 0xa6, 0x87, 255},
 /// angle, which stay distinct for any number of layers.
 Rgba hue_at(std::size_t position) {
   constexpr double kGoldenAngle = 137.50776405003785;
-  constexpr double kMiddle = 158;  // of the channels, and how far they go from it
+  constexpr double kMiddle = 158;  // of the channels, and the deviation from it
   constexpr double kReach = 46;
   const double degrees = std::fmod(static_cast<double>(position) * kGoldenAngle, 360);
   const auto channel = [&](double turned) {
@@ -283,9 +283,8 @@ std::optional<Problem> make_joined(Making& making) {
 }
 
 // ---- classes by value
-// Values with the same colour share a pass, so that there are only as many passes as colours.
 
-/// Many values in few colours are as few passes as there are colours.
+/// Values with the same colour share a pass, so that there are only as many passes as colours.
 void make_alike(Making& making) {
   std::vector<std::uint8_t> alike;
   for (const Rgba fill : making.fills) {
@@ -329,7 +328,7 @@ std::optional<Problem> make_values(Making& making, const Field& field) {
   const bool has_null =
       std::ranges::any_of(values, [](const auto& value) { return !value.has_value(); });
   if (const auto colour = no_data_colour(making); colour && !has_null) {
-    constexpr std::size_t kMostBeside = 252;  // as a byte numbers classes
+    constexpr std::size_t kMostBeside = 252;  // classes are numbered by a byte
     if (values.size() > kMostBeside) {
       return Problem{400,
                      fmt::format("There are at most {} classes beside no-data-color.", kMostBeside),
@@ -474,9 +473,9 @@ std::optional<Problem> make_selection(Making& making) {
 
 // ---- labels
 
-constexpr std::string_view kNoLabel = "none";  // an attribute of that name stands in braces
+constexpr std::string_view kNoLabel = "none";  // an attribute of that name needs braces
 
-/// The number of the attribute by which labels are ordered, -1 if that is by area.
+/// The index of the attribute by which labels are ordered; -1 for the area.
 Result<int> label_priority(const Making& making) {
   const auto* name = making.settings.find<std::string>(ParameterId::label_priority);
   if (name == nullptr || *name == "area") return -1;

@@ -12,7 +12,7 @@ namespace {
 // Rounding error of a zoom.
 constexpr double kZoomError = 1e-9;
 
-/// The number of the copy that a place is in: 0 is the world itself.
+/// The number of the copy of the world that a place is in; 0 is the world itself.
 std::int64_t copy_at(double x) {
   return static_cast<std::int64_t>(std::floor((x - kGridMin) / static_cast<double>(kGridSize)));
 }

@@ -14,8 +14,8 @@ namespace {
 
 // Cost of an entry besides its key and picture: nodes of list and map, and the allocator.
 constexpr std::size_t kOverhead = 256;
-constexpr std::size_t kSmallShare = 10;  // one part in so many of the budget is the small queue's
-constexpr std::uint8_t kMostHits = 3;    // counted of one entry
+constexpr std::size_t kSmallShare = 10;  // the small queue gets 1/kSmallShare of the budget
+constexpr std::uint8_t kMostHits = 3;    // counted per entry
 
 std::uint64_t hash_of(std::string_view key) {
   return std::hash<std::string_view>()(key);

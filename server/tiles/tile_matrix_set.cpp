@@ -14,13 +14,13 @@ namespace trapeze {
 namespace {
 
 constexpr double kMetresPerPixel = 0.00028;  // pixel size assumed by the OGC
-constexpr double kRounding = 1e-9;           // of a tile: what arithmetic may take from a border
+constexpr double kRounding = 1e-9;           // of a tile: rounding error at a border
 constexpr double kZoomError = 1e-9;
 
 /// Sets in which every matrix has pixels half as large as the one before.
 TileMatrixSetPtr quad_tree(TileMatrixSet set, std::uint32_t columns, int last) {
   const double half = set.system->half_side;
-  const double side = 2 * half / columns;  // of the tiles of the first matrix
+  const double side = 2 * half / columns;  // of a tile of the first matrix
   const double north = set.system->is_in_degrees ? half / 2 : half;
   for (int z = 0; z <= last; ++z) {
     TileMatrix matrix;

@@ -28,7 +28,7 @@ void attempt(const Action& tell) {
 // microseconds.
 constexpr std::uint64_t kQuickToIdentify = 30'000;
 
-/// In the place of a renderer where tiles are identified only.
+/// Takes the place of a renderer where tiles are only identified.
 class NoRenderer final : public MaskRenderer {
  public:
   explicit NoRenderer(std::string identity) : identity_(std::move(identity)) {}
