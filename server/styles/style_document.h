@@ -12,8 +12,8 @@ namespace trapeze {
 
 /// Reads a document like
 ///
-/// ///   {"fill": "#cde", "stroke-width": 2, "classes": {"FRA": "red", "*": "silver"},
-/// ///    "layers": {"water": {"fill": "navy"}}}
+///   {"fill": "#cde", "stroke-width": 2, "classes": {"FRA": "red", "*": "silver"},
+///    "layers": {"water": {"fill": "navy"}}}
 ///
 /// Lists may be arrays; parameters may also be prefixed with a layer: "water.fill". A layer of a
 /// MapLibre style of type "fill", or its paint alone, is supported as far as its fill-color,
