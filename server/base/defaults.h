@@ -25,8 +25,7 @@ constexpr std::chrono::milliseconds kDrainTimeout{10'000};
 constexpr std::size_t kQueue = 256;  // tiles that may wait for a worker
 // In units of drawing_cost(): 25 million are a second of a worker.
 constexpr std::uint64_t kOrdinaryTile = 250'000;  // up to this, cost is not limited
-constexpr std::uint64_t kDearTile = 500'000;      // above this, a tile waits with the expensive
-                                                  // ones
+constexpr std::uint64_t kDearTile = 500'000;      // above this, a tile uses the second queue
 constexpr std::uint64_t kTileCost = 100'000'000;
 constexpr double kCostPerSecond = 25'000'000;
 constexpr double kCostBurst = 250'000'000;
